@@ -1,0 +1,43 @@
+# millscope_add_plugin(NAME SOURCES file… [WIDE] [LINK target…])
+#
+# Builds one plugin library. Contact laws, interactions and pair parameters say WIDE: they are built once per instruction set
+# (x86-64-v2, v3, v4) into the sub-folders v2, v3, v4, and the loader takes the best that the machine runs. The same function
+# serves the plugins of the project and those built out of tree with find_package(millscope).
+
+if(NOT DEFINED MILLSCOPE_PLUGIN_OUTPUT)
+  set(MILLSCOPE_PLUGIN_OUTPUT ${CMAKE_BINARY_DIR}/lib/millscope/plugins)
+endif()
+
+function(_millscope_plugin_variant name folder march sources links)
+  set(target ${name}_plugin)
+  if(folder)
+    set(target ${name}_plugin_${folder})
+  endif()
+  add_library(${target} MODULE ${sources})
+  target_link_libraries(${target} PRIVATE millscope::sdk ${links})
+  if(TARGET millscope_options)
+    target_link_libraries(${target} PRIVATE millscope_options)
+  endif()
+  target_compile_features(${target} PRIVATE cxx_std_20)
+  target_compile_options(${target} PRIVATE -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden ${march})
+  set_target_properties(${target} PROPERTIES PREFIX "lib" OUTPUT_NAME ${name} SUFFIX ".so"
+                        LIBRARY_OUTPUT_DIRECTORY ${MILLSCOPE_PLUGIN_OUTPUT}/${folder})
+  if(NOT MILLSCOPE_PLUGIN_NO_INSTALL)
+    include(GNUInstallDirs)
+    install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/millscope/plugins/${folder})
+  endif()
+endfunction()
+
+function(millscope_add_plugin name)
+  cmake_parse_arguments(arg "WIDE" "" "SOURCES;LINK" ${ARGN})
+  if(NOT arg_SOURCES)
+    message(FATAL_ERROR "millscope_add_plugin(${name}): SOURCES is missing")
+  endif()
+  if(arg_WIDE)
+    _millscope_plugin_variant(${name} v2 "-march=x86-64-v2" "${arg_SOURCES}" "${arg_LINK}")
+    _millscope_plugin_variant(${name} v3 "-march=x86-64-v3" "${arg_SOURCES}" "${arg_LINK}")
+    _millscope_plugin_variant(${name} v4 "-march=x86-64-v4;-mprefer-vector-width=512" "${arg_SOURCES}" "${arg_LINK}")
+  else()
+    _millscope_plugin_variant(${name} "" "" "${arg_SOURCES}" "${arg_LINK}")
+  endif()
+endfunction()

@@ -1,0 +1,155 @@
+// What crosses the boundary between millscope and a plugin: plain data only.
+//
+// A plugin library exports one data symbol, `millscope_plugins`, a list of descriptors. The host reads magic, size, ABI version
+// and layout hash before any code of the plugin runs. Layout rule: the first five members of Descriptor never move, so that a host
+// of any age can say what differs.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+
+namespace millscope {
+
+inline constexpr std::uint64_t kMagic = 0x504F43534C4C494DULL;  // "MILLSCOP", little endian
+inline constexpr std::uint32_t kAbiMajor = 1;                   // raised when a plugin must be rebuilt
+inline constexpr std::uint32_t kAbiMinor = 0;                   // raised when something is added at the end
+
+/// What a plugin is. The layout check is per kind, so that adding a kind breaks no plugin of another.
+enum class Kind : std::uint32_t {
+  contact_law = 1,
+  interaction = 2,
+  pair_parameter = 3,
+  body_force = 4,
+  geometry = 5,
+  observation = 6,
+  analyzer = 7,
+};
+
+/// How a parameter is written in YAML.
+enum class ValueType : std::uint32_t { number, integer, boolean, choice, text, file, vector };
+
+/// Where a parameter stands: once per instance of the plugin, or once per unordered pair of materials.
+enum class Scope : std::uint32_t { instance, pair };
+
+/// Value of `Parameter::fallback` that means "the user must give it".
+inline constexpr double kRequired = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+/// One parameter of a plugin: the YAML check, `describe`, the JSON Schema and the manual are made from it.
+struct Parameter {
+  const char* name;      ///< key in YAML, lower_case_words
+  const char* unit;      ///< SI unit: "1", "m", "s", "kg", "Pa", "N/m", "m/s", "rad", "J/m^2", …; "" for text
+  const char* doc;       ///< one sentence
+  const char* citation;  ///< source, or ""
+  const char* choices;   ///< for `choice`: "a|b|c"; the first is the default unless `fallback_text` says otherwise
+  const char* fallback_text;  ///< default of choice, text and file; nullptr: required
+  double fallback;            ///< default of number, integer, boolean (0/1), and of each component of a vector; NaN: required
+  double minimum;             ///< smallest allowed value (numbers and vector components)
+  double maximum;             ///< largest allowed value
+  ValueType type;
+  Scope scope;
+  std::uint32_t optional;  ///< 1: may be absent without a default; the plugin asks `given`
+  std::uint32_t reserved;
+};
+
+/// One resolved value handed to a plugin. Numbers are SI.
+struct Value {
+  const char* name;
+  const char* text;   ///< choice, text, file (an absolute path); "" otherwise
+  double number[3];   ///< number, integer, boolean in [0]; vector in all three
+  std::uint32_t given;  ///< 1 when the user wrote it or it has a default
+  std::uint32_t reserved;
+};
+
+struct Values {
+  const Value* items;
+  std::uint64_t count;
+};
+
+/// Filled by a plugin that refuses: one line, the value, the reason, the remedy.
+struct Failure {
+  char message[1024];
+};
+
+/// 0: done. Anything else: `Failure::message` says why.
+using Status = std::int32_t;
+
+/// A physics that a model may have left out; `diagnose` enumerates the loaded ones.
+struct Hypothesis {
+  const char* name;
+  const char* sentence;   ///< what to say when it is found
+  const char* equation;
+  const char* citation;
+  const char* parameter;  ///< name of the parameter of this plugin
+  double null_value;      ///< value at which the effect vanishes
+  double prior_low, prior_high;
+  std::uint32_t two_sided;
+  std::uint32_t reobserve;  ///< 1: costs no simulation (camera effects)
+  const char* undefined_at_null;  ///< parameters without meaning at zero, "a|b", or ""
+  const char* excludes;           ///< hypotheses that cannot hold together with it, "a|b", or ""
+};
+
+struct Descriptor {
+  std::uint64_t magic;
+  std::uint32_t size;  ///< sizeof(Descriptor) as the plugin was built
+  std::uint32_t abi_major;
+  std::uint32_t abi_minor;
+  std::uint32_t kind;
+  std::uint64_t layout;    ///< hash of the kind's struct layouts
+  std::uint64_t features;  ///< bits of `Feature`
+  const char* name;
+  const char* version;
+  const char* compiler;
+  const char* doc;
+  const char* equation;
+  const char* citation;
+  const Parameter* parameters;
+  std::uint64_t parameter_count;
+  const Hypothesis* hypotheses;
+  std::uint64_t hypothesis_count;
+  const void* table;  ///< ContactLawTable, InteractionTable, …
+  std::uint64_t table_size;
+};
+
+/// Feature bits.
+enum Feature : std::uint64_t {
+  kNoFeature = 0,
+  kPreInteraction = 1,   ///< interaction that acts before the contact law
+  kPostInteraction = 2,  ///< interaction that acts after it
+  kGivesRestitution = 4, ///< pair_parameter that replaces e
+  kGivesFriction = 8,    ///< pair_parameter that replaces the static friction
+  kSimulationOnly = 16,  ///< analyzer that needs what a recording lacks
+};
+
+struct DescriptorList {
+  std::uint64_t magic;
+  std::uint32_t size;       ///< sizeof(DescriptorList)
+  std::uint32_t abi_major;  ///< of the headers that the library was built with
+  std::uint64_t count;
+  const Descriptor* const* items;
+};
+
+/// FNV-1a over numbers known at compile time.
+constexpr std::uint64_t hash_numbers(std::initializer_list<std::uint64_t> numbers) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const std::uint64_t number : numbers) {
+    for (int byte = 0; byte < 8; ++byte) {
+      hash ^= (number >> (8 * byte)) & 0xffU;
+      hash *= 0x100000001b3ULL;
+    }
+  }
+  return hash;
+}
+
+#if defined(__clang__)
+inline constexpr const char* kCompiler = "clang " __clang_version__;
+#else
+inline constexpr const char* kCompiler = "g++ " __VERSION__;
+#endif
+
+}  // namespace millscope
+
+/// The one symbol of a plugin library.
+#define MILLSCOPE_EXPORT extern "C" __attribute__((visibility("default")))
