@@ -39,11 +39,11 @@ inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// One parameter of a plugin: the YAML check, `describe`, the JSON Schema and the manual are made from it.
 struct Parameter {
-  const char* name;      ///< key in YAML, lower_case_words
-  const char* unit;      ///< SI unit: "1", "m", "s", "kg", "Pa", "N/m", "m/s", "rad", "J/m^2", …; "" for text
-  const char* doc;       ///< one sentence
-  const char* citation;  ///< source, or ""
-  const char* choices;   ///< for `choice`: "a|b|c"; the first is the default unless `fallback_text` says otherwise
+  const char* name;           ///< key in YAML, lower_case_words
+  const char* unit;           ///< SI unit: "1", "m", "s", "kg", "Pa", "N/m", "m/s", "rad", "J/m^2", …; "" for text
+  const char* doc;            ///< one sentence
+  const char* citation;       ///< source, or ""
+  const char* choices;        ///< for `choice`: "a|b|c"; the first is the default unless `fallback_text` says otherwise
   const char* fallback_text;  ///< default of choice, text and file; nullptr: required
   double fallback;            ///< default of number, integer, boolean (0/1), and of each component of a vector; NaN: required
   double minimum;             ///< smallest allowed value (numbers and vector components)
@@ -57,8 +57,8 @@ struct Parameter {
 /// One resolved value handed to a plugin. Numbers are SI.
 struct Value {
   const char* name;
-  const char* text;   ///< choice, text, file (an absolute path); "" otherwise
-  double number[3];   ///< number, integer, boolean in [0]; vector in all three
+  const char* text;     ///< choice, text, file (an absolute path); "" otherwise
+  double number[3];     ///< number, integer, boolean in [0]; vector in all three
   std::uint32_t given;  ///< 1 when the user wrote it or it has a default
   std::uint32_t reserved;
 };
@@ -79,14 +79,14 @@ using Status = std::int32_t;
 /// A physics that a model may have left out; `diagnose` enumerates the loaded ones.
 struct Hypothesis {
   const char* name;
-  const char* sentence;   ///< what to say when it is found
+  const char* sentence;  ///< what to say when it is found
   const char* equation;
   const char* citation;
   const char* parameter;  ///< name of the parameter of this plugin
   double null_value;      ///< value at which the effect vanishes
   double prior_low, prior_high;
   std::uint32_t two_sided;
-  std::uint32_t reobserve;  ///< 1: costs no simulation (camera effects)
+  std::uint32_t reobserve;        ///< 1: costs no simulation (camera effects)
   const char* undefined_at_null;  ///< parameters without meaning at zero, "a|b", or ""
   const char* excludes;           ///< hypotheses that cannot hold together with it, "a|b", or ""
 };
@@ -116,11 +116,11 @@ struct Descriptor {
 /// Feature bits.
 enum Feature : std::uint64_t {
   kNoFeature = 0,
-  kPreInteraction = 1,   ///< interaction that acts before the contact law
-  kPostInteraction = 2,  ///< interaction that acts after it
-  kGivesRestitution = 4, ///< pair_parameter that replaces e
-  kGivesFriction = 8,    ///< pair_parameter that replaces the static friction
-  kSimulationOnly = 16,  ///< analyzer that needs what a recording lacks
+  kPreInteraction = 1,    ///< interaction that acts before the contact law
+  kPostInteraction = 2,   ///< interaction that acts after it
+  kGivesRestitution = 4,  ///< pair_parameter that replaces e
+  kGivesFriction = 8,     ///< pair_parameter that replaces the static friction
+  kSimulationOnly = 16,   ///< analyzer that needs what a recording lacks
 };
 
 struct DescriptorList {
@@ -153,3 +153,15 @@ inline constexpr const char* kCompiler = "g++ " __VERSION__;
 
 /// The one symbol of a plugin library.
 #define MILLSCOPE_EXPORT extern "C" __attribute__((visibility("default")))
+
+/// Defines that symbol from pointers to constant-initialised descriptors: MILLSCOPE_PLUGINS(&first, &second)
+#define MILLSCOPE_PLUGINS(...)                                                                       \
+  namespace {                                                                                        \
+  constinit const ::millscope::Descriptor* const millscope_plugin_items[] = {__VA_ARGS__};           \
+  }                                                                                                  \
+  extern "C" {                                                                                       \
+  extern __attribute__((visibility("default"))) const ::millscope::DescriptorList millscope_plugins; \
+  constinit const ::millscope::DescriptorList millscope_plugins = {                                  \
+      ::millscope::kMagic, sizeof(::millscope::DescriptorList), ::millscope::kAbiMajor,              \
+      sizeof millscope_plugin_items / sizeof millscope_plugin_items[0], millscope_plugin_items};     \
+  }

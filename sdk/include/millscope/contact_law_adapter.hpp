@@ -5,6 +5,8 @@
 //     static constexpr ContactLawInfo kInfo = {…};
 //     explicit MyLaw(const Parameters&, const PairContext&);          // throws Refusal with the remedy
 //     double reach(double radius) const;                              // 0 for laws that act on touch
+//     double contact_time(double radius, double mass, double speed) const;  // s, estimate; 0: none
+//     double restitution() const; double friction() const;            // the pair's own e and μ
 //     template <class R> void force(const Contact<R>&, R (&history)[kHistory], Response<R, kChannels>&) const;
 //   };
 //   constexpr ContactLawTable table = make_contact_law_table<MyLaw>();
@@ -34,11 +36,11 @@ struct Contact {
 
 template <class R, int Channels>
 struct Response {
-  Vec<R> force;        ///< on i, N
-  R normal_force;      ///< F_n along n
-  R normal_stiffness;  ///< elastic dF_n/dδ
-  R elastic_energy;    ///< J
-  R power[Channels];   ///< W lost to each channel
+  Vec<R> force;                          ///< on i, N
+  R normal_force;                        ///< F_n along n
+  R normal_stiffness;                    ///< elastic dF_n/dδ
+  R elastic_energy;                      ///< J
+  R power[Channels > 0 ? Channels : 1];  ///< W lost to each channel
 };
 
 template <class Law, class R>
@@ -46,7 +48,7 @@ void evaluate_contacts(const void* self, ContactBatch* b) {
   const Law& law = *static_cast<const Law*>(self);
   constexpr int width = kWidthOf<R>;
   R elastic_sum(0.0);
-  R power_sum[Law::kChannels];
+  R power_sum[Law::kChannels > 0 ? Law::kChannels : 1];
   for (R& p : power_sum) p = R(0.0);
   for (std::int64_t s = 0; s < b->count; s += width) {
     Contact<R> c;
@@ -82,6 +84,8 @@ void evaluate_contacts(const void* self, ContactBatch* b) {
 
 template <class Law>
 constexpr ContactLawTable make_contact_law_table() {
+  static_assert(kInfoIsSane<Law>,
+                "kInfo must name kHistory histories (sign +1 or -1) and kChannels channels, within the limits of the SDK");
   ContactLawTable t{};
   t.info = Law::kInfo;
   t.create = [](const Values* values, const PairContext* pair, void** self, Failure* failure) -> Status {

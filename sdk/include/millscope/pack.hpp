@@ -89,7 +89,9 @@ double lanewise(F f, double a) {
 
 inline double square_root(double a) { return std::sqrt(a); }
 inline Pack square_root(Pack a) {
-#if defined(__AVX512F__)
+#if defined(__AVX512F__) && defined(__clang__)
+  return {__builtin_ia32_sqrtpd512(a.v, 4)};
+#elif defined(__AVX512F__)
   return {reinterpret_cast<wide::Native>(__builtin_ia32_sqrtpd512_mask(a.v, a.v, static_cast<unsigned char>(-1), 4))};
 #elif defined(__AVX__)
   return {__builtin_ia32_sqrtpd256(a.v)};

@@ -1,0 +1,102 @@
+// Turns a plain C++ class into a geometry plugin.
+//
+//   struct MyWall {
+//     explicit MyWall(const Parameters&);                 // throws Refusal with the remedy
+//     const std::string& material_slots() const;          // "shell|lifter"
+//     const std::string& report() const;                  // "key: value" lines
+//     Surface surface() const;                            // pointers stay valid as long as the object
+//     Interior interior() const;
+//     void candidates(const GeometryBeads&, double margin, const CandidateSink&);     // one thread; bead by bead, features ascending
+//     void touch(const WallBead&, const std::uint32_t* candidates, std::size_t count, WallContacts&) const;  // many threads
+//   };
+//   constexpr GeometryTable table = make_geometry_table<MyWall>();
+#pragma once
+
+#include <cstddef>
+
+#include "millscope/geometry.hpp"
+#include "millscope/pack.hpp"
+#include "millscope/parameters.hpp"
+
+namespace millscope {
+
+/// One bead in the geometry's frame.
+struct WallBead {
+  Vec<double> position;  ///< m
+  double radius;         ///< m
+  double reach;          ///< gaps up to this are reported too, m
+};
+
+/// One place that a bead touches; the names are those of GeometryContacts.
+struct WallContact {
+  double overlap;      ///< δ = radius − distance of the centre, m
+  Vec<double> normal;  ///< unit, from the wall to the bead's centre
+  std::uint32_t feature, triangle, material;
+};
+
+/// Receives the contacts of one bead, at most kMaxWallContacts of them; what lies beyond the reach is left out.
+class WallContacts {
+ public:
+  explicit WallContacts(double reach) : reach_(reach) {}
+
+  void add(const WallContact& contact) {
+    if (count_ < kMaxWallContacts && contact.overlap > -reach_) items_[count_++] = contact;
+  }
+  int count() const { return count_; }
+  const WallContact& operator[](int i) const { return items_[i]; }
+
+ private:
+  WallContact items_[kMaxWallContacts];
+  int count_ = 0;
+  double reach_;
+};
+
+/// Copies the contacts of one bead behind those found so far; what exceeds the capacity is dropped.
+inline void append_contacts(const WallContacts& found, std::int64_t bead, GeometryContacts* out) {
+  for (int i = 0; i < found.count() && out->count < out->capacity; ++i) {
+    const std::int64_t slot = out->count++;
+    out->bead[slot] = static_cast<std::int32_t>(bead);
+    out->overlap[slot] = found[i].overlap;
+    out->normal[0][slot] = found[i].normal.x;
+    out->normal[1][slot] = found[i].normal.y;
+    out->normal[2][slot] = found[i].normal.z;
+    out->feature[slot] = found[i].feature;
+    out->triangle[slot] = found[i].triangle;
+    out->material[slot] = found[i].material;
+  }
+}
+
+template <class Wall>
+void find_contacts(const void* self, const GeometryQuery* query, GeometryContacts* out) {
+  const Wall& wall = *static_cast<const Wall*>(self);
+  const GeometryBeads& beads = query->beads;
+  out->count = 0;
+  for (std::int64_t i = 0; i < beads.count; ++i) {
+    const std::int64_t begin = query->first[i], end = query->first[i + 1];
+    if (begin == end) continue;
+    WallContacts found(query->reach);
+    wall.touch({{beads.position[0][i], beads.position[1][i], beads.position[2][i]}, beads.radius[i], query->reach},
+               query->candidates + begin, static_cast<std::size_t>(end - begin), found);
+    append_contacts(found, i, out);
+  }
+}
+
+template <class Wall>
+constexpr GeometryTable make_geometry_table() {
+  GeometryTable t{};
+  t.create = [](const Values* values, void** self, Failure* failure) -> Status {
+    return guarded(failure, [&] { *self = new Wall(Parameters(*values)); });
+  };
+  t.destroy = [](void* self) { delete static_cast<Wall*>(self); };
+  t.material_slots = [](const void* self) { return static_cast<const Wall*>(self)->material_slots().c_str(); };
+  t.surface = [](const void* self, Surface* out) { *out = static_cast<const Wall*>(self)->surface(); };
+  t.interior = [](const void* self, Interior* out) { *out = static_cast<const Wall*>(self)->interior(); };
+  t.report = [](const void* self) { return static_cast<const Wall*>(self)->report().c_str(); };
+  t.candidates = [](void* self, const GeometryBeads* beads, double margin, const CandidateSink* sink, Failure* failure) -> Status {
+    return guarded(failure, [&] { static_cast<Wall*>(self)->candidates(*beads, margin, *sink); });
+  };
+  t.contacts = &find_contacts<Wall>;
+  return t;
+}
+
+}  // namespace millscope
