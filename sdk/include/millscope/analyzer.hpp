@@ -1,0 +1,103 @@
+// Analyzer: from frames to results, in two pure steps.
+//
+// `accumulate` maps one block (the frames of a time span, or one circulation of a tracer) to named arrays that add up: counts, sums,
+// sums of squares. `finish` turns such a sum into results with units. The host cuts the blocks, the same for every analyzer of a run,
+// and resamples them, so that all results have one joint covariance. A recording is a run with one bead: the same code serves both.
+#pragma once
+
+#include "millscope/abi.hpp"
+
+namespace millscope {
+
+inline constexpr int kMaxRank = 3;
+
+/// What a block of frames may lack.
+enum FrameField : std::uint64_t {
+  kHasVelocity = 1,
+  kHasSpin = 2,
+  kHasOmega = 4,
+  kHasPhase = 8,
+  kHasWallWork = 16,
+  kHasDissipation = 32,
+  kHasAllBeads = 64,  ///< every bead of the charge is in every frame; a recording has its tracer only
+};
+
+/// One block. Frame f holds the samples first[f] … first[f+1]−1. Arrays of fields that are not in `has` are nullptr.
+struct FrameBlock {
+  std::uint64_t has;  ///< bits of FrameField
+  double duration;    ///< s that the block stands for
+  std::int64_t frame_count;
+  const double* time;               ///< per frame, s
+  const double* omega;              ///< per frame: Ω of the shell about z, rad/s
+  const double* phase;              ///< per frame: angle of the shell, rad
+  const double* wall_work;          ///< per frame: work done by the walls on the charge since the run's start, J
+  const double* dissipation;        ///< per frame × channel: lost since the run's start, J
+  std::int64_t channel_count;       ///< of dissipation
+  const char* const* channel_name;  ///< "pair.channel", e.g. "glass~liner.sliding_friction"
+  const std::int64_t* first;        ///< frame_count + 1 offsets
+  const double* weight;             ///< per sample: dwell time of a tracer, s, or the frame's share of the block's duration
+  const std::int64_t* id;           ///< per sample: permanent id of the bead
+  const double* position[3];        ///< m
+  const double* velocity[3];        ///< m/s
+  const double* spin[3];            ///< rad/s
+  const double* radius;             ///< m
+  const double* mass;               ///< kg
+};
+
+/// What is the same for all blocks; 0 where unknown.
+struct AnalyzerContext {
+  double mill_radius;          ///< of the bare shell, m
+  double mill_low, mill_high;  ///< range along z, m
+  double omega;                ///< mean Ω about z, rad/s; its sign is the turning sense
+  double gravity;              ///< m/s², along −y
+  double charge_mass;          ///< of all beads, kg
+  double charge_count;         ///< number of all beads
+  double bead_radius;          ///< mean, m
+  std::uint64_t has;           ///< fields that every block carries
+  std::uint32_t is_recording;  ///< 1: one tracer of a real mill
+  std::uint32_t is_periodic;   ///< 1: periodic along z
+};
+
+/// One additive array.
+struct ArrayInfo {
+  const char* name;
+  const char* unit;
+  std::uint32_t rank;  ///< 0: one number
+  std::uint32_t reserved;
+  std::uint64_t shape[kMaxRank];
+};
+
+/// One result.
+struct Result {
+  const char* name;  ///< lower_case_words, unique in the analyzer
+  const char* unit;
+  const char* doc;
+  std::uint32_t rank;
+  std::uint32_t reserved;
+  std::uint64_t shape[kMaxRank];
+  const double* values;  ///< row-major; NaN where undefined
+};
+
+/// Receives results; everything is copied before `add` returns.
+struct ResultSink {
+  void* host;
+  void (*add)(void* host, const Result*);
+};
+
+struct AnalyzerTable {
+  std::uint64_t needs;  ///< bits of FrameField without which it cannot work
+  Status (*create)(const Values*, const AnalyzerContext*, void** self, Failure*);
+  void (*destroy)(void* self);
+  /// The additive arrays; owned by the plugin, valid until destroy.
+  void (*arrays)(const void* self, const ArrayInfo** items, std::uint64_t* count);
+  /// Adds one block to `sums` (one pointer per array). Called from many threads at once, with different sums.
+  Status (*accumulate)(const void* self, const FrameBlock*, double* const* sums, Failure*);
+  /// Pure: the same sums give the same results.
+  Status (*finish)(const void* self, const double* const* sums, const ResultSink*, Failure*);
+};
+
+inline constexpr std::uint64_t kAnalyzerLayout =
+    hash_numbers({7, sizeof(FrameBlock), sizeof(AnalyzerContext), sizeof(ArrayInfo), sizeof(Result), sizeof(AnalyzerTable), sizeof(Value),
+                  sizeof(Parameter), offsetof(FrameBlock, position), offsetof(AnalyzerContext, has), kMaxRank});
+
+}  // namespace millscope

@@ -1,0 +1,55 @@
+// Observation: what a camera does to the track of one bead (noise, irregular sampling, gaps, limited view).
+//
+// A chain of observations is applied in the order of the case, each to the result of the one before. Everything random comes from
+// `TrackContext::seed`, so the same seed gives the same track.
+#pragma once
+
+#include "millscope/abi.hpp"
+
+namespace millscope {
+
+/// Samples of one bead in time order, in the frame of the mill (z is the axis).
+struct TrackView {
+  std::int64_t count;
+  const double* time;            ///< s, increasing
+  const double* position[3];     ///< m
+  const double* weight;          ///< confidence 0…1; 1 for a simulated bead
+  const std::uint32_t* visible;  ///< 1: the camera has it
+};
+
+/// The same to be written.
+struct TrackBuffer {
+  std::int64_t count;
+  double* time;
+  double* position[3];
+  double* weight;
+  std::uint32_t* visible;
+};
+
+/// Receives the new track: the plugin asks once for room for `count` samples and fills the buffer.
+struct TrackSink {
+  void* host;
+  Status (*resize)(void* host, std::int64_t count, TrackBuffer*);  ///< not 0: no memory
+};
+
+/// What a camera may know of the bead and the mill; 0 where unknown.
+struct TrackContext {
+  std::uint64_t seed;
+  double bead_radius;          ///< m
+  double mill_radius;          ///< of the bare shell, m
+  double mill_low, mill_high;  ///< range along the axis, m
+  double omega;                ///< mean Ω about z, rad/s
+};
+
+struct ObservationTable {
+  Status (*create)(const Values*, void** self, Failure*);
+  void (*destroy)(void* self);
+  /// Called from many threads at once.
+  Status (*observe)(const void* self, const TrackView*, const TrackContext*, const TrackSink*, Failure*);
+};
+
+inline constexpr std::uint64_t kObservationLayout =
+    hash_numbers({6, sizeof(TrackView), sizeof(TrackBuffer), sizeof(TrackSink), sizeof(TrackContext), sizeof(ObservationTable),
+                  sizeof(Value), sizeof(Parameter), offsetof(TrackContext, omega)});
+
+}  // namespace millscope
