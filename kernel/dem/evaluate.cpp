@@ -1,0 +1,202 @@
+// The order in which plugins act on a batch: pair parameters, interactions before, contact law, interactions after.
+#include <algorithm>
+
+#include "kernel/dem/slab.hpp"
+
+namespace millscope::dem {
+namespace {
+
+constexpr std::size_t kDoubleArrays = 80;
+
+bool has_post(const PairPhysics& p) {
+  return std::any_of(p.interactions.begin(), p.interactions.end(), [](const InteractionReference& i) { return !i.pre; });
+}
+bool has_pre(const PairPhysics& p) {
+  return std::any_of(p.interactions.begin(), p.interactions.end(), [](const InteractionReference& i) { return i.pre; });
+}
+
+void fill(double* array, std::int64_t count, double value) { std::fill(array, array + count, value); }
+
+InteractionBatch interaction_batch(const BatchRun& run, std::int64_t padded, BatchArrays& b) {
+  InteractionBatch r{};
+  r.count = padded;
+  r.time_step = run.time_step;
+  r.overlap = b.overlap;
+  for (int a = 0; a < 3; ++a) {
+    r.normal[a] = b.normal[a];
+    r.velocity[a] = b.velocity[a];
+    r.spin_i[a] = b.spin_i[a];
+    r.spin_j[a] = b.spin_j[a];
+    r.moment_i[a] = b.moment_i[a];
+    r.moment_j[a] = b.moment_j[a];
+  }
+  r.radius_i = b.radius_i;
+  r.radius_j = b.radius_j;
+  r.radius = b.radius;
+  r.mass = b.mass;
+  r.normal_force = b.normal_force;
+  r.normal_stiffness = b.normal_stiffness;
+  r.added_force = b.added_force;
+  r.added_cap = b.added_cap;
+  return r;
+}
+
+ContactBatch contact_batch(const BatchRun& run, std::int64_t padded, BatchArrays& b) {
+  ContactBatch r{};
+  r.count = padded;
+  r.time_step = run.time_step;
+  r.overlap = b.overlap;
+  for (int a = 0; a < 3; ++a) {
+    r.normal[a] = b.normal[a];
+    r.velocity[a] = b.velocity[a];
+    r.force[a] = b.force[a];
+  }
+  r.radius = b.radius;
+  r.mass = b.mass;
+  for (int h = 0; h < kMaxHistory; ++h) r.history[h] = b.history[h];
+  return r;
+}
+
+/// Where the histories and channels of each interaction stand: after those of the law, in the order of the case.
+struct Place {
+  std::size_t history, channel;
+};
+
+void run_interactions(const BatchRun& run, bool pre, std::int64_t padded, BatchArrays& b, PairLedger& ledger) {
+  Place at{run.physics->law.table->info.history_count, run.physics->law.table->info.channel_count};
+  for (const InteractionReference& i : run.physics->interactions) {
+    if (i.pre == pre) {
+      InteractionBatch batch = interaction_batch(run, padded, b);
+      for (std::size_t h = 0; h < i.table->info.history_count; ++h) batch.history[h] = b.history[at.history + h];
+      i.table->evaluate(i.self, &batch);
+      ledger.elastic += batch.elastic_sum;
+      for (std::size_t c = 0; c < i.table->info.channel_count; ++c) {
+        ledger.dissipated[at.channel + c] += batch.power_sum[c] * run.time_step;
+      }
+    }
+    at.history += i.table->info.history_count;
+    at.channel += i.table->info.channel_count;
+  }
+}
+
+void run_pair_parameters(const BatchRun& run, std::int64_t padded, BatchArrays& b, ContactBatch& contacts) {
+  std::size_t history = run.physics->law.table->info.history_count;
+  for (const InteractionReference& i : run.physics->interactions) history += i.table->info.history_count;
+  for (const PairParameterReference& p : run.physics->pair_parameters) {
+    PairParameterBatch batch{};
+    batch.count = padded;
+    batch.time_step = run.time_step;
+    batch.overlap = b.overlap;
+    for (int a = 0; a < 3; ++a) {
+      batch.normal[a] = b.normal[a];
+      batch.velocity[a] = b.velocity[a];
+    }
+    batch.radius = b.radius;
+    batch.mass = b.mass;
+    for (std::size_t h = 0; h < p.table->info.history_count; ++h) batch.history[h] = b.history[history + h];
+    batch.restitution = b.restitution;
+    batch.friction = b.friction;
+    p.table->evaluate(p.self, &batch);
+    if (p.gives_restitution) contacts.restitution = b.restitution;
+    if (p.gives_friction) contacts.friction = b.friction;
+    history += p.table->info.history_count;
+  }
+}
+
+}  // namespace
+
+void evaluate(const BatchRun& run, BatchArrays& b, PairLedger& ledger) {
+  const std::int64_t padded = (run.count + 7) / 8 * 8;
+  ContactBatch contacts = contact_batch(run, padded, b);
+  if (!run.physics->pair_parameters.empty()) run_pair_parameters(run, padded, b, contacts);
+  const bool pre = has_pre(*run.physics), post = has_post(*run.physics);
+  if (pre) {
+    fill(b.added_force, padded, 0.0);
+    fill(b.added_cap, padded, 0.0);
+    run_interactions(run, true, padded, b, ledger);
+    contacts.added_cap = b.added_cap;
+  }
+  if (pre || post) {
+    contacts.normal_force = b.normal_force;
+    contacts.normal_stiffness = b.normal_stiffness;
+  }
+  const ContactLawTable& law = *run.physics->law.table;
+  if (run.per_contact) {
+    for (std::size_t c = 0; c < law.info.channel_count; ++c) contacts.power[c] = b.power[c];
+  }
+  law.evaluate(run.physics->law.self, &contacts);
+  ledger.elastic += contacts.elastic_sum;
+  for (std::size_t c = 0; c < law.info.channel_count; ++c) ledger.dissipated[c] += contacts.power_sum[c] * run.time_step;
+  if (pre) {
+    for (std::int64_t k = 0; k < padded; ++k) {
+      b.normal_force[k] += b.added_force[k];
+      for (int a = 0; a < 3; ++a) b.force[a][k] += b.added_force[k] * b.normal[a][k];
+    }
+  }
+  if (post) {
+    for (int a = 0; a < 3; ++a) {
+      fill(b.moment_i[a], padded, 0.0);
+      fill(b.moment_j[a], padded, 0.0);
+    }
+    run_interactions(run, false, padded, b, ledger);
+  }
+}
+
+void count_collisions(std::int64_t count, const BatchArrays& b, PairLedger& ledger) {
+  for (std::int64_t k = 0; k < count; ++k) {
+    if (!b.fresh[k]) continue;
+    const double closing = -(b.velocity[0][k] * b.normal[0][k] + b.velocity[1][k] * b.normal[1][k] + b.velocity[2][k] * b.normal[2][k]);
+    if (closing <= 0) continue;
+    const double energy = 0.5 * b.mass[k] * closing * closing;
+    ++ledger.collisions;
+    ledger.impact_energy += energy;
+    ledger.largest_closing_speed = std::max(ledger.largest_closing_speed, closing);
+    ++ledger.spectrum[static_cast<std::size_t>(ImpactBins::bin(energy))];
+  }
+}
+
+void note_overlap(std::int64_t count, const BatchArrays& b, PairLedger& ledger) {
+  for (std::int64_t k = 0; k < count; ++k) ledger.largest_overlap = std::max(ledger.largest_overlap, b.overlap[k] / b.radius[k]);
+}
+
+System::Scratch::Scratch(int history_count) {
+  const std::size_t stride = static_cast<std::size_t>(kBatchStride);
+  doubles_.assign((kDoubleArrays + static_cast<std::size_t>(history_count)) * stride, 0.0);
+  double* next = doubles_.data();
+  const auto take = [&next, stride] {
+    double* p = next;
+    next += stride;
+    return p;
+  };
+  for (auto* group : {&batch.difference, &batch.normal, &batch.velocity, &batch.spin_sum, &batch.spin_i, &batch.spin_j, &batch.force,
+                      &batch.torque_i, &batch.torque_j, &batch.moment_i, &batch.moment_j}) {
+    for (double*& p : *group) p = take();
+  }
+  for (double** p : {&batch.overlap, &batch.radius_i, &batch.radius_j, &batch.radius, &batch.mass, &batch.arm_i, &batch.arm_j,
+                     &batch.normal_force, &batch.normal_stiffness, &batch.added_force, &batch.added_cap, &batch.restitution,
+                     &batch.friction, &batch.elastic, &query_radius, &wall.overlap}) {
+    *p = take();
+  }
+  for (double*& p : batch.power) p = take();
+  for (double*& p : query_position) p = take();
+  for (double*& p : wall.normal) p = take();
+  for (double*& p : body_arrays) p = take();
+  for (int h = 0; h < history_count; ++h) batch.history[h] = take();
+  integers_.assign(6 * stride, 0);
+  batch.owner = integers_.data();
+  batch.partner = batch.owner + stride;
+  batch.slot = batch.partner + stride;
+  wall.feature = batch.slot + stride;
+  wall.triangle = wall.feature + stride;
+  wall.material = wall.triangle + stride;
+  bytes_.assign(stride, 0);
+  batch.fresh = bytes_.data();
+  signed_.assign(stride, 0);
+  wall.bead = signed_.data();
+  wall.capacity = kBatch;
+  pair.resize(stride);
+  normal.resize(stride);
+  query_first.resize(stride);
+}
+
+}  // namespace millscope::dem

@@ -1,0 +1,245 @@
+// List rebuild, first half: wrap, check, sort the beads by cell, carry the histories of touching pairs over to the new order.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "kernel/dem/slab.hpp"
+
+namespace millscope::dem {
+namespace {
+
+double component(const PositionLine& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+
+double speed(const MotionLine& m) { return std::sqrt(m.v[0] * m.v[0] + m.v[1] * m.v[1] + m.v[2] * m.v[2]); }
+
+/// Copies `from` into the order given by new_index, using `spare` as the other half of a swap.
+template <class T>
+void permute(AlignedVector<T>& values, AlignedVector<T>& spare, const std::vector<std::uint32_t>& new_index) {
+  for (std::size_t i = 0; i < values.size(); ++i) spare[new_index[i]] = values[i];
+  values.swap(spare);
+}
+
+}  // namespace
+
+/// Wraps periodic coordinates, checks that all beads are where they may be, and gives each its skin.
+void System::sort_beads() {
+  Particles& p = particles;
+  const std::int64_t n = p.count();
+  double largest_reach = 0, largest_radius = 0, law_reach = 0;
+  for (const PairPhysics& pair : physics_) law_reach = std::max(law_reach, pair.reach);
+  for (const PositionLine& x : p.position) largest_radius = std::max(largest_radius, x.radius);
+  reaches_.resize(static_cast<std::size_t>(n));
+  double low[3], high[3];
+  std::fill(low, low + 3, 1e300);
+  std::fill(high, high + 3, -1e300);
+  for (std::int64_t i = 0; i < n; ++i) {
+    PositionLine& x = p.position[static_cast<std::size_t>(i)];
+    double* c = &x.x;
+    for (int a = 0; a < 3; ++a) {
+      const double length = settings_.periodic.length[a];
+      if (length > 0) c[a] -= length * std::floor((c[a] - settings_.periodic_low[a]) / length);
+      if (!(c[a] >= settings_.low[a] && c[a] <= settings_.high[a])) complain(i, "has left the domain");
+      low[a] = std::min(low[a], c[a]);
+      high[a] = std::max(high[a], c[a]);
+    }
+    const double skin = std::min(settings_.skin_cap * largest_radius,
+                                 settings_.skin_base * x.radius + settings_.skin_steps * settings_.time_step * speed(p.motion[static_cast<std::size_t>(i)]));
+    reaches_[static_cast<std::size_t>(i)] = {x.x, x.y, x.z, x.radius + skin + 0.5 * law_reach};
+    p.reference[static_cast<std::size_t>(i)] = {x.x, x.y, x.z, skin * skin};
+    largest_reach = std::max(largest_reach, x.radius + skin + 0.5 * law_reach);
+  }
+  // The grid: cells no smaller than the largest interaction distance, at most about four cells a bead.
+  double edge = 2 * largest_reach * (1 + 1e-9);
+  for (;;) {
+    double total = 1;
+    for (int a = 0; a < 3; ++a) {
+      const double length = settings_.periodic.length[a];
+      grid_.low[a] = length > 0 ? settings_.periodic_low[a] : low[a];
+      const double extent = length > 0 ? length : high[a] - low[a];
+      const int cells = std::max(1, static_cast<int>(std::floor(extent / edge)) + (length > 0 ? 0 : 1));
+      grid_.cells[a] = cells;
+      grid_.inverse_edge[a] = length > 0 ? cells / length : 1.0 / edge;
+      total *= cells;
+    }
+    if (total <= 4.0 * static_cast<double>(n) + 1000) break;
+    edge *= 1.26;
+  }
+  // Slowest along the longest axis that is not periodic (slabs), fastest along the next, so that rows of cells are long.
+  int order[3] = {0, 1, 2};
+  std::stable_sort(order, order + 3, [&](int a, int b) {
+    const bool pa = settings_.periodic.length[a] > 0, pb = settings_.periodic.length[b] > 0;
+    if (pa != pb) return pb;
+    return settings_.high[a] - settings_.low[a] > settings_.high[b] - settings_.low[b];
+  });
+  grid_.axis[0] = order[0];
+  grid_.axis[2] = order[1];
+  grid_.axis[1] = order[2];
+  const auto cell_of = [this](const PositionLine& x) {
+    std::uint32_t cell = 0;
+    for (const int a : grid_.axis) {
+      const int c = std::clamp(static_cast<int>((component(x, a) - grid_.low[a]) * grid_.inverse_edge[a]), 0, grid_.cells[a] - 1);
+      cell = cell * static_cast<std::uint32_t>(grid_.cells[a]) + static_cast<std::uint32_t>(c);
+    }
+    return cell;
+  };
+  const std::size_t cell_count = static_cast<std::size_t>(grid_.cells[0]) * static_cast<std::size_t>(grid_.cells[1]) * static_cast<std::size_t>(grid_.cells[2]);
+  grid_.start.assign(cell_count + 1, 0);
+  new_index_.resize(static_cast<std::size_t>(n));
+  for (std::size_t i = 0; i < new_index_.size(); ++i) {
+    new_index_[i] = cell_of(reaches_[i]);
+    ++grid_.start[new_index_[i] + 1];
+  }
+  std::partial_sum(grid_.start.begin(), grid_.start.end(), grid_.start.begin());
+  std::vector<std::uint32_t> next(grid_.start.begin(), grid_.start.end() - 1);
+  for (std::uint32_t& index : new_index_) index = next[index]++;
+}
+
+/// Collects the histories of touching pairs by their owner in the new order; an exchanged owner flips the signs.
+void System::extract_pair_history() {
+  const std::size_t n = particles.position.size();
+  const std::size_t slots = static_cast<std::size_t>(layout_.history_count());
+  carried_start_.assign(n + 1, 0);
+  const auto each = [this](const auto& visit) {
+    for (const auto& slab : slabs_) {
+      for (PairList& list : slab->lists) {
+        for (std::size_t s = 0; s < list.touching.size(); ++s) {
+          if (list.touching[s]) visit(list, s, new_index_[list.owner[s]], new_index_[list.partner[s]]);
+        }
+      }
+    }
+  };
+  each([this](const PairList&, std::size_t, std::uint32_t i, std::uint32_t j) { ++carried_start_[std::min(i, j) + 1]; });
+  std::partial_sum(carried_start_.begin(), carried_start_.end(), carried_start_.begin());
+  carried_partner_.resize(carried_start_[n]);
+  carried_history_.resize(carried_start_[n] * slots);
+  std::vector<std::uint32_t> next(carried_start_.begin(), carried_start_.end() - 1);
+  each([&](const PairList& list, std::size_t s, std::uint32_t i, std::uint32_t j) {
+    const std::size_t at = next[std::min(i, j)]++;
+    carried_partner_[at] = std::max(i, j);
+    for (std::size_t h = 0; h < slots; ++h) {
+      carried_history_[at * slots + h] = (i < j ? 1.0 : layout_.history_sign[h]) * list.history[h][s];
+    }
+  });
+}
+
+/// Lists all pairs (i in this slab, j > i) whose reaches overlap.
+void System::build_pairs(int slab) {
+  SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
+  const std::size_t slots = static_cast<std::size_t>(layout_.history_count());
+  for (PairList& list : state.lists) {
+    list.owner.clear();
+    list.partner.clear();
+    list.touching.clear();
+    for (auto& h : list.history) h.clear();
+  }
+  std::vector<std::uint32_t> found;
+  std::int64_t last_partner = -1;
+  const std::int64_t begin = slab_begin(slab), end = slab_begin(slab + 1);
+  const int n0 = grid_.cells[grid_.axis[0]], n1 = grid_.cells[grid_.axis[1]], n2 = grid_.cells[grid_.axis[2]];
+  const bool p0 = settings_.periodic.length[grid_.axis[0]] > 0, p1 = settings_.periodic.length[grid_.axis[1]] > 0,
+             p2 = settings_.periodic.length[grid_.axis[2]] > 0;
+  // Distinct neighbours of a coordinate, ascending.
+  const auto around = [](int c, int count, bool periodic, int (&out)[3]) {
+    int m = 0;
+    for (int d = -1; d <= 1; ++d) {
+      int k = c + d;
+      if (periodic) k = (k + count) % count;
+      if (k < 0 || k >= count || std::find(out, out + m, k) != out + m) continue;
+      out[m++] = k;
+    }
+    std::sort(out, out + m);
+    return m;
+  };
+  std::int64_t cell = std::upper_bound(grid_.start.begin(), grid_.start.end(), static_cast<std::uint32_t>(begin)) - grid_.start.begin() - 1;
+  for (std::int64_t i = begin; i < end;) {
+    while (static_cast<std::int64_t>(grid_.start[static_cast<std::size_t>(cell) + 1]) <= i) ++cell;
+    const std::int64_t cell_end = std::min<std::int64_t>(end, grid_.start[static_cast<std::size_t>(cell) + 1]);
+    int k0[3], k1[3], k2[3];
+    const int m0 = around(static_cast<int>(cell / (n1 * n2)), n0, p0, k0);
+    const int m1 = around(static_cast<int>(cell / n2 % n1), n1, p1, k1);
+    const int m2 = around(static_cast<int>(cell % n2), n2, p2, k2);
+    // Ranges of beads to look at: rows of neighbouring cells, joined where they follow one another.
+    std::int64_t ranges[27][2];
+    int range_count = 0;
+    for (int a = 0; a < m0; ++a) {
+      for (int b = 0; b < m1; ++b) {
+        for (int c = 0; c < m2; ++c) {
+          const std::size_t k = static_cast<std::size_t>((k0[a] * n1 + k1[b]) * n2 + k2[c]);
+          const std::int64_t from = grid_.start[k], to = grid_.start[k + 1];
+          if (to <= i || from == to) continue;
+          if (range_count > 0 && ranges[range_count - 1][1] == from) {
+            ranges[range_count - 1][1] = to;
+          } else {
+            ranges[range_count][0] = from;
+            ranges[range_count++][1] = to;
+          }
+        }
+      }
+    }
+    for (; i < cell_end; ++i) {
+      std::size_t count = 0;
+      for (int r = 0; r < range_count; ++r) {
+        const std::int64_t from = std::max(ranges[r][0], i + 1), to = ranges[r][1];
+        if (from >= to) continue;
+        if (found.size() < count + static_cast<std::size_t>(to - from) + 8) found.resize(2 * (count + static_cast<std::size_t>(to - from)) + 64);
+        count += static_cast<std::size_t>(wide_->near(reaches_.data(), settings_.periodic, i, from, to, found.data() + count));
+      }
+      if (count == 0) continue;
+      const std::uint8_t material = particles.material[static_cast<std::size_t>(i)];
+      const std::uint32_t owner = static_cast<std::uint32_t>(i);
+      const auto append = [&](PairList& list, std::size_t first, std::size_t last) {
+        const std::size_t base = list.partner.size(), total = base + last - first;
+        list.partner.insert(list.partner.end(), found.begin() + static_cast<std::ptrdiff_t>(first), found.begin() + static_cast<std::ptrdiff_t>(last));
+        list.owner.insert(list.owner.end(), last - first, owner);
+        list.touching.resize(total, 0);
+        for (auto& h : list.history) h.resize(total);
+        for (std::uint32_t e = carried_start_[owner]; e < carried_start_[owner + 1]; ++e) {
+          const auto at = std::find(list.partner.begin() + static_cast<std::ptrdiff_t>(base), list.partner.end(), carried_partner_[e]);
+          if (at == list.partner.end()) continue;
+          const std::size_t s = static_cast<std::size_t>(at - list.partner.begin());
+          list.touching[s] = 1;
+          for (std::size_t h = 0; h < slots; ++h) list.history[h][s] = carried_history_[e * slots + h];
+        }
+      };
+      if (material_count_ == 1) {
+        append(state.lists[static_cast<std::size_t>(pair_of_[0])], 0, count);
+      } else {
+        for (std::size_t f = 0; f < count; ++f) {
+          append(state.lists[static_cast<std::size_t>(pair_index(material, particles.material[found[f]], false))], f, f + 1);
+        }
+      }
+      last_partner = std::max<std::int64_t>(last_partner, *std::max_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count)));
+    }
+  }
+  state.halo.assign(static_cast<std::size_t>(std::max<std::int64_t>(0, last_partner + 1 - end)), ForceLine{});
+}
+
+void System::rebuild() {
+  sort_beads();
+  extract_pair_history();
+  extract_wall_history();
+  Particles& p = particles;
+  // The forces are zero between steps, so their lines serve as the spare half.
+  AlignedVector<MotionLine> spare_motion(p.motion.size());
+  permute(p.motion, spare_motion, new_index_);
+  permute(p.half, spare_motion, new_index_);
+  AlignedVector<PositionLine> spare_position(p.position.size());
+  permute(p.position, spare_position, new_index_);
+  permute(p.reference, spare_position, new_index_);
+  permute(reaches_, spare_position, new_index_);
+  std::vector<std::uint32_t> ids(p.id.size());
+  std::vector<std::uint8_t> materials(p.material.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    ids[new_index_[i]] = p.id[i];
+    materials[new_index_[i]] = p.material[i];
+  }
+  p.id.swap(ids);
+  p.material.swap(materials);
+  workers_->run(settings_.partitions, [this](int slab, int) { build_pairs(slab); });
+  build_walls();
+  ++rebuilds_;
+  last_rebuild_step_ = step_;
+  rebuild_needed_ = false;
+}
+
+}  // namespace millscope::dem

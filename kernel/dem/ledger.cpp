@@ -1,0 +1,55 @@
+#include "kernel/dem/ledger.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace millscope::dem {
+
+int ImpactBins::bin(double energy) {
+  if (!(energy > 0)) return 0;
+  const int b = static_cast<int>(std::floor((std::log10(energy) - kLowest) * kPerDecade));
+  return std::clamp(b, 0, kCount - 1);
+}
+
+double ImpactBins::lower_edge(int bin) { return std::pow(10.0, kLowest + static_cast<double>(bin) / kPerDecade); }
+
+void Ledger::reset_instant() {
+  for (PairLedger& p : pairs) {
+    p.elastic = 0;
+    p.contacts = 0;
+  }
+  for (BodyLedger& b : bodies) {
+    b.force = {};
+    b.torque = {};
+    b.power = 0;
+  }
+}
+
+void Ledger::add(const Ledger& other) {
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    PairLedger& p = pairs[i];
+    const PairLedger& q = other.pairs[i];
+    p.elastic += q.elastic;
+    for (std::size_t c = 0; c < p.dissipated.size(); ++c) p.dissipated[c] += q.dissipated[c];
+    p.contacts += q.contacts;
+    p.collisions += q.collisions;
+    p.impact_energy += q.impact_energy;
+    p.largest_closing_speed = std::max(p.largest_closing_speed, q.largest_closing_speed);
+    p.largest_overlap = std::max(p.largest_overlap, q.largest_overlap);
+    for (std::size_t b = 0; b < p.spectrum.size(); ++b) p.spectrum[b] += q.spectrum[b];
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    BodyLedger& p = bodies[i];
+    const BodyLedger& q = other.bodies[i];
+    for (std::size_t a = 0; a < 3; ++a) {
+      p.force[a] += q.force[a];
+      p.torque[a] += q.torque[a];
+    }
+    p.power += q.power;
+    p.work += q.work;
+    p.torque_impulse += q.torque_impulse;
+  }
+  for (std::size_t i = 0; i < body_force_work.size(); ++i) body_force_work[i] += other.body_force_work[i];
+}
+
+}  // namespace millscope::dem

@@ -1,0 +1,79 @@
+// The state of a bead in cache-line records, and plain views that the wide code works on.
+//
+// Time levels (velocity Verlet in its leapfrog form, second order also for forces that depend on velocity):
+//   x, predicted v and ω: step n;  half v and ω: step n − ½.
+#pragma once
+
+#include <cstdint>
+
+namespace millscope::dem {
+
+/// 32 bytes: centre (m) and radius (m).
+struct alignas(32) PositionLine {
+  double x, y, z, radius;
+};
+
+/// 64 bytes: velocity (m/s), 1/m (1/kg), spin (rad/s), 1/I (1/(kg m²)).
+struct alignas(64) MotionLine {
+  double v[3], inverse_mass, w[3], inverse_inertia;
+};
+
+/// 64 bytes: force (N) and torque (N m); the fourth lanes are unused.
+struct alignas(64) ForceLine {
+  double f[3], unused_f, t[3], unused_t;
+};
+
+/// Periodic lengths per axis (m); 0: not periodic.
+struct PeriodicBox {
+  double length[3];
+};
+
+/// One part of the pair list: all listed pairs of one slab and one pair of materials. Owner i < partner j.
+struct PairListView {
+  std::int64_t count;
+  const std::uint32_t* owner;
+  const std::uint32_t* partner;
+  std::uint8_t* touching;   ///< 1 while within reach
+  double* history[24];      ///< per slot
+  std::int32_t history_count;
+};
+
+/// Scratch of one worker for one batch: structure of arrays, each `kBatch + 8` doubles long, 64-byte aligned.
+inline constexpr std::int64_t kBatch = 512;
+inline constexpr std::int64_t kBatchStride = kBatch + 8;
+
+struct BatchArrays {
+  std::uint32_t* owner;
+  std::uint32_t* partner;
+  std::uint32_t* slot;
+  std::uint8_t* fresh;
+  double* difference[3];   ///< x_i − x_j
+  double* normal[3];
+  double* velocity[3];
+  double* spin_sum[3];     ///< weighted (a_i ω_i + a_j ω_j) or plain sum
+  double* spin_i[3];
+  double* spin_j[3];
+  double* overlap;
+  double* radius_i;
+  double* radius_j;
+  double* radius;          ///< R*
+  double* mass;            ///< m*
+  double* arm_i;           ///< r_i − δ/2
+  double* arm_j;
+  double* force[3];
+  double* torque_i[3];
+  double* torque_j[3];
+  double* moment_i[3];
+  double* moment_j[3];
+  double* normal_force;
+  double* normal_stiffness;
+  double* added_force;
+  double* added_cap;
+  double* restitution;
+  double* friction;
+  double* elastic;
+  double* power[6];
+  double* history[24];
+};
+
+}  // namespace millscope::dem

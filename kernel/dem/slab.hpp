@@ -1,0 +1,53 @@
+// Scratch and results of slabs and workers; internal to the core.
+#pragma once
+
+#include "kernel/dem/system.hpp"
+
+namespace millscope::dem {
+
+struct SlabState {
+  std::vector<PairList> lists;  ///< one per pair of materials (those with a wall stay empty)
+  AlignedVector<ForceLine> halo;
+  std::vector<WallSlab> walls;  ///< one per body
+  Ledger ledger;
+  std::vector<std::vector<double>> impact, shear;  ///< [body][triangle], J
+  IntegrateResult result{false, -1};
+};
+
+/// One worker's arrays for a batch, and for the wall query before it.
+struct System::Scratch {
+  explicit Scratch(int history_count);
+
+  BatchArrays batch{};
+  GeometryContacts wall{};
+  std::vector<std::uint32_t> found;
+  double* query_position[3];
+  double* query_radius;
+  std::vector<std::int64_t> query_first;
+  std::vector<std::int32_t> pair;           ///< physics of each wall contact
+  std::vector<std::array<double, 3>> normal;  ///< of each wall contact, world frame
+  double* body_arrays[17];  ///< for BodyForceBatch
+  std::vector<double> added_mass;
+  std::vector<std::uint8_t> fresh;  ///< of each wall contact
+
+ private:
+  AlignedVector<double> doubles_;
+  std::vector<std::uint32_t> integers_;
+  std::vector<std::uint8_t> bytes_;
+  std::vector<std::int32_t> signed_;
+};
+
+/// Runs all physics of one pair of materials over a batch whose geometry and histories are filled, and books it.
+struct BatchRun {
+  const PairPhysics* physics;
+  double time_step;
+  std::int64_t count;
+  bool per_contact;  ///< fill batch.power of each contact
+};
+void evaluate(const BatchRun& run, BatchArrays& batch, PairLedger& ledger);
+
+/// Books first touches and, now and then, the largest overlap.
+void count_collisions(std::int64_t count, const BatchArrays& batch, PairLedger& ledger);
+void note_overlap(std::int64_t count, const BatchArrays& batch, PairLedger& ledger);
+
+}  // namespace millscope::dem

@@ -1,0 +1,173 @@
+// One time step.
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/config/error.hpp"
+#include "kernel/dem/slab.hpp"
+
+namespace millscope::dem {
+
+/// Phase A: pairs of this slab, then its walls.
+void System::contacts(int slab, int worker) {
+  SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
+  Scratch& scratch = *scratch_[static_cast<std::size_t>(worker)];
+  BatchArrays& batch = scratch.batch;
+  state.ledger.reset_instant();
+  const ScatterContext base{particles.force.data(), state.halo.data(), slab_begin(slab + 1), false};
+  for (std::size_t p = 0; p < physics_.size(); ++p) {
+    if (physics_[p].wall) continue;
+    const PairPhysics& physics = physics_[p];
+    const Equality& equality = equality_[p];
+    const bool spins = std::any_of(physics.interactions.begin(), physics.interactions.end(), [](const auto& i) { return !i.pre; });
+    const PairListView list = state.lists[p].view();
+    const GatherContext gather{particles.position.data(), particles.motion.data(), settings_.periodic, physics.reach,
+                               equality.equal, spins, equality.radius, 0.5 * equality.mass};
+    ScatterContext scatter = base;
+    scatter.equal = equality.equal;
+    if (equality.equal) {
+      std::fill(batch.radius, batch.radius + kBatchStride, 0.5 * equality.radius);
+      std::fill(batch.mass, batch.mass + kBatchStride, 0.5 * equality.mass);
+      std::fill(batch.radius_i, batch.radius_i + kBatchStride, equality.radius);
+      std::fill(batch.radius_j, batch.radius_j + kBatchStride, equality.radius);
+    }
+    PairLedger& ledger = state.ledger.pairs[p];
+    for (std::int64_t first = 0; first < list.count; first += kBatch) {
+      const std::int64_t last = std::min(list.count, first + kBatch);
+      const std::int64_t count = wide_->search(gather, list, first, last, batch);
+      if (count == 0) continue;
+      wide_->gather(gather, list, count, batch);
+      count_collisions(count, batch, ledger);
+      if (step_ % 16 == 0) note_overlap(count, batch, ledger);
+      ledger.contacts += count;
+      evaluate({&physics, settings_.time_step, count, false}, batch, ledger);
+      wide_->scatter(scatter, list, count, spins, batch);
+    }
+  }
+  for (std::size_t body = 0; body < bodies.size(); ++body) walls(slab, worker, body);
+}
+
+/// The forces that earlier slabs computed for beads of this one, added in slab order.
+void System::add_halos(int slab) {
+  const std::int64_t begin = slab_begin(slab), end = slab_begin(slab + 1);
+  for (int earlier = 0; earlier < slab; ++earlier) {
+    AlignedVector<ForceLine>& halo = slabs_[static_cast<std::size_t>(earlier)]->halo;
+    const std::int64_t halo_begin = slab_begin(earlier + 1), halo_end = halo_begin + static_cast<std::int64_t>(halo.size());
+    for (std::int64_t i = std::max(begin, halo_begin); i < std::min(end, halo_end); ++i) {
+      ForceLine& from = halo[static_cast<std::size_t>(i - halo_begin)];
+      ForceLine& to = particles.force[static_cast<std::size_t>(i)];
+      for (int a = 0; a < 3; ++a) {
+        to.f[a] += from.f[a];
+        to.t[a] += from.t[a];
+      }
+      from = ForceLine{};
+    }
+  }
+}
+
+/// Body forces that differ from bead to bead.
+void System::apply_body_forces(int slab, int worker) {
+  SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
+  double* const* array = scratch_[static_cast<std::size_t>(worker)]->body_arrays;
+  const std::int64_t end = slab_begin(slab + 1);
+  for (std::size_t f = 0; f < body_forces.size(); ++f) {
+    double uniform[3];
+    if (body_forces[f].table->uniform(body_forces[f].self, time(), uniform)) continue;
+    for (std::int64_t begin = slab_begin(slab); begin < end; begin += kBatch) {
+      const std::int64_t count = std::min(kBatch, end - begin);
+      for (std::int64_t k = 0; k < count; ++k) {
+        const std::size_t i = static_cast<std::size_t>(begin + k);
+        const double* x = &particles.position[i].x;
+        const MotionLine& m = particles.motion[i];
+        for (int a = 0; a < 3; ++a) {
+          array[a][k] = x[a];
+          array[3 + a][k] = m.v[a];
+          array[6 + a][k] = m.w[a];
+          array[11 + a][k] = array[14 + a][k] = 0.0;
+        }
+        array[9][k] = particles.position[i].radius;
+        array[10][k] = 1.0 / m.inverse_mass;
+      }
+      std::vector<double>& added_mass = scratch_[static_cast<std::size_t>(worker)]->added_mass;
+      added_mass.assign(static_cast<std::size_t>(count), 0.0);
+      BodyForceBatch batch{count, time(), settings_.time_step, {array[0], array[1], array[2]}, {array[3], array[4], array[5]},
+                           {array[6], array[7], array[8]}, array[9], array[10], {array[11], array[12], array[13]},
+                           {array[14], array[15], array[16]}, added_mass.data(), 0.0};
+      body_forces[f].table->evaluate(body_forces[f].self, &batch);
+      state.ledger.body_force_work[f] += batch.power_sum * settings_.time_step;
+      for (std::int64_t k = 0; k < count; ++k) {
+        ForceLine& line = particles.force[static_cast<std::size_t>(begin + k)];
+        for (int a = 0; a < 3; ++a) {
+          line.f[a] += array[11 + a][k];
+          line.t[a] += array[14 + a][k];
+        }
+        const double added = added_mass[static_cast<std::size_t>(k)];
+        if (added != 0.0) {
+          // (m + m_a) a = ΣF + m g: scale so that the integrator's F/m + g gives that.
+          const double mass = array[10][k], ratio = mass / (mass + added);
+          for (std::size_t a = 0; a < 3; ++a) line.f[a] = ratio * (line.f[a] + mass * acceleration_[a]) - mass * acceleration_[a];
+        }
+      }
+    }
+  }
+}
+
+/// Phase B.
+void System::integrate(int slab, int worker) {
+  (void)worker;
+  SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
+  const IntegrateContext context{particles.position.data(), particles.motion.data(), particles.half.data(), particles.force.data(),
+                                 particles.reference.data(), slab_begin(slab), slab_begin(slab + 1), settings_.time_step,
+                                 {acceleration_[0], acceleration_[1], acceleration_[2]}, largest_step_ * largest_step_};
+  state.result = wide_->integrate(context);
+}
+
+void System::advance() {
+  if (rebuild_needed_) rebuild();
+  const double now = time();
+  acceleration_ = {};
+  for (const BodyForceReference& f : body_forces) {
+    double g[3];
+    if (f.table->uniform(f.self, now, g)) {
+      for (std::size_t a = 0; a < 3; ++a) acceleration_[a] += g[a];
+    }
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b) poses_[b] = pose_at(bodies[b].motion, now);
+  workers_->run(settings_.partitions, [this](int slab, int worker) { contacts(slab, worker); });
+  const bool drag = has_general_body_force_;
+  if (observe) {
+    workers_->run(settings_.partitions, [this, drag](int slab, int worker) {
+      add_halos(slab);
+      if (drag) apply_body_forces(slab, worker);
+    });
+    observe(*this);
+    workers_->run(settings_.partitions, [this](int slab, int worker) { integrate(slab, worker); });
+  } else {
+    workers_->run(settings_.partitions, [this, drag](int slab, int worker) {
+      add_halos(slab);
+      if (drag) apply_body_forces(slab, worker);
+      integrate(slab, worker);
+    });
+  }
+  ++step_;
+  wall_moved_ += settings_.time_step * wall_speed_;
+  for (const auto& slab : slabs_) {
+    if (slab->result.runaway >= 0) complain(slab->result.runaway, "moved more than half its radius in one step");
+    rebuild_needed_ = rebuild_needed_ || slab->result.rebuild;
+  }
+  if (wall_moved_ > wall_margin_) rebuild_needed_ = true;
+}
+
+void System::complain(std::int64_t bead, const char* what) const {
+  const std::size_t i = static_cast<std::size_t>(bead);
+  const PositionLine& x = particles.position[i];
+  const MotionLine& m = particles.motion[i];
+  char line[700];
+  std::snprintf(line, sizeof line,
+                "at t = %.6g s bead %u %s: centre (%.4g, %.4g, %.4g) m, velocity (%.4g, %.4g, %.4g) m/s. Likely causes, in order: a time step "
+                "too long for the stiffness (lower time.step_fraction), beads that overlapped walls or each other at the start, a liner with "
+                "an open edge (millscope geometry report). The last checkpoint is intact",
+                time(), particles.id[i], what, x.x, x.y, x.z, m.v[0], m.v[1], m.v[2]);
+  throw config::UserError(line);
+}
+
+}  // namespace millscope::dem

@@ -1,0 +1,67 @@
+// The parts of the contact loop that are built once per instruction set. Plain pointers in and out; the same bits from each build.
+#pragma once
+
+#include "kernel/dem/lines.hpp"
+
+namespace millscope::dem {
+
+/// What a gather needs besides the list.
+struct GatherContext {
+  const PositionLine* position;
+  const MotionLine* motion;
+  PeriodicBox box;
+  double reach;       ///< gap up to which a pair counts, m
+  bool equal;         ///< all beads of this pair of materials have the same radius and mass
+  bool spins;         ///< also fill spin_i, spin_j (interactions need them)
+  double radius;      ///< when equal
+  double mass;        ///< m*, when equal
+};
+
+struct ScatterContext {
+  ForceLine* force;       ///< of all beads; the slab writes its own only
+  ForceLine* halo;        ///< of beads from `slab_end` on
+  std::int64_t slab_end;
+  bool equal;             ///< torque_i serves both
+};
+
+struct IntegrateContext {
+  PositionLine* position;
+  MotionLine* motion;
+  MotionLine* half;
+  ForceLine* force;
+  const PositionLine* reference;  ///< centre at the last rebuild; `radius` holds the square of the allowed displacement
+  std::int64_t begin, end;
+  double time_step;
+  double acceleration[3];  ///< uniform, m/s²
+  double largest_step2;    ///< square of the largest credible displacement in one step, m²
+};
+
+/// What a step found out about a slab.
+struct IntegrateResult {
+  bool rebuild;           ///< some bead used up its skin (or is not finite)
+  std::int64_t runaway;   ///< index of a bead that moved too far in this one step, or −1
+};
+
+struct WideTable {
+  const char* name;
+  /// Finds the pairs of slots [first, last) that are within reach; fills owner, partner, slot, fresh. Returns their number.
+  std::int64_t (*search)(const GatherContext&, const PairListView&, std::int64_t first, std::int64_t last, BatchArrays&);
+  /// Fills overlap, normal, velocity, radius, mass (padded), history.
+  void (*gather)(const GatherContext&, const PairListView&, std::int64_t count, BatchArrays&);
+  /// Adds force × arms (and moments when `with_moments`) to the beads, stores histories.
+  void (*scatter)(const ScatterContext&, const PairListView&, std::int64_t count, bool with_moments, BatchArrays&);
+  /// Kick, drift, predict; clears the forces.
+  IntegrateResult (*integrate)(const IntegrateContext&);
+  /// Appends to `found` the j in [first, last) with |x_i − x_j| < reach_i + reach_j (the reaches stand in `radius`). Returns the number.
+  std::int64_t (*near)(const PositionLine* reaches, const PeriodicBox&, std::int64_t i, std::int64_t first, std::int64_t last,
+                       std::uint32_t* found);
+};
+
+/// The best build that this machine runs, or the one asked for ("v2", "v3", "v4"; "" for the best).
+const WideTable& wide_table(const char* wanted = "");
+
+extern const WideTable wide_v2;
+extern const WideTable wide_v3;
+extern const WideTable wide_v4;
+
+}  // namespace millscope::dem

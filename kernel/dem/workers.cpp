@@ -1,0 +1,57 @@
+#include "kernel/dem/workers.hpp"
+
+namespace millscope::dem {
+namespace {
+
+// A phase lasts tens of microseconds to milliseconds: spin a while, then sleep, so that an idle team costs nothing.
+constexpr int kSpins = 20000;
+
+void pause() { __builtin_ia32_pause(); }
+
+}  // namespace
+
+Workers::Workers(int count) : count_(count) {
+  for (int w = 1; w < count_; ++w) threads_.emplace_back([this, w] { loop(w); });
+}
+
+Workers::~Workers() {
+  stop_.store(true);
+  generation_.fetch_add(1);
+  generation_.notify_all();
+  for (std::thread& t : threads_) t.join();
+}
+
+void Workers::share(int worker) {
+  const int first = worker * slabs_ / count_, last = (worker + 1) * slabs_ / count_;
+  for (int slab = first; slab < last; ++slab) (*task_)(slab, worker);
+}
+
+void Workers::run(int slabs, const std::function<void(int, int)>& task) {
+  slabs_ = slabs;
+  task_ = &task;
+  pending_.store(count_ - 1, std::memory_order_relaxed);
+  generation_.fetch_add(1, std::memory_order_release);
+  if (count_ > 1) generation_.notify_all();
+  share(0);
+  for (int spin = 0; pending_.load(std::memory_order_acquire) != 0; ++spin) {
+    if (spin < kSpins) {
+      pause();
+    } else {
+      std::this_thread::yield();
+    }
+  }
+}
+
+void Workers::loop(int worker) {
+  unsigned seen = 0;
+  for (;;) {
+    for (int spin = 0; generation_.load(std::memory_order_acquire) == seen && spin < kSpins; ++spin) pause();
+    generation_.wait(seen, std::memory_order_acquire);
+    seen = generation_.load(std::memory_order_acquire);
+    if (stop_.load()) return;
+    share(worker);
+    pending_.fetch_sub(1, std::memory_order_release);
+  }
+}
+
+}  // namespace millscope::dem

@@ -1,0 +1,38 @@
+// A fixed team of threads that runs the same function over the slabs, phase by phase.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <thread>
+#include <vector>
+
+namespace millscope::dem {
+
+class Workers {
+ public:
+  /// `count` ≥ 1 threads in all; the calling thread is worker 0.
+  explicit Workers(int count);
+  ~Workers();
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  int count() const { return count_; }
+
+  /// Runs task(slab, worker) for each slab in [0, slabs): slab k goes to worker k·count/slabs, so that a slab stays in one cache.
+  /// Returns when all are done. The task must not throw.
+  void run(int slabs, const std::function<void(int slab, int worker)>& task);
+
+ private:
+  void loop(int worker);
+  void share(int worker);
+
+  int count_;
+  int slabs_ = 0;
+  const std::function<void(int, int)>* task_ = nullptr;
+  std::atomic<unsigned> generation_{0};
+  std::atomic<int> pending_{0};
+  std::atomic<bool> stop_{false};
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace millscope::dem
