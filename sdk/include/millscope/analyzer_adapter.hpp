@@ -1,0 +1,91 @@
+// Turns a plain C++ class into an analyzer plugin.
+//
+//   struct MyAnalyzer {
+//     static constexpr std::uint64_t kNeeds = kHasVelocity;                 // fields without which it cannot work, or 0
+//     MyAnalyzer(const Parameters&, const AnalyzerContext&);                // throws Refusal with the remedy
+//     std::vector<ArrayInfo> arrays() const;                                // see `additive`
+//     void accumulate(const FrameBlock&, double* const* sums) const;        // adds one block
+//     void finish(const double* const* sums, Results&) const;               // pure
+//   };
+//   constexpr AnalyzerTable table = make_analyzer_table<MyAnalyzer>();
+#pragma once
+
+#include <initializer_list>
+#include <vector>
+
+#include "millscope/analyzer.hpp"
+#include "millscope/parameters.hpp"
+
+namespace millscope {
+
+/// Describes one additive array: additive("time", "s", {nx, ny}); without shape: one number.
+inline ArrayInfo additive(const char* name, const char* unit, std::initializer_list<std::uint64_t> shape = {}) {
+  if (shape.size() > kMaxRank) throw Refusal(std::string("the additive array '") + name + "' has more than three dimensions");
+  ArrayInfo info{name, unit, static_cast<std::uint32_t>(shape.size()), 0, {1, 1, 1}};
+  std::size_t axis = 0;
+  for (const std::uint64_t n : shape) info.shape[axis++] = n;
+  return info;
+}
+
+/// Numbers of an array.
+inline std::uint64_t size_of(const ArrayInfo& info) {
+  std::uint64_t size = 1;
+  for (std::uint32_t axis = 0; axis < info.rank; ++axis) size *= info.shape[axis];
+  return size;
+}
+
+/// Where `finish` puts what it found.
+class Results {
+ public:
+  explicit Results(const ResultSink& sink) : sink_(sink) {}
+
+  /// One number.
+  void add(const char* name, const char* unit, double value, const char* doc) { add(name, unit, &value, {}, doc); }
+  /// An array, row-major.
+  void add(const char* name, const char* unit, const double* values, std::initializer_list<std::uint64_t> shape, const char* doc) {
+    const ArrayInfo info = additive(name, unit, shape);
+    const Result result{name, unit, doc, info.rank, 0, {info.shape[0], info.shape[1], info.shape[2]}, values};
+    sink_.add(sink_.host, &result);
+  }
+
+ private:
+  ResultSink sink_;
+};
+
+namespace detail {
+
+template <class A>
+struct AnalyzerSelf {
+  A analyzer;
+  std::vector<ArrayInfo> arrays;
+  AnalyzerSelf(const Parameters& parameters, const AnalyzerContext& context) : analyzer(parameters, context), arrays(analyzer.arrays()) {}
+};
+
+}  // namespace detail
+
+template <class A>
+constexpr AnalyzerTable make_analyzer_table() {
+  using Self = detail::AnalyzerSelf<A>;
+  AnalyzerTable t{};
+  t.needs = A::kNeeds;
+  t.create = [](const Values* values, const AnalyzerContext* context, void** self, Failure* failure) -> Status {
+    return guarded(failure, [&] { *self = new Self(Parameters(*values), *context); });
+  };
+  t.destroy = [](void* self) { delete static_cast<Self*>(self); };
+  t.arrays = [](const void* self, const ArrayInfo** items, std::uint64_t* count) {
+    *items = static_cast<const Self*>(self)->arrays.data();
+    *count = static_cast<const Self*>(self)->arrays.size();
+  };
+  t.accumulate = [](const void* self, const FrameBlock* block, double* const* sums, Failure* failure) -> Status {
+    return guarded(failure, [&] { static_cast<const Self*>(self)->analyzer.accumulate(*block, sums); });
+  };
+  t.finish = [](const void* self, const double* const* sums, const ResultSink* sink, Failure* failure) -> Status {
+    return guarded(failure, [&] {
+      Results results(*sink);
+      static_cast<const Self*>(self)->analyzer.finish(sums, results);
+    });
+  };
+  return t;
+}
+
+}  // namespace millscope

@@ -1,0 +1,83 @@
+// Turns a plain C++ class into an observation plugin.
+//
+//   struct MyNoise {
+//     explicit MyNoise(const Parameters&);                                   // throws Refusal with the remedy
+//     Track observe(const TrackView&, const TrackContext&) const;            // throws Refusal
+//   };
+//   constexpr ObservationTable table = make_observation_table<MyNoise>();
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "millscope/observation.hpp"
+#include "millscope/parameters.hpp"
+
+namespace millscope {
+
+/// One sample of a track.
+struct TrackSample {
+  double time;         ///< s
+  double position[3];  ///< m
+  double weight;       ///< confidence 0…1
+  bool visible;
+};
+
+using Track = std::vector<TrackSample>;
+
+/// Sample i of a view.
+inline TrackSample sample_at(const TrackView& view, std::int64_t i) {
+  return {view.time[i], {view.position[0][i], view.position[1][i], view.position[2][i]}, view.weight[i], view.visible[i] != 0};
+}
+
+/// Random numbers that are the same on every machine (SplitMix64; Box–Muller).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+
+  std::uint64_t bits() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+    return z ^ (z >> 31);
+  }
+  double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  ///< [0, 1)
+  double exponential() { return -std::log(1.0 - uniform()); }               ///< mean 1
+  double normal() {                                                         ///< mean 0, variance 1
+    const double radius = std::sqrt(2.0 * exponential());
+    return radius * std::cos(6.283185307179586 * uniform());
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+namespace detail {
+
+inline void write_track(const Track& track, const TrackSink& sink) {
+  TrackBuffer out{};
+  if (sink.resize(sink.host, static_cast<std::int64_t>(track.size()), &out) != 0) throw Refusal("no memory for the observed track");
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    out.time[i] = track[i].time;
+    for (int axis = 0; axis < 3; ++axis) out.position[axis][i] = track[i].position[axis];
+    out.weight[i] = track[i].weight;
+    out.visible[i] = track[i].visible ? 1 : 0;
+  }
+}
+
+}  // namespace detail
+
+template <class O>
+constexpr ObservationTable make_observation_table() {
+  ObservationTable t{};
+  t.create = [](const Values* values, void** self, Failure* failure) -> Status {
+    return guarded(failure, [&] { *self = new O(Parameters(*values)); });
+  };
+  t.destroy = [](void* self) { delete static_cast<O*>(self); };
+  t.observe = [](const void* self, const TrackView* view, const TrackContext* context, const TrackSink* sink, Failure* failure) -> Status {
+    return guarded(failure, [&] { detail::write_track(static_cast<const O*>(self)->observe(*view, *context), *sink); });
+  };
+  return t;
+}
+
+}  // namespace millscope
