@@ -65,8 +65,8 @@ void System::sort_beads() {
     edge *= 1.26;
   }
   // Slowest along the longest axis that is not periodic (slabs), fastest along the next, so that rows of cells are long.
-  int order[3] = {0, 1, 2};
-  std::stable_sort(order, order + 3, [&](int a, int b) {
+  std::vector<int> order{0, 1, 2};
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     const bool pa = settings_.periodic.length[a] > 0, pb = settings_.periodic.length[b] > 0;
     if (pa != pb) return pb;
     return settings_.high[a] - settings_.low[a] > settings_.high[b] - settings_.low[b];
@@ -141,13 +141,11 @@ void System::build_pairs(int slab) {
   // Distinct neighbours of a coordinate, ascending.
   const auto around = [](int c, int count, bool periodic, int (&out)[3]) {
     int m = 0;
-    for (int d = -1; d <= 1; ++d) {
-      int k = c + d;
-      if (periodic) k = (k + count) % count;
-      if (k < 0 || k >= count || std::find(out, out + m, k) != out + m) continue;
-      out[m++] = k;
-    }
-    std::sort(out, out + m);
+    if (periodic && c == count - 1 && count > 2) out[m++] = 0;
+    if (c > 0) out[m++] = c - 1;
+    out[m++] = c;
+    if (c + 1 < count) out[m++] = c + 1;
+    if (periodic && c == 0 && count > 2) out[m++] = count - 1;
     return m;
   };
   std::int64_t cell = std::upper_bound(grid_.start.begin(), grid_.start.end(), static_cast<std::uint32_t>(begin)) - grid_.start.begin() - 1;

@@ -17,7 +17,7 @@ double angle_at(const Motion& m, double time) {
   double angle = m.speed * (0.5 * m.ramp + steady);
   if (m.ripple_amplitude != 0 && m.ripple_frequency > 0) {
     const double w = kTwoPi * m.ripple_frequency;
-    angle += m.speed * m.ripple_amplitude * (1 - std::cos(w * steady)) / w;
+    angle += m.speed * m.ripple_amplitude * (std::cos(m.ripple_phase) - std::cos(w * steady + m.ripple_phase)) / w;
   }
   return angle;
 }
@@ -28,7 +28,7 @@ double angular_speed(const Motion& m, double time) {
   const double t = time - m.start;
   if (t <= 0) return 0;
   if (t < m.ramp) return m.speed * t / m.ramp;
-  return m.speed * (1 + m.ripple_amplitude * std::sin(kTwoPi * m.ripple_frequency * (t - m.ramp)));
+  return m.speed * (1 + m.ripple_amplitude * std::sin(kTwoPi * m.ripple_frequency * (t - m.ramp) + m.ripple_phase));
 }
 
 // Rodrigues: R = cosθ I + sinθ [a]× + (1 − cosθ) a aᵀ.
@@ -45,9 +45,11 @@ Pose pose_at(const Motion& m, double time) {
   }
   const double w = kTwoPi * m.oscillation_frequency;
   const double omega = angular_speed(m, time);
+  const double moving = time - m.translation_start;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double shift = m.velocity[i] * time + m.oscillation_amplitude[i] * std::sin(w * time);
-    p.velocity[i] = m.velocity[i] + m.oscillation_amplitude[i] * w * std::cos(w * time);
+    const double swing = m.oscillation_amplitude[i];
+    const double shift = moving < 0 ? 0 : m.velocity[i] * moving + swing * (std::sin(w * moving + m.oscillation_phase) - std::sin(m.oscillation_phase));
+    p.velocity[i] = moving < 0 ? 0 : m.velocity[i] + swing * w * std::cos(w * moving + m.oscillation_phase);
     p.centre[i] = m.point[i] + shift;
     p.omega[i] = omega * a[i];
     const double* row = p.rotation[i];

@@ -16,9 +16,12 @@ struct Motion {
   double ramp = 0;   ///< s, linear from 0 to Ω
   double ripple_amplitude = 0;  ///< fraction of Ω
   double ripple_frequency = 0;  ///< Hz
+  double ripple_phase = 0;      ///< rad
   Vector3 velocity{0, 0, 0};              ///< m/s
   Vector3 oscillation_amplitude{0, 0, 0}; ///< m
   double oscillation_frequency = 0;       ///< Hz
+  double oscillation_phase = 0;           ///< rad
+  double translation_start = 0;           ///< s
 };
 
 /// Where the body is and how it moves: x_world = R x_body + offset; v = velocity + Ω × (x − centre).

@@ -1,0 +1,221 @@
+// Everything that the next step depends on, as named arrays: a restored system continues bit for bit.
+#include <algorithm>
+#include <cstring>
+
+#include "kernel/config/error.hpp"
+#include "kernel/dem/slab.hpp"
+
+namespace millscope::dem {
+namespace {
+
+template <class Line>
+const double* doubles(const AlignedVector<Line>& lines) {
+  return reinterpret_cast<const double*>(lines.data());
+}
+
+template <class Line>
+void put(AlignedVector<Line>& lines, const std::vector<double>& values) {
+  lines.resize(values.size() * sizeof(double) / sizeof(Line));
+  if (!values.empty()) std::memcpy(static_cast<void*>(lines.data()), values.data(), values.size() * sizeof(double));
+}
+
+/// Every number of a ledger in a fixed order.
+template <class LedgerType, class Visit>
+void each_number(LedgerType& ledger, const Visit& visit) {
+  for (auto& p : ledger.pairs) {
+    for (auto& d : p.dissipated) visit(d);
+    visit(p.impact_energy);
+    visit(p.largest_closing_speed);
+    visit(p.largest_overlap);
+  }
+  for (auto& b : ledger.bodies) {
+    visit(b.work);
+    visit(b.torque_impulse);
+  }
+  for (auto& w : ledger.body_force_work) visit(w);
+}
+
+template <class LedgerType, class Visit>
+void each_count(LedgerType& ledger, const Visit& visit) {
+  for (auto& p : ledger.pairs) {
+    visit(p.collisions);
+    for (auto& s : p.spectrum) visit(s);
+  }
+}
+
+/// Gathers an array that is kept slab by slab.
+template <class T, class Slabs, class Access>
+std::vector<T> joined(const Slabs& slabs, const Access& access) {
+  std::vector<T> all;
+  for (const auto& slab : slabs) {
+    const auto& part = access(*slab);
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
+}
+
+/// Hands an array out again, `counts[k]` items to slab k.
+template <class T, class Slabs, class Access>
+void dealt(const std::vector<T>& all, const std::vector<std::int64_t>& counts, Slabs& slabs, const Access& access) {
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < slabs.size(); ++k) {
+    auto& part = access(*slabs[k]);
+    const std::size_t n = static_cast<std::size_t>(counts[k]);
+    part.resize(n);
+    for (std::size_t i = 0; i < n; ++i) part[i] = static_cast<typename std::remove_reference_t<decltype(part)>::value_type>(all[at + i]);
+    at += n;
+  }
+}
+
+}  // namespace
+
+void System::save(const DoubleSink& put_doubles, const IntegerSink& put_integers) const {
+  const Particles& p = particles;
+  const std::size_t n = p.position.size(), slots = static_cast<std::size_t>(layout_.history_count());
+  const std::vector<std::int64_t> counters{step_, rebuilds_, last_rebuild_step_, rebuild_needed_ ? 1 : 0, settings_.partitions,
+                                           static_cast<std::int64_t>(slots), static_cast<std::int64_t>(physics_.size())};
+  put_integers("counters", counters.data(), counters.size());
+  const double walls_moved[3] = {wall_margin_, wall_moved_, wall_speed_};
+  put_doubles("walls_moved", walls_moved, 3);
+  put_doubles("position", doubles(p.position), 4 * n);
+  put_doubles("motion", doubles(p.motion), 8 * n);
+  put_doubles("half", doubles(p.half), 8 * n);
+  put_doubles("reference", doubles(p.reference), 4 * n);
+  const std::vector<std::int64_t> ids(p.id.begin(), p.id.end()), materials(p.material.begin(), p.material.end());
+  put_integers("id", ids.data(), n);
+  put_integers("material", materials.data(), n);
+  const auto integers = [&](const std::string& name, const auto& access) {
+    const std::vector<std::int64_t> all = joined<std::int64_t>(slabs_, access);
+    put_integers(name, all.data(), all.size());
+  };
+  const auto numbers = [&](const std::string& name, const auto& access) {
+    const std::vector<double> all = joined<double>(slabs_, access);
+    put_doubles(name, all.data(), all.size());
+  };
+  const auto sizes = [&](const std::string& name, const auto& access) {
+    std::vector<std::int64_t> all;
+    for (const auto& slab : slabs_) all.push_back(static_cast<std::int64_t>(access(*slab).size()));
+    put_integers(name, all.data(), all.size());
+  };
+  for (std::size_t q = 0; q < physics_.size(); ++q) {
+    const std::string at = "pairs/" + std::to_string(q) + "/";
+    sizes(at + "count", [q](const SlabState& s) -> const auto& { return s.lists[q].owner; });
+    integers(at + "owner", [q](const SlabState& s) -> const auto& { return s.lists[q].owner; });
+    integers(at + "partner", [q](const SlabState& s) -> const auto& { return s.lists[q].partner; });
+    integers(at + "touching", [q](const SlabState& s) -> const auto& { return s.lists[q].touching; });
+    for (std::size_t h = 0; h < slots; ++h) {
+      numbers(at + "history_" + std::to_string(h), [q, h](const SlabState& s) -> const auto& { return s.lists[q].history[h]; });
+    }
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const std::string at = "walls/" + std::to_string(b) + "/";
+    sizes(at + "beads", [b](const SlabState& s) -> const auto& { return s.walls[b].bead; });
+    integers(at + "bead", [b](const SlabState& s) -> const auto& { return s.walls[b].bead; });
+    sizes(at + "offsets", [b](const SlabState& s) -> const auto& { return s.walls[b].first; });
+    integers(at + "first", [b](const SlabState& s) -> const auto& { return s.walls[b].first; });
+    sizes(at + "candidate_count", [b](const SlabState& s) -> const auto& { return s.walls[b].candidates; });
+    integers(at + "candidates", [b](const SlabState& s) -> const auto& { return s.walls[b].candidates; });
+    sizes(at + "contacts", [b](const SlabState& s) -> const auto& { return s.walls[b].active.bead; });
+    integers(at + "contact_bead", [b](const SlabState& s) -> const auto& { return s.walls[b].active.bead; });
+    integers(at + "contact_feature", [b](const SlabState& s) -> const auto& { return s.walls[b].active.feature; });
+    std::vector<double> normals;
+    for (const auto& slab : slabs_) {
+      for (const auto& normal : slab->walls[b].active.normal) normals.insert(normals.end(), normal.begin(), normal.end());
+    }
+    put_doubles(at + "contact_normal", normals.data(), normals.size());
+    for (std::size_t h = 0; h < slots; ++h) {
+      numbers(at + "history_" + std::to_string(h), [b, h](const SlabState& s) -> const auto& { return s.walls[b].active.history[h]; });
+    }
+    numbers(at + "impact", [b](const SlabState& s) -> const auto& { return s.impact[b]; });
+    numbers(at + "shear", [b](const SlabState& s) -> const auto& { return s.shear[b]; });
+  }
+  std::vector<double> book;
+  std::vector<std::int64_t> counts;
+  for (const auto& slab : slabs_) {
+    const Ledger& ledger = slab->ledger;
+    each_number(ledger, [&book](double v) { book.push_back(v); });
+    each_count(ledger, [&counts](std::int64_t v) { counts.push_back(v); });
+  }
+  put_doubles("ledger/numbers", book.data(), book.size());
+  put_integers("ledger/counts", counts.data(), counts.size());
+}
+
+void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_integers) {
+  const std::vector<std::int64_t> counters = get_integers("counters");
+  const std::size_t slots = static_cast<std::size_t>(layout_.history_count());
+  if (counters.size() != 7 || counters[4] != settings_.partitions || counters[5] != static_cast<std::int64_t>(slots) ||
+      counters[6] != static_cast<std::int64_t>(physics_.size())) {
+    throw config::UserError("the checkpoint was written with other plugins, materials or run.partitions than the case has now; put them back");
+  }
+  step_ = counters[0];
+  Particles& p = particles;
+  put(p.position, get_doubles("position"));
+  const std::size_t n = p.position.size();
+  p.resize(n);
+  put(p.motion, get_doubles("motion"));
+  put(p.half, get_doubles("half"));
+  put(p.reference, get_doubles("reference"));
+  const std::vector<std::int64_t> ids = get_integers("id"), materials = get_integers("material");
+  std::copy(ids.begin(), ids.end(), p.id.begin());
+  std::transform(materials.begin(), materials.end(), p.material.begin(), [](std::int64_t m) { return static_cast<std::uint8_t>(m); });
+  for (ForceLine& f : p.force) f = ForceLine{};
+  prepare();
+  rebuilds_ = counters[1];
+  last_rebuild_step_ = counters[2];
+  rebuild_needed_ = counters[3] != 0;
+  const std::vector<double> walls_moved = get_doubles("walls_moved");
+  wall_margin_ = walls_moved[0];
+  wall_moved_ = walls_moved[1];
+  wall_speed_ = walls_moved[2];
+  for (std::size_t q = 0; q < physics_.size(); ++q) {
+    const std::string at = "pairs/" + std::to_string(q) + "/";
+    const std::vector<std::int64_t> count = get_integers(at + "count");
+    dealt(get_integers(at + "owner"), count, slabs_, [q](SlabState& s) -> auto& { return s.lists[q].owner; });
+    dealt(get_integers(at + "partner"), count, slabs_, [q](SlabState& s) -> auto& { return s.lists[q].partner; });
+    dealt(get_integers(at + "touching"), count, slabs_, [q](SlabState& s) -> auto& { return s.lists[q].touching; });
+    for (std::size_t h = 0; h < slots; ++h) {
+      dealt(get_doubles(at + "history_" + std::to_string(h)), count, slabs_, [q, h](SlabState& s) -> auto& { return s.lists[q].history[h]; });
+    }
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const std::string at = "walls/" + std::to_string(b) + "/";
+    dealt(get_integers(at + "bead"), get_integers(at + "beads"), slabs_, [b](SlabState& s) -> auto& { return s.walls[b].bead; });
+    dealt(get_integers(at + "first"), get_integers(at + "offsets"), slabs_, [b](SlabState& s) -> auto& { return s.walls[b].first; });
+    dealt(get_integers(at + "candidates"), get_integers(at + "candidate_count"), slabs_, [b](SlabState& s) -> auto& { return s.walls[b].candidates; });
+    const std::vector<std::int64_t> contacts = get_integers(at + "contacts");
+    dealt(get_integers(at + "contact_bead"), contacts, slabs_, [b](SlabState& s) -> auto& { return s.walls[b].active.bead; });
+    dealt(get_integers(at + "contact_feature"), contacts, slabs_, [b](SlabState& s) -> auto& { return s.walls[b].active.feature; });
+    const std::vector<double> normals = get_doubles(at + "contact_normal");
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < slabs_.size(); ++k) {
+      auto& normal = slabs_[k]->walls[b].active.normal;
+      normal.resize(static_cast<std::size_t>(contacts[k]));
+      for (auto& v : normal) {
+        v = {normals[next], normals[next + 1], normals[next + 2]};
+        next += 3;
+      }
+    }
+    for (std::size_t h = 0; h < slots; ++h) {
+      dealt(get_doubles(at + "history_" + std::to_string(h)), contacts, slabs_, [b, h](SlabState& s) -> auto& { return s.walls[b].active.history[h]; });
+    }
+    const std::vector<std::int64_t> triangles(slabs_.size(), static_cast<std::int64_t>(slabs_[0]->impact[b].size()));
+    dealt(get_doubles(at + "impact"), triangles, slabs_, [b](SlabState& s) -> auto& { return s.impact[b]; });
+    dealt(get_doubles(at + "shear"), triangles, slabs_, [b](SlabState& s) -> auto& { return s.shear[b]; });
+  }
+  const std::vector<double> book = get_doubles("ledger/numbers");
+  const std::vector<std::int64_t> counts = get_integers("ledger/counts");
+  std::size_t at = 0, at_count = 0;
+  for (std::size_t k = 0; k < slabs_.size(); ++k) {
+    SlabState& slab = *slabs_[k];
+    each_number(slab.ledger, [&](double& v) { v = book.at(at++); });
+    each_count(slab.ledger, [&](std::int64_t& v) { v = counts.at(at_count++); });
+    std::int64_t last = slab_begin(static_cast<int>(k) + 1) - 1;
+    const std::int64_t end = last + 1;
+    for (const PairList& list : slab.lists) {
+      for (const std::uint32_t j : list.partner) last = std::max<std::int64_t>(last, j);
+    }
+    slab.halo.assign(static_cast<std::size_t>(last + 1 - end), ForceLine{});
+  }
+}
+
+}  // namespace millscope::dem
