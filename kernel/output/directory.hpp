@@ -1,0 +1,39 @@
+// The output directory: never overwritten silently, never shared by two runs, never left half-made.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+namespace millscope::output {
+
+enum class Mode {
+  fresh,      ///< must be missing or empty
+  overwrite,  ///< `--force`: files of an earlier run are removed, foreign files refuse
+  resume,     ///< must hold a checkpoint
+};
+
+/// Takes hold of OUT. What is wrong is a config::UserError before anything was changed: existing output, a parent that cannot be
+/// written, another run in it, too little free disk.
+class OutputDirectory {
+ public:
+  /// `needed_bytes`: estimate of what the run will write; 0: unknown.
+  OutputDirectory(std::filesystem::path path, Mode mode, std::uint64_t needed_bytes = 0);
+  /// Lets go; without `start` also removes the directories that the constructor made.
+  ~OutputDirectory();
+  OutputDirectory(const OutputDirectory&) = delete;
+  OutputDirectory& operator=(const OutputDirectory&) = delete;
+
+  /// The run begins: from here on the directory stays. With Mode::overwrite the earlier run's files are removed now.
+  void start();
+  const std::filesystem::path& path() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Free bytes on the disk that holds `path` (or, where it does not exist yet, its nearest existing parent).
+std::uint64_t free_bytes(const std::filesystem::path& path);
+
+}  // namespace millscope::output

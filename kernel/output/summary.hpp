@@ -1,0 +1,24 @@
+// summary.json and what a run needs to be repeated.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace millscope::output {
+
+/// A loaded plugin library, as the host knows it.
+struct PluginRecord {
+  std::string name, version, file, hash;
+};
+
+/// Where, when and with what: version, compiler, host, processor, cores, date (UTC), command line, plugins.
+nlohmann::ordered_json provenance(std::span<const std::string> command_line, std::span<const PluginRecord> plugins);
+
+/// Writes `json` indented, whole or not at all. NaN and infinity become null. UserError when it cannot be written.
+void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json);
+
+}  // namespace millscope::output
