@@ -1,1 +1,109 @@
+#include "kernel/host/library.hpp"
 
+#include <dlfcn.h>
+#include <elf.h>
+#include <fmt/core.h>
+#include <link.h>
+
+#include <boost/dll/shared_library.hpp>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include "kernel/config/error.hpp"
+#include "kernel/host/descriptor_check.hpp"
+#include "kernel/host/directory_check.hpp"
+
+namespace millscope::host {
+
+namespace {
+
+constexpr const char* kSymbol = "millscope_plugins";
+
+[[noreturn]] void refuse(const std::string& path, const std::string& what) {
+  throw config::UserError(fmt::format("plugin library '{}' is not loaded: {}", path, what));
+}
+
+/// FNV-1a over the bytes of a file; refuses what is no shared library before the system's loader sees it.
+std::string hash_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(path, "it cannot be read");
+  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (bytes.size() < sizeof(ElfW(Ehdr)) || !bytes.starts_with(ELFMAG)) refuse(path, "it is not a shared library (no ELF file)");
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
+  return fmt::format("{:016x}", hash);
+}
+
+boost::dll::shared_library open_handle(const std::string& path) {
+  try {
+    return boost::dll::shared_library(std::filesystem::path(path), boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
+  } catch (const std::exception& e) {
+    refuse(path, fmt::format("the system's loader says: {}", e.what()));
+  }
+}
+
+/// The library's list, once the symbol is known to be data of sufficient size.
+const DescriptorList& list_of(const std::string& path, const boost::dll::shared_library& handle) {
+  if (!handle.has(kSymbol)) {
+    refuse(path, fmt::format("it has no symbol {}; it is no millscope plugin, or it lacks MILLSCOPE_PLUGINS(…)", kSymbol));
+  }
+  const DescriptorList& list = handle.get<const DescriptorList>(kSymbol);
+  Dl_info info{};
+  void* extra = nullptr;
+  if (::dladdr1(&list, &info, &extra, RTLD_DL_SYMENT) == 0 || extra == nullptr) refuse(path, "its plugin list cannot be read");
+  const auto& symbol = *static_cast<const ElfW(Sym)*>(extra);
+  if (ELF64_ST_TYPE(symbol.st_info) != STT_OBJECT || symbol.st_size < 16) {
+    refuse(path, fmt::format("its symbol {} is no plugin list", kSymbol));
+  }
+  return list;
+}
+
+std::vector<const Descriptor*> checked_descriptors(const std::string& path, const DescriptorList& list) {
+  std::string trouble = complaint(list);
+  if (!trouble.empty()) refuse(path, trouble);
+  std::vector<const Descriptor*> descriptors;
+  for (std::uint64_t i = 0; i < list.count; ++i) {
+    const Descriptor* d = list.items[i];
+    constexpr std::uint64_t fixed_part = offsetof(Descriptor, layout);
+    trouble = is_mapped(d, fixed_part) ? complaint(*d) : "a descriptor cannot be read";
+    if (!trouble.empty()) refuse(path, trouble);
+    for (const Descriptor* other : descriptors) {
+      if (other->kind == d->kind && std::string_view(other->name) == d->name)
+        refuse(path, fmt::format("it lists the plugin '{}' twice", d->name));
+    }
+    descriptors.push_back(d);
+  }
+  return descriptors;
+}
+
+}  // namespace
+
+struct Library::State {
+  std::string path, level, hash;
+  boost::dll::shared_library handle;
+  std::vector<const Descriptor*> descriptors;
+};
+
+std::shared_ptr<const Library> Library::open(const std::string& path, const std::string& level) {
+  std::error_code trouble;
+  auto state = std::make_unique<State>();
+  state->path = std::filesystem::canonical(path, trouble).string();
+  if (trouble) throw config::UserError(fmt::format("plugin library '{}' does not exist or cannot be reached", path));
+  state->level = level;
+  require_private(state->path);
+  state->hash = hash_file(state->path);
+  state->handle = open_handle(state->path);
+  state->descriptors = checked_descriptors(state->path, list_of(state->path, state->handle));
+  return std::shared_ptr<const Library>(new Library(std::move(state)));
+}
+
+Library::Library(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Library::~Library() = default;
+
+const std::string& Library::path() const { return state_->path; }
+const std::string& Library::level() const { return state_->level; }
+const std::string& Library::hash() const { return state_->hash; }
+const std::vector<const Descriptor*>& Library::descriptors() const { return state_->descriptors; }
+
+}  // namespace millscope::host
