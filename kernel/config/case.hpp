@@ -1,17 +1,20 @@
-// One simulation as its YAML file says it: plain structs, SI numbers, places kept for later messages. `docs`: every key with unit,
-// default and range stands beside its member.
+// One simulation as its YAML file says it: plain structs, SI numbers, places kept for later messages. Every
+// key stands beside its member with unit, default and range.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "kernel/config/document.hpp"
 #include "kernel/config/pairs.hpp"
+#include "millscope/abi.hpp"
 
 namespace millscope::config {
 
@@ -35,12 +38,14 @@ struct SizeClass {
   double number_fraction = 1;  ///< of the beads of the class; the sizes of a class sum to 1
 };
 
-/// `beads.NAME`. Fractions and shares by mass are turned into numbers here.
+/// `beads.NAME`. Fractions (`fractions_by: mass|number`, default mass) and shares (`fill.shares_by`, default mass)
+/// are turned into numbers. A `distribution: {kind: normal|lognormal|uniform, mean, deviation, low, high, bins}` becomes `bins` sizes
+/// (default 11) of even width from `low` to `high` (default: three deviations each way; for lognormal, of the logarithm).
 struct BeadCase {
   std::string name;
   std::string material;
   double density = 0;            ///< kg/m³; the material's unless `density` is given
-  std::vector<SizeClass> sizes;  ///< from `diameter`, `sizes` or `distribution`; ascending as written
+  std::vector<SizeClass> sizes;  ///< from `diameter`, `sizes` or `distribution`; in the order of the file
   double number_share = 1;       ///< of all beads; the classes sum to 1
   Location where;
 
@@ -223,8 +228,10 @@ Case read_case(const std::string& file, const std::vector<std::string>& override
 /// The same from text.
 Case parse_case(const std::string& text, const std::string& file, const std::vector<std::string>& overrides = {});
 
-/// Throws UserError for any key of the file that neither the reader nor a plugin has read.
-void finish(const Case& c);
+/// Checks what is left: resolves every plugin instance and every entry of `pairs` whose plugin is among `descriptors` (types, units,
+/// ranges; a value that only an unused pair lacks is no error), then throws UserError for any key that nobody has read. Without
+/// descriptors every plugin must have been resolved before.
+void finish(const Case& c, std::span<const Descriptor* const> descriptors = {});
 
 /// Critical speed in rad/s: 42.3/√(D_m − d_b) rpm, D_m and d_b in m (Chagas 2015, Eq. 3.1). Requires D_m > d_b.
 double critical_speed(double mill_diameter, double bead_diameter);
