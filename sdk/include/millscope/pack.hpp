@@ -99,7 +99,9 @@ inline Pack square_root(Pack a) {
   return {__builtin_ia32_sqrtpd(a.v)};
 #endif
 }
-inline Pack absolute(Pack a) { return maximum(a, -a); }
+inline Pack absolute(Pack a) {
+  return {reinterpret_cast<wide::Native>(reinterpret_cast<wide::NativeMask>(a.v) & 0x7fffffffffffffffLL)};  // −0 becomes 0, as in fabs
+}
 inline double absolute(double a) { return std::fabs(a); }
 
 template <class R>

@@ -1,0 +1,163 @@
+// What a conformance check needs to make a plugin object: values from the plugin's own list, and a pair of materials.
+#pragma once
+
+#include <cmath>
+#include <deque>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "millscope/contact_law.hpp"
+#include "millscope/parameters.hpp"
+
+namespace millscope::conformance {
+
+/// One thing that a plugin does not hold to.
+struct Violation {
+  std::string check;    ///< "scalar = packed", "antisymmetry", …
+  std::string message;  ///< with the numbers
+};
+
+using Violations = std::vector<Violation>;
+
+inline std::string text_of(const char* format, double a, double b) {
+  char line[256];
+  std::snprintf(line, sizeof line, format, a, b);
+  return line;
+}
+
+/// The values of one object: every default of the plugin's list, then what the test sets. Required numbers that are not set get the
+/// middle of their range.
+class ValueSet {
+ public:
+  explicit ValueSet(const Descriptor& descriptor) : descriptor_(&descriptor) {
+    for (std::uint64_t i = 0; i < descriptor.parameter_count; ++i) items_.push_back(initial(descriptor.parameters[i]));
+  }
+
+  ValueSet& set(std::string_view name, double number) {
+    Value& value = find(name);
+    for (double& component : value.number) component = number;
+    value.given = 1;
+    return *this;
+  }
+  ValueSet& set(std::string_view name, const char* text) {
+    Value& value = find(name);
+    texts_.emplace_back(text);
+    value.text = texts_.back().c_str();
+    value.given = 1;
+    return *this;
+  }
+  bool has(std::string_view name) const {
+    for (const Value& value : items_) {
+      if (name == value.name) return true;
+    }
+    return false;
+  }
+
+  const Descriptor& descriptor() const { return *descriptor_; }
+  /// Valid as long as this set.
+  Values view() const { return {items_.data(), items_.size()}; }
+
+ private:
+  static Value initial(const Parameter& p) {
+    Value value{p.name, p.fallback_text != nullptr ? p.fallback_text : "", {}, p.optional != 0 && std::isnan(p.fallback) ? 0U : 1U, 0};
+    double number = p.fallback;
+    if (std::isnan(number)) {
+      const bool low = std::isfinite(p.minimum), high = std::isfinite(p.maximum);
+      number = low && high ? 0.5 * (p.minimum + p.maximum) : low ? p.minimum + 1.0 : high ? p.maximum - 1.0 : 1.0;
+    }
+    for (double& component : value.number) component = number;
+    return value;
+  }
+  Value& find(std::string_view name) {
+    for (Value& value : items_) {
+      if (name == value.name) return value;
+    }
+    throw Refusal("the plugin '" + std::string(descriptor_->name) + "' has no parameter '" + std::string(name) + "'");
+  }
+
+  const Descriptor* descriptor_;
+  std::vector<Value> items_;
+  std::deque<std::string> texts_;
+};
+
+/// Two equal beads of one material: glass softened to G = 26 MPa unless said otherwise.
+inline PairContext bead_pair(double radius = 5e-3, double young = 63.96e6, double poisson = 0.23, double density = 2500.0) {
+  PairContext pair{};
+  pair.first = pair.second = {"glass", density, young, poisson};
+  pair.effective_young = 0.5 * young / (1.0 - poisson * poisson);
+  pair.effective_shear = 0.5 * (0.5 * young / (1.0 + poisson)) / (2.0 - poisson);
+  const double mass = density * 4.18879020478639098 * radius * radius * radius;
+  pair.smallest_radius = pair.largest_radius = 0.5 * radius;
+  pair.smallest_mass = pair.largest_mass = 0.5 * mass;
+  pair.typical_speed = 1.0;
+  return pair;
+}
+
+/// Largest overlap of an elastic Hertz impact at the pair's typical speed: (15 m* v² / (16 E* √R*))^(2/5).
+inline double typical_overlap(const PairContext& pair) {
+  const double v = pair.typical_speed;
+  return std::pow(15.0 * pair.largest_mass * v * v / (16.0 * pair.effective_young * std::sqrt(pair.largest_radius)), 0.4);
+}
+
+/// What the checks assume; the defaults suit most laws.
+struct Setting {
+  PairContext pair = bead_pair();
+  bool check_friction = true;         ///< |F_t| ≤ μ max(F_n + cap_offset, 0)
+  double cap_offset = 0.0;            ///< N that the law itself adds to F_n in Coulomb's cap (adhesion)
+  bool sum_is_capped = true;          ///< false: only the tangential spring is capped, not its sum with the damping
+  double ledger_tolerance = 0.02;     ///< of the impact's energy, at a time step of 1/200 of the contact time
+  double stiffness_tolerance = 1e-4;  ///< relative, of dF_n/dδ and dU/dδ against differences
+};
+
+/// A plugin object that is destroyed with its holder.
+template <class Table>
+class Held {
+ public:
+  Held(const Table& table, const Values& values, const PairContext& pair) : table_(&table) {
+    Failure failure{};
+    if (table.create(&values, &pair, &self_, &failure) != 0) throw Refusal(failure.message);
+  }
+  ~Held() {
+    if (self_ != nullptr) table_->destroy(self_);
+  }
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+  const void* get() const { return self_; }
+  const Table& table() const { return *table_; }
+
+ private:
+  const Table* table_;
+  void* self_ = nullptr;
+};
+
+/// Numbers that are the same on every machine.
+class Numbers {
+ public:
+  explicit Numbers(std::uint64_t seed = 1) : state_(seed) {}
+  double between(double low, double high) {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+    return low + (high - low) * (static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53);
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// A rotation by 0.9 rad about (1, 2, 2)/3, for frame indifference.
+inline void rotate(const double in[3], double out[3]) {
+  constexpr double k[3] = {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0};
+  const double c = std::cos(0.9), s = std::sin(0.9), along = (1.0 - c) * (k[0] * in[0] + k[1] * in[1] + k[2] * in[2]);
+  const double across[3] = {k[1] * in[2] - k[2] * in[1], k[2] * in[0] - k[0] * in[2], k[0] * in[1] - k[1] * in[0]};
+  for (int axis = 0; axis < 3; ++axis) out[axis] = c * in[axis] + s * across[axis] + along * k[axis];
+}
+
+/// Whether a channel must never give energy.
+inline bool is_dissipative(const char* channel) {
+  const std::string_view name = channel;
+  return name.ends_with("friction") || name.ends_with("damping");
+}
+
+}  // namespace millscope::conformance
