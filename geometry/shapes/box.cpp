@@ -16,7 +16,8 @@ void read_open(const std::string& text, bool (&open)[6]) {
   std::istringstream words(text);
   for (std::string word; words >> word;) {
     const auto* found = std::find(std::begin(kFaceNames), std::end(kFaceNames), word);
-    if (found == std::end(kFaceNames)) throw Refusal("box: open names the face '" + word + "': write a list of -x +x -y +y -z +z, such as \"+y -z\"");
+    if (found == std::end(kFaceNames))
+      throw Refusal("box: open names the face '" + word + "': write a list of -x +x -y +y -z +z, such as \"+y -z\"");
     open[found - std::begin(kFaceNames)] = true;
   }
 }
@@ -29,15 +30,16 @@ Box::Box(const Parameters& parameters) {
   for (int axis = 0; axis < 3; ++axis) {
     if (low_[axis] < high_[axis] && std::isfinite(high_[axis] - low_[axis])) continue;
     char text[200];
-    std::snprintf(text, sizeof text, "box: low %g m is not below high %g m along %c: exchange them or make the box thicker", low_[axis], high_[axis],
-                  "xyz"[axis]);
+    std::snprintf(text, sizeof text, "box: low %g m is not below high %g m along %c: exchange them or make the box thicker", low_[axis],
+                  high_[axis], "xyz"[axis]);
     throw Refusal(text);
   }
   read_open(parameters.text("open"), open_);
   std::uint32_t next = 0;
   for (int face = 0; face < 6; ++face) {
     if (open_[face]) continue;
-    slots_ += (slots_.empty() ? "" : "|") + std::string(kSlotNames[face]);
+    if (!slots_.empty()) slots_ += '|';
+    slots_ += kSlotNames[face];
     slot_[face] = next++;
     first_triangle_[face] = static_cast<std::uint32_t>(triangles_.triangle_count());
     add_face(face);

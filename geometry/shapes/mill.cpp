@@ -42,7 +42,8 @@ MillShape Mill::mill_shape(const Parameters& p) {
   s.phase = p.number("phase");
   s.end_faces = p.flag("end_faces");
   if (s.lifters > 0 && !(s.lifter_height > 0 && s.lifter_width > 0)) {
-    throw Refusal("mill: " + std::to_string(s.lifters) + " lifters need lifter_height and lifter_width above 0 m; write lifters: 0 for a smooth shell");
+    throw Refusal("mill: " + std::to_string(s.lifters) +
+                  " lifters need lifter_height and lifter_width above 0 m; write lifters: 0 for a smooth shell");
   }
   return s;
 }

@@ -35,8 +35,7 @@ class Mill {
 
 /// What the plugin tables are made of.
 struct MillPlugin : Mill {
-  explicit MillPlugin(const Parameters& p)
-      : Mill("mill", mill_shape(p), p.number("facet"), static_cast<int>(p.integer("axial_cuts"))) {}
+  explicit MillPlugin(const Parameters& p) : Mill("mill", mill_shape(p), p.number("facet"), static_cast<int>(p.integer("axial_cuts"))) {}
 };
 struct CylinderPlugin : Mill {
   explicit CylinderPlugin(const Parameters& p)

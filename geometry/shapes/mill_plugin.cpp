@@ -15,7 +15,8 @@ constexpr Parameter kParameters[] = {
     number_parameter("lifter_height", "m", 0, 0, 5, "Height of a lifter: the top lies at radius R − height.", kStudy),
     number_parameter("lifter_width", "m", 0, 0, 10, "Width of a lifter at its base, on the tangent of the shell.", kStudy),
     number_parameter("lifter_face_angle", "rad", std::numbers::pi / 3, 0.35, std::numbers::pi / 2,
-                     "Angle between the face of a lifter and its base; below 0.35 rad (20 deg) face and shell are one smooth surface.", kStudy),
+                     "Angle between the face of a lifter and its base; below 0.35 rad (20 deg) face and shell are one smooth surface.",
+                     kStudy),
     number_parameter("phase", "rad", 0, -100, 100, "Angle of the middle of the first lifter from the x axis, counter-clockwise."),
     flag_parameter("end_faces", false, "Flat walls at z = 0 and z = length; false: the wall goes on along z, as a periodic slice needs."),
     number_parameter("facet", "m", 0.003, 1e-5, 10, "Longest chord of the triangles for pictures and export; contact is exact anyway."),
@@ -40,5 +41,5 @@ constexpr const Descriptor* kList[] = {&kMill};
 }  // namespace
 
 MILLSCOPE_EXPORT const millscope::DescriptorList millscope_plugins;
-const millscope::DescriptorList millscope_plugins = {millscope::kMagic, sizeof(millscope::DescriptorList), millscope::kAbiMajor, std::size(kList),
-                                                     kList};
+const millscope::DescriptorList millscope_plugins = {millscope::kMagic, sizeof(millscope::DescriptorList), millscope::kAbiMajor,
+                                                     std::size(kList), kList};

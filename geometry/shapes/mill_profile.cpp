@@ -24,7 +24,8 @@ MillProfile::MillProfile(const MillShape& shape) : shape_(shape) {
   if (shape.lifters == 0) return;
   if (!(h < r)) refuse("mill: lifter_height %g m reaches the axis of a shell of radius %g m: give less than the radius", h, r);
   if (!(shape.lifter_width < 2 * r)) {
-    refuse("mill: lifter_width %g m is not below the diameter of %g m: give the width of one lifter at its base", shape.lifter_width, 2 * r);
+    refuse("mill: lifter_width %g m is not below the diameter of %g m: give the width of one lifter at its base", shape.lifter_width,
+           2 * r);
   }
   const double slope = std::cos(shape.face_angle) / std::sin(shape.face_angle);
   const double cotangent = std::fabs(slope) < 1e-12 ? 0.0 : slope;
@@ -32,9 +33,10 @@ MillProfile::MillProfile(const MillShape& shape) : shape_(shape) {
   top_u_ = r - h;
   top_v_ = 0.5 * shape.lifter_width - h * cotangent;
   if (!(top_v_ > 0)) {
-    refuse("mill: with lifter_width %g m and lifter_height %g m the faces meet below the top: widen the base, lower the lifter or raise "
-           "lifter_face_angle",
-           shape.lifter_width, h);
+    refuse(
+        "mill: with lifter_width %g m and lifter_height %g m the faces meet below the top: widen the base, lower the lifter or raise "
+        "lifter_face_angle",
+        shape.lifter_width, h);
   }
   const double norm = std::sqrt(1 + cotangent * cotangent);
   edge_u_ = 1 / norm;
@@ -42,15 +44,16 @@ MillProfile::MillProfile(const MillShape& shape) : shape_(shape) {
   // |T + s e| = R
   const double along = top_u_ * edge_u_ + top_v_ * edge_v_, excess = top_u_ * top_u_ + top_v_ * top_v_ - r * r;
   if (!(excess < 0)) {
-    refuse("mill: the corners of a lifter %g m wide and %g m high lie outside the shell: give a narrower or higher lifter", shape.lifter_width,
-           h);
+    refuse("mill: the corners of a lifter %g m wide and %g m high lie outside the shell: give a narrower or higher lifter",
+           shape.lifter_width, h);
   }
   face_length_ = -along + std::sqrt(along * along - excess);
   foot_u_ = top_u_ + face_length_ * edge_u_;
   foot_v_ = top_v_ + face_length_ * edge_v_;
   foot_angle_ = std::atan2(foot_v_, foot_u_);
   if (!(foot_angle_ < 0.5 * pitch_)) {
-    refuse("mill: %g lifters of width %g m overlap each other on the shell: give fewer or narrower ones", shape.lifters, shape.lifter_width);
+    refuse("mill: %g lifters of width %g m overlap each other on the shell: give fewer or narrower ones", shape.lifters,
+           shape.lifter_width);
   }
   middle_u_ = 0.5 * (top_u_ + r);
   bounding_ = std::hypot(r - middle_u_, foot_v_) + 1e-12;

@@ -16,8 +16,8 @@
 namespace millscope::geometry {
 
 struct MillShape {
-  double radius = 0, length = 0;  ///< of the bare shell, m
-  int lifters = 0;                ///< evenly spaced
+  double radius = 0, length = 0;                               ///< of the bare shell, m
+  int lifters = 0;                                             ///< evenly spaced
   double lifter_height = 0, lifter_width = 0, face_angle = 0;  ///< m, m, rad
   double phase = 0;                                            ///< angle of the middle of lifter 0 from x, rad
   bool end_faces = false;
@@ -68,14 +68,14 @@ class MillProfile {
   double shell_fraction(const Folded& p) const;
 
   MillShape shape_;
-  double pitch_ = 0;                     // angle from lifter to lifter, rad
-  double top_u_ = 0, top_v_ = 0;         // T
-  double foot_u_ = 0, foot_v_ = 0;       // F
-  double edge_u_ = 1, edge_v_ = 0;       // e
-  double face_length_ = 0;               // |F − T|
-  double foot_angle_ = 0;                // of F from the middle of the lifter
-  double middle_u_ = 0, bounding_ = 0;   // circle round the lifter, for the neighbours
-  std::vector<double> cosine_, sine_;    // of each sector's middle
+  double pitch_ = 0;                    // angle from lifter to lifter, rad
+  double top_u_ = 0, top_v_ = 0;        // T
+  double foot_u_ = 0, foot_v_ = 0;      // F
+  double edge_u_ = 1, edge_v_ = 0;      // e
+  double face_length_ = 0;              // |F − T|
+  double foot_angle_ = 0;               // of F from the middle of the lifter
+  double middle_u_ = 0, bounding_ = 0;  // circle round the lifter, for the neighbours
+  std::vector<double> cosine_, sine_;   // of each sector's middle
 };
 
 }  // namespace millscope::geometry

@@ -60,7 +60,8 @@ void MillSurface::build_outline() {
   const double top_u = profile_.free_radius(), top_v = profile_.top_half_width();
   for (int k = 0; k < shape.lifters; ++k) {
     const double middle = shape.phase + full * k / shape.lifters, c = std::cos(middle), s = std::sin(middle);
-    const double corner[4][2] = {{profile_.foot_u(), -profile_.foot_v()}, {top_u, -top_v}, {top_u, top_v}, {profile_.foot_u(), profile_.foot_v()}};
+    const double corner[4][2] = {
+        {profile_.foot_u(), -profile_.foot_v()}, {top_u, -top_v}, {top_u, top_v}, {profile_.foot_u(), profile_.foot_v()}};
     double turned[4][2];
     for (int i = 0; i < 4; ++i) {
       turned[i][0] = corner[i][0] * c - corner[i][1] * s;

@@ -10,7 +10,8 @@ namespace {
 Point unit_normal(const Parameters& parameters) {
   const double* n = parameters.vector("normal");
   const double size = length(Point{n[0], n[1], n[2]});
-  if (!(size > 0) || !std::isfinite(size)) throw Refusal("plane: normal [0, 0, 0] has no direction: give for example [0, 1, 0], towards the beads");
+  if (!(size > 0) || !std::isfinite(size))
+    throw Refusal("plane: normal [0, 0, 0] has no direction: give for example [0, 1, 0], towards the beads");
   return (1 / size) * Point{n[0], n[1], n[2]};
 }
 

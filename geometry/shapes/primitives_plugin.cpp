@@ -30,7 +30,8 @@ constexpr GeometryTable kPlaneTable = make_geometry_table<geometry::Plane>();
 constexpr GeometryTable kBoxTable = make_geometry_table<geometry::Box>();
 
 template <std::size_t N>
-constexpr Descriptor make(const char* name, const char* doc, const char* equation, const GeometryTable& table, const Parameter (&parameters)[N]) {
+constexpr Descriptor make(const char* name, const char* doc, const char* equation, const GeometryTable& table,
+                          const Parameter (&parameters)[N]) {
   Descriptor d = make_descriptor(Kind::geometry, kGeometryLayout, &table, sizeof table);
   d.name = name;
   d.version = "0.1.0";
@@ -41,15 +42,16 @@ constexpr Descriptor make(const char* name, const char* doc, const char* equatio
   return d;
 }
 
-constexpr Descriptor kCylinder = make("cylinder", "The inside of a cylinder round z, with or without ends.", "delta = r + sqrt(x^2 + y^2) - R",
-                                      kCylinderTable, kCylinderParameters);
+constexpr Descriptor kCylinder = make("cylinder", "The inside of a cylinder round z, with or without ends.",
+                                      "delta = r + sqrt(x^2 + y^2) - R", kCylinderTable, kCylinderParameters);
 constexpr Descriptor kPlane = make("plane", "An endless plane.", "delta = r - n . (x - point)", kPlaneTable, kPlaneParameters);
-constexpr Descriptor kBox = make("box", "The inside of an axis-aligned box; faces may be open. One material slot per closed face: x_low, x_high, …",
-                                 "delta = r - |x - nearest point of the face|", kBoxTable, kBoxParameters);
+constexpr Descriptor kBox =
+    make("box", "The inside of an axis-aligned box; faces may be open. One material slot per closed face: x_low, x_high, …",
+         "delta = r - |x - nearest point of the face|", kBoxTable, kBoxParameters);
 constexpr const Descriptor* kList[] = {&kCylinder, &kPlane, &kBox};
 
 }  // namespace
 
 MILLSCOPE_EXPORT const millscope::DescriptorList millscope_plugins;
-const millscope::DescriptorList millscope_plugins = {millscope::kMagic, sizeof(millscope::DescriptorList), millscope::kAbiMajor, std::size(kList),
-                                                     kList};
+const millscope::DescriptorList millscope_plugins = {millscope::kMagic, sizeof(millscope::DescriptorList), millscope::kAbiMajor,
+                                                     std::size(kList), kList};

@@ -29,9 +29,7 @@ class Triangulation {
 
   std::size_t triangle_count() const { return materials_.size(); }
 
-  Surface view() const {
-    return {vertices_.size() / 3, vertices_.data(), materials_.size(), triangles_.data(), materials_.data()};
-  }
+  Surface view() const { return {vertices_.size() / 3, vertices_.data(), materials_.size(), triangles_.data(), materials_.data()}; }
 
  private:
   std::vector<double> vertices_;
