@@ -84,9 +84,8 @@ void take_default(const Parameter& p, Value& value, Storage& storage) {
   value.given = has_default(p) && p.optional == 0 ? 1 : 0;
   if (p.type == ValueType::file && has_default(p) && p.fallback_text[0] == '\0') value.given = 0;
   if (p.fallback_text != nullptr) {
-    value.text = storage.keep(p.fallback_text);
-  } else if (p.type == ValueType::choice) {
-    value.text = storage.keep(first_choice(p));
+    const bool first = p.type == ValueType::choice && p.fallback_text[0] == '\0';
+    value.text = storage.keep(first ? first_choice(p) : p.fallback_text);
   }
   if (std::isnan(p.fallback)) return;
   for (double& component : value.number) component = p.fallback;
