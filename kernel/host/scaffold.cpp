@@ -50,6 +50,7 @@ std::string filled(std::string line, Kind kind, std::string_view name) {
   replace_all(line, "@CLASS@", class_name(name));
   replace_all(line, "@KIND@", text(kind));
   replace_all(line, "@VERSION@", MILLSCOPE_VERSION);
+  replace_all(line, "@WIDE@", kind == Kind::contact_law || kind == Kind::interaction || kind == Kind::pair_parameter ? " WIDE" : "");
   return line;
 }
 

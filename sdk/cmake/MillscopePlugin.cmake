@@ -22,9 +22,15 @@ function(_millscope_plugin_variant name folder march sources links)
   target_compile_options(${target} PRIVATE -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden ${march})
   set_target_properties(${target} PROPERTIES PREFIX "lib" OUTPUT_NAME ${name} SUFFIX ".so"
                         LIBRARY_OUTPUT_DIRECTORY ${MILLSCOPE_PLUGIN_OUTPUT}/${folder})
+  # The loader refuses what others can write, whatever the umask of the build was.
+  add_custom_command(TARGET ${target} POST_BUILD COMMAND chmod go-w $<TARGET_FILE:${target}> $<TARGET_FILE_DIR:${target}> ${MILLSCOPE_PLUGIN_OUTPUT}
+                     VERBATIM)
   if(NOT MILLSCOPE_PLUGIN_NO_INSTALL)
     include(GNUInstallDirs)
-    install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/millscope/plugins/${folder})
+    set(destination ${CMAKE_INSTALL_LIBDIR}/millscope/plugins)
+    install(TARGETS ${target} LIBRARY DESTINATION ${destination}/${folder} COMPONENT plugins)
+    install(CODE "execute_process(COMMAND chmod go-w \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${destination}\" \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${destination}/${folder}\")"
+            COMPONENT plugins)
   endif()
 endfunction()
 
