@@ -1,0 +1,62 @@
+// From a case and the loaded plugins to a system that can be stepped.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kernel/config/case.hpp"
+#include "kernel/dem/system.hpp"
+#include "kernel/host/objects.hpp"
+
+namespace millscope::run {
+
+/// A geometry of the case with what the run needs to know of it.
+struct GeometryUse {
+  host::GeometryObject object;
+  std::vector<std::string> slots;
+  Surface surface{};
+  Interior interior{};
+};
+
+/// Everything a run is made of. Movable only.
+struct Assembly {
+  config::Case c;
+  std::vector<std::string> materials;  ///< index → name
+  std::vector<host::LawObject> laws;
+  std::vector<host::InteractionObject> interactions;
+  std::vector<host::PairParameterObject> pair_parameters;
+  std::vector<host::BodyForceObject> body_forces;
+  std::vector<GeometryUse> geometries;
+  std::unique_ptr<dem::System> system;
+
+  double rayleigh_time = 0;      ///< s, of the smallest and softest bead
+  double time_step = 0;          ///< s
+  double typical_speed = 0;      ///< m/s
+  double hertz_contact_time = 0; ///< s, shortest over the pairs at the typical speed; 0: the law gives none
+  double mill_speed = 0;         ///< Ω about z, rad/s
+  std::int64_t settle_steps = 0, end_step = 0, analyze_step = 0;
+  std::uint64_t bead_count = 0;
+  std::array<double, 3> gravity{};
+
+  int wall_body_of_mill() const;  ///< index of the first body that rotates; −1: none
+};
+
+struct AssemblyOptions {
+  int threads = 0;  ///< 0: what the case says
+  std::string instruction_set;
+};
+
+/// Creates every plugin object, derives the time step and checks it; no beads yet. Throws UserError.
+Assembly assemble(config::Case c, const host::Registry& registry, const AssemblyOptions& options = {});
+
+/// Puts the beads in, so that none overlaps another or a wall. Throws UserError when they do not fit.
+void insert_beads(Assembly& a);
+
+/// The steps at which settling begins (−settle_steps) … end_step are absolute: time = step · Δt.
+void begin(Assembly& a);
+
+/// Rayleigh time π R √(ρ/G)/(0.1631 ν + 0.8766), s.
+double rayleigh_time(double radius, double density, double young, double poisson);
+
+}  // namespace millscope::run

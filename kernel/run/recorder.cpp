@@ -1,0 +1,230 @@
+#include "kernel/run/recorder.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/run/random.hpp"
+
+namespace millscope::run {
+namespace {
+
+std::int64_t steps_of(double interval, double time_step) { return std::max<std::int64_t>(1, std::llround(interval / time_step)); }
+
+/// Which beads to follow: the user's ids, or a seeded draw.
+std::vector<std::uint32_t> tracked(const Assembly& a) {
+  const config::OutputCase::Tracks& t = *a.c.output.tracks;
+  std::vector<std::uint32_t> ids;
+  if (!t.ids.empty()) {
+    for (const std::uint64_t id : t.ids) {
+      if (id >= a.bead_count) throw config::UserError(fmt::format("output.tracks.beads: there is no bead {}; ids run from 0 to {}", id, a.bead_count - 1));
+      ids.push_back(static_cast<std::uint32_t>(id));
+    }
+    return ids;
+  }
+  if (t.count > a.bead_count) throw config::UserError(fmt::format("output.tracks.beads: {} beads are to be followed but there are only {}", t.count, a.bead_count));
+  Random random(a.c.seed ^ 0x747261636b73ULL);  // another stream than the filling's
+  std::vector<std::uint32_t> all(a.bead_count);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);
+  for (std::size_t k = 0; k < t.count; ++k) {
+    std::swap(all[k], all[k + random.below(all.size() - k)]);
+    ids.push_back(all[k]);
+  }
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+void wrap(const dem::Settings& s, double* x) {
+  for (int a = 0; a < 3; ++a) {
+    const double length = s.periodic.length[a];
+    if (length > 0) x[a] -= length * std::floor((x[a] - s.periodic_low[a]) / length);
+  }
+}
+
+}  // namespace
+
+Recorder::Recorder(const Assembly& a, std::filesystem::path directory, std::optional<double> resume_time)
+    : a_(a), directory_(std::move(directory)), sample_steps_(steps_of(kSampleInterval, a.time_step)) {
+  const config::OutputCase& o = a.c.output;
+  const std::size_t n = a.bead_count;
+  const dem::Particles& p = a.system->particles;
+  ids_.resize(n);
+  materials_.resize(n);
+  radius_.resize(n);
+  mass_.resize(n);
+  position_.resize(3 * n);
+  velocity_.resize(3 * n);
+  spin_.resize(3 * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t k = p.id[i];
+    ids_[k] = p.id[i];
+    materials_[k] = p.material[i];
+    radius_[k] = p.position[i].radius;
+    mass_[k] = 1.0 / p.motion[i].inverse_mass;
+  }
+  if (o.series) {
+    series_steps_ = steps_of(o.series->every, a.time_step);
+    const std::vector<std::string> columns = series_columns(a);
+    const auto path = directory_ / "series.csv";
+    series_ = resume_time ? output::SeriesWriter::resume(path, columns, *resume_time) : output::SeriesWriter::create(path, columns);
+  }
+  if (o.frames) {
+    frame_steps_ = steps_of(o.frames->every, a.time_step);
+    frame_from_ = std::llround(o.frames->from / a.time_step);
+    const auto path = directory_ / "frames.h5";
+    if (resume_time) {
+      frames_ = output::FrameWriter::resume(path, n, *resume_time);
+    } else {
+      output::BeadTable table{ids_, radius_, mass_, materials_, a.materials, {}, {}};
+      for (const dem::Body& b : a.system->bodies) table.wall_names.push_back(b.name);
+      for (const dem::PairPhysics& pair : a.system->physics()) {
+        for (const std::string& channel : a.system->layout().channels) table.dissipation_names.push_back(pair.name + ":" + channel);
+      }
+      frames_ = output::FrameWriter::create(path, table);
+    }
+  }
+  if (o.tracks) {
+    track_steps_ = steps_of(o.tracks->every, a.time_step);
+    track_ids_ = tracked(a);
+    std::vector<output::TrackInfo> infos;
+    for (const std::uint32_t id : track_ids_) {
+      const double volume = 4.0 / 3.0 * 3.14159265358979323846 * radius_[id] * radius_[id] * radius_[id];
+      infos.push_back({fmt::format("bead_{}", id), id, 2 * radius_[id], mass_[id] / volume, "simulation"});
+    }
+    const auto path = directory_ / "tracks.h5";
+    tracks_ = resume_time ? output::TrackWriter::resume(path, infos, *resume_time) : output::TrackWriter::create(path, infos);
+  }
+  if (o.vtk) {
+    picture_steps_ = steps_of(o.vtk->every, a.time_step);
+    std::filesystem::create_directories(directory_ / "vtk");
+    const auto open = [&](const char* name) {
+      return resume_time ? output::PictureSeries::resume(directory_ / "vtk" / name, *resume_time) : output::PictureSeries::create(directory_ / "vtk" / name);
+    };
+    bead_pictures_ = open("beads.pvd");
+    mesh_pictures_ = open("mesh.pvd");
+  }
+}
+
+bool Recorder::wants(std::int64_t step) const {
+  if (step < 0) return false;
+  return (step >= a_.analyze_step && step % sample_steps_ == 0) || (series_steps_ > 0 && step % series_steps_ == 0) ||
+         (frame_steps_ > 0 && step >= frame_from_ && step % frame_steps_ == 0) || (track_steps_ > 0 && step % track_steps_ == 0) ||
+         (picture_steps_ > 0 && step % picture_steps_ == 0);
+}
+
+void Recorder::observe(const dem::System& system) {
+  const std::int64_t step = system.step();
+  const bool sampled = step >= a_.analyze_step && step % sample_steps_ == 0, row = series_steps_ > 0 && step % series_steps_ == 0;
+  if (sampled || row) {
+    const Sample s = take_sample(system, a_);
+    if (sampled) {
+      if (!window_start_) window_start_ = system.ledger();
+      samples_.push_back(s);
+    }
+    if (row) write_series(s);
+  }
+  const bool frame = frame_steps_ > 0 && step >= frame_from_ && step % frame_steps_ == 0;
+  const bool picture = picture_steps_ > 0 && step % picture_steps_ == 0;
+  if (frame || picture) gather(system);
+  if (frame) write_frame(system);
+  if (picture) write_pictures(system);
+  if (track_steps_ > 0 && step % track_steps_ == 0) write_tracks(system);
+}
+
+/// Power over the interval since the last row would depend on where a resumed run began: the present power of the walls does not.
+void Recorder::write_series(const Sample& s) {
+  const dem::Ledger ledger = a_.system->ledger();
+  double power = 0;
+  for (std::size_t b = 0; b < ledger.bodies.size(); ++b) {
+    if (a_.system->bodies[b].motion.speed != 0) power += ledger.bodies[b].power;
+  }
+  series_->append(series_row(s, a_, power));
+}
+
+void Recorder::gather(const dem::System& system) {
+  const dem::Particles& p = system.particles;
+  for (std::size_t i = 0; i < p.position.size(); ++i) {
+    const std::size_t k = 3 * static_cast<std::size_t>(p.id[i]);
+    position_[k] = p.position[i].x;
+    position_[k + 1] = p.position[i].y;
+    position_[k + 2] = p.position[i].z;
+    wrap(system.settings(), &position_[k]);
+    system.velocity_at_step(static_cast<std::int64_t>(i), &velocity_[k], &spin_[k]);
+  }
+}
+
+void Recorder::write_frame(const dem::System& system) {
+  const dem::Ledger ledger = system.ledger();
+  std::vector<double> work, dissipation;
+  for (const dem::BodyLedger& b : ledger.bodies) work.push_back(b.work);
+  for (const dem::PairLedger& p : ledger.pairs) dissipation.insert(dissipation.end(), p.dissipated.begin(), p.dissipated.end());
+  output::FrameView view;
+  view.time = system.time();
+  const int body = a_.wall_body_of_mill();
+  if (body >= 0) {
+    const dem::Motion& motion = system.bodies[static_cast<std::size_t>(body)].motion;
+    view.wall_angle = dem::pose_at(motion, view.time).angle;
+    view.angular_velocity = dem::angular_speed(motion, view.time);
+  }
+  view.wall_work = work;
+  view.dissipation = dissipation;
+  view.position = position_;
+  view.velocity = velocity_;
+  view.spin = spin_;
+  frames_->append(view);
+}
+
+void Recorder::write_tracks(const dem::System& system) {
+  const dem::Particles& p = system.particles;
+  if (indexed_rebuild_ != system.rebuilds()) {
+    index_of_id_.resize(p.id.size());
+    for (std::size_t i = 0; i < p.id.size(); ++i) index_of_id_[p.id[i]] = static_cast<std::uint32_t>(i);
+    indexed_rebuild_ = system.rebuilds();
+  }
+  std::vector<double> position;
+  for (const std::uint32_t id : track_ids_) {
+    const dem::PositionLine& x = p.position[index_of_id_[id]];
+    double c[3] = {x.x, x.y, x.z};
+    wrap(system.settings(), c);
+    position.insert(position.end(), c, c + 3);
+  }
+  tracks_->append(system.time(), position);
+}
+
+void Recorder::write_pictures(const dem::System& system) {
+  const std::int64_t number = system.step() / picture_steps_;
+  const std::string name = fmt::format("beads_{:06d}.vtp", number);
+  output::write_beads_vtp(directory_ / "vtk" / name, {ids_, materials_, radius_, position_, velocity_, spin_});
+  bead_pictures_->add(system.time(), name);
+  for (std::size_t b = 0; b < a_.geometries.size(); ++b) {
+    const Surface& s = a_.geometries[b].surface;
+    if (s.triangle_count == 0) continue;
+    const dem::Pose pose = dem::pose_at(system.bodies[b].motion, system.time());
+    std::vector<double> moved(3 * s.vertex_count);
+    for (std::uint64_t v = 0; v < s.vertex_count; ++v) {
+      for (std::size_t r = 0; r < 3; ++r) {
+        moved[3 * v + r] = pose.offset[r];
+        for (std::size_t c = 0; c < 3; ++c) moved[3 * v + r] += pose.rotation[r][c] * s.vertices[3 * v + c];
+      }
+    }
+    const std::vector<double> impact = system.impact_work(b), shear = system.shear_work(b);
+    const std::string mesh = fmt::format("{}_{:06d}.vtp", system.bodies[b].name, number);
+    output::write_mesh_vtp(directory_ / "vtk" / mesh, {moved, {s.triangles, 3 * s.triangle_count}, {s.triangle_materials, s.triangle_count}, impact, shear});
+    mesh_pictures_->add(system.time(), mesh, static_cast<int>(b));
+  }
+}
+
+void Recorder::flush() {
+  if (series_) series_->flush();
+  if (frames_) frames_->flush();
+  if (tracks_) tracks_->flush();
+}
+
+void Recorder::close() {
+  if (series_) series_->close();
+  if (frames_) frames_->close();
+  if (tracks_) tracks_->close();
+}
+
+}  // namespace millscope::run

@@ -1,0 +1,59 @@
+// Everything that a run writes while it goes on; which step writes what follows from the step number alone, so that a resumed run
+// writes the same.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <unordered_map>
+
+#include "kernel/output/frames.hpp"
+#include "kernel/output/series.hpp"
+#include "kernel/output/tracks.hpp"
+#include "kernel/output/vtk.hpp"
+#include "kernel/run/window.hpp"
+
+namespace millscope::run {
+
+class Recorder {
+ public:
+  /// `resume_time`: drop what is later; nothing: a fresh directory.
+  Recorder(const Assembly& a, std::filesystem::path directory, std::optional<double> resume_time);
+
+  /// Whether the coming step must be observed.
+  bool wants(std::int64_t step) const;
+  /// Called inside System::observe.
+  void observe(const dem::System& system);
+
+  const std::vector<Sample>& samples() const { return samples_; }
+  std::vector<Sample>& samples() { return samples_; }
+  const std::optional<dem::Ledger>& window_start() const { return window_start_; }
+  void set_window_start(dem::Ledger ledger) { window_start_ = std::move(ledger); }
+  void flush();
+  void close();
+
+ private:
+  void write_series(const Sample& s);
+  void gather(const dem::System& system);
+  void write_frame(const dem::System& system);
+  void write_tracks(const dem::System& system);
+  void write_pictures(const dem::System& system);
+
+  const Assembly& a_;
+  std::filesystem::path directory_;
+  std::int64_t sample_steps_, series_steps_ = 0, frame_steps_ = 0, frame_from_ = 0, track_steps_ = 0, picture_steps_ = 0;
+  std::optional<output::SeriesWriter> series_;
+  std::optional<output::FrameWriter> frames_;
+  std::optional<output::TrackWriter> tracks_;
+  std::optional<output::PictureSeries> bead_pictures_, mesh_pictures_;
+  std::vector<Sample> samples_;
+  std::optional<dem::Ledger> window_start_;
+  std::optional<Sample> last_series_;
+  std::vector<std::uint32_t> track_ids_;
+  std::vector<std::uint32_t> index_of_id_;
+  std::int64_t indexed_rebuild_ = -1;
+  // bead arrays in id order
+  std::vector<std::uint32_t> ids_, materials_;
+  std::vector<double> radius_, mass_, position_, velocity_, spin_;
+};
+
+}  // namespace millscope::run

@@ -1,0 +1,273 @@
+#include "kernel/run/simulation.hpp"
+
+#include <fmt/core.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "kernel/config/writer.hpp"
+#include "kernel/output/archive.hpp"
+#include "kernel/output/directory.hpp"
+#include "kernel/output/file.hpp"
+#include "kernel/output/summary.hpp"
+#include "kernel/run/progress.hpp"
+#include "kernel/run/recorder.hpp"
+
+namespace millscope::run {
+namespace {
+
+using config::UserError;
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+constexpr const char* kResolvedCase = "case.resolved.yaml";
+
+/// A run while it goes on.
+struct Session {
+  Assembly assembly;
+  std::filesystem::path directory;
+  std::unique_ptr<Recorder> recorder;
+  RunOptions options;
+  double wall_before = 0;  ///< s of stepping in earlier sessions
+  std::int64_t first_step = 0;
+  Clock::time_point started = Clock::now();
+
+  double wall() const { return wall_before + seconds_since(started); }
+};
+
+void save_ledger(output::ArchiveWriter& archive, const dem::Ledger& ledger) {
+  std::vector<double> numbers;
+  std::vector<std::int64_t> counts;
+  for (const dem::PairLedger& p : ledger.pairs) {
+    numbers.insert(numbers.end(), p.dissipated.begin(), p.dissipated.end());
+    numbers.push_back(p.impact_energy);
+    counts.push_back(p.collisions);
+    counts.insert(counts.end(), p.spectrum.begin(), p.spectrum.end());
+  }
+  archive.write("window/ledger_numbers", numbers);
+  archive.write("window/ledger_counts", counts);
+}
+
+dem::Ledger load_ledger(const output::ArchiveReader& archive, const dem::Ledger& shape) {
+  dem::Ledger ledger = shape;
+  const std::vector<double> numbers = archive.read<double>("window/ledger_numbers");
+  const std::vector<std::int64_t> counts = archive.read<std::int64_t>("window/ledger_counts");
+  std::size_t n = 0, c = 0;
+  for (dem::PairLedger& p : ledger.pairs) {
+    for (double& d : p.dissipated) d = numbers.at(n++);
+    p.impact_energy = numbers.at(n++);
+    p.collisions = counts.at(c++);
+    for (std::int64_t& s : p.spectrum) s = counts.at(c++);
+  }
+  return ledger;
+}
+
+static_assert(sizeof(Sample) % sizeof(double) == 0);
+
+void write_checkpoint(Session& s) {
+  s.recorder->flush();
+  output::ArchiveWriter archive(output::checkpoint_path(s.directory));
+  s.assembly.system->save([&archive](const std::string& name, const double* v, std::size_t n) { archive.write("system/" + name, std::span<const double>(v, n)); },
+                          [&archive](const std::string& name, const std::int64_t* v, std::size_t n) { archive.write("system/" + name, std::span<const std::int64_t>(v, n)); });
+  archive.write_value("wall_s", s.wall());
+  archive.write_value<std::int64_t>("analyze_step", s.assembly.analyze_step);
+  const std::vector<Sample>& samples = s.recorder->samples();
+  archive.write("window/samples", std::span<const double>(reinterpret_cast<const double*>(samples.data()), samples.size() * sizeof(Sample) / sizeof(double)));
+  archive.write_value<std::int64_t>("window/started", s.recorder->window_start() ? 1 : 0);
+  if (s.recorder->window_start()) save_ledger(archive, *s.recorder->window_start());
+  output::rotate_checkpoints(s.directory);
+  archive.commit();
+}
+
+Json summary_of(Session& s) {
+  const Assembly& a = s.assembly;
+  const dem::System& system = *a.system;
+  const std::int64_t steps = system.step() + a.settle_steps;
+  const std::int64_t stepped = system.step() - s.first_step;
+  const double wall = seconds_since(s.started);
+  Json j;
+  j["schema_version"] = 1;
+  j["name"] = a.c.name;
+  j["particles"] = a.bead_count;
+  j["charge_mass_kg"] = system.total_mass();
+  j["steps"] = steps;
+  j["dt_s"] = a.time_step;
+  j["dt_rayleigh_fraction"] = a.time_step / a.rayleigh_time;
+  j["simulated_s"] = system.time();
+  j["settle_s"] = static_cast<double>(a.settle_steps) * a.time_step;
+  j["wall_s"] = s.wall();
+  j["particle_steps_per_s"] = wall > 0 ? static_cast<double>(a.bead_count) * static_cast<double>(stepped) / wall : 0.0;
+  j["threads"] = system.settings().threads;
+  j["partitions"] = system.settings().partitions;
+  j["rebuilds"] = system.rebuilds();
+  j["state_hash"] = fmt::format("{:016x}", system.state_hash());
+  j["mill_speed_rad_per_s"] = a.mill_speed;
+  j["stiffness_factor"] = a.c.stiffness_factor;
+  j.update(window_summary(a, s.recorder->samples()));
+  const dem::Ledger now = system.ledger();
+  double fastest = 0, shortest = 1e300;
+  for (std::size_t p = 0; p < now.pairs.size(); ++p) fastest = std::max(fastest, now.pairs[p].largest_closing_speed);
+  if (fastest > 0 && a.hertz_contact_time > 0) {
+    // Hertz: t ∝ v^(−1/5).
+    shortest = a.hertz_contact_time * std::pow(a.typical_speed / fastest, 0.2);
+    j["contact"] = {{"largest_closing_speed_m_per_s", fastest}, {"shortest_contact_s", shortest}, {"steps_per_shortest_contact", shortest / a.time_step}};
+    if (shortest < 10 * a.time_step) j["contact"]["warning"] = "fewer than 10 steps in the shortest contact: lower time.step_fraction";
+  }
+  if (s.recorder->window_start() && !s.recorder->samples().empty()) {
+    const double span = system.time() - s.recorder->samples().front().time;
+    if (span > 0) j["pairs"] = collision_summary(a, now, *s.recorder->window_start(), span);
+  }
+  return j;
+}
+
+void write_summary(Session& s, const host::Registry& registry) {
+  Json j = summary_of(s);
+  std::vector<output::PluginRecord> plugins;
+  for (const host::PluginRecord& r : registry.records()) plugins.push_back({r.name, r.version, r.path, r.file_hash});
+  j["provenance"] = output::provenance(s.options.command_line, plugins);
+  output::write_json(s.directory / "summary.json", j);
+}
+
+/// Steps until the end or until a stop is asked for.
+Outcome step_to_end(Session& s, const host::Registry& registry) {
+  dem::System& system = *s.assembly.system;
+  Progress progress(s.assembly, s.options.quiet, s.options.terminal);
+  const auto& checkpoint = s.assembly.c.output.checkpoint;
+  Clock::time_point last_checkpoint = Clock::now();
+  const auto observe = [&s](const dem::System& state) { s.recorder->observe(state); };
+  while (system.step() < s.assembly.end_step) {
+    if (s.recorder->wants(system.step())) {
+      system.observe = observe;
+    } else {
+      system.observe = nullptr;
+    }
+    system.advance();
+    if (stop_requested.load(std::memory_order_relaxed)) {
+      write_checkpoint(s);
+      progress.finish("stopped; continue with: millscope resume " + s.directory.string());
+      return Outcome::interrupted;
+    }
+    if (system.step() % 64 != 0) continue;
+    progress.update(system.step(), s.first_step);
+    if (checkpoint && seconds_since(last_checkpoint) >= checkpoint->every_wall) {
+      write_checkpoint(s);
+      last_checkpoint = Clock::now();
+    }
+  }
+  system.observe = nullptr;
+  write_checkpoint(s);
+  write_summary(s, registry);
+  s.recorder->close();
+  progress.finish("");
+  return Outcome::finished;
+}
+
+std::uint64_t disk_estimate(const Assembly& a) {
+  const config::OutputCase& o = a.c.output;
+  double bytes = 4e6 + 2.0 * static_cast<double>(a.bead_count) * 500;  // two checkpoints
+  const double end = a.c.time.end;
+  if (o.frames) bytes += (end - o.frames->from) / o.frames->every * static_cast<double>(output::frame_bytes(a.bead_count));
+  if (o.tracks) bytes += end / o.tracks->every * 32.0 * static_cast<double>(o.tracks->count);
+  if (o.series) bytes += end / o.series->every * 280;
+  if (o.vtk) {
+    double triangles = 0;
+    for (const GeometryUse& g : a.geometries) triangles += static_cast<double>(g.surface.triangle_count);
+    bytes += end / o.vtk->every * (static_cast<double>(a.bead_count) * 72 + triangles * 60);
+  }
+  return static_cast<std::uint64_t>(bytes);
+}
+
+void write_resolved(const Session& s, const host::Registry& registry) {
+  output::AtomicFile file(s.directory / kResolvedCase);
+  file.write(config::resolved_yaml(s.assembly.c, registry.descriptors()));
+  file.commit();
+}
+
+}  // namespace
+
+void request_stop() { stop_requested.store(true, std::memory_order_relaxed); }
+
+Outcome run_case(const std::string& case_file, const host::Registry& registry, const RunOptions& options) {
+  Session s{assemble(config::read_case(case_file, options.overrides), registry, {options.threads, options.instruction_set}), options.output, nullptr, options};
+  insert_beads(s.assembly);
+  output::OutputDirectory directory(options.output, options.force ? output::Mode::overwrite : output::Mode::fresh, disk_estimate(s.assembly));
+  begin(s.assembly);
+  directory.start();
+  write_resolved(s, registry);
+  s.recorder = std::make_unique<Recorder>(s.assembly, s.directory, std::nullopt);
+  s.first_step = -s.assembly.settle_steps;
+  s.started = Clock::now();
+  return step_to_end(s, registry);
+}
+
+Outcome resume_run(const host::Registry& registry, const RunOptions& options) {
+  for (const std::string& o : options.overrides) {
+    const std::string key = o.substr(0, o.find('='));
+    if (key != "time.end_s" && key != "time.analyze_from_s" && key != "run.threads") {
+      throw UserError("resume: --set " + key + " would change the run that is continued; only time.end_s, time.analyze_from_s and run.threads may "
+                      "change; start a new run for the rest");
+    }
+  }
+  output::OutputDirectory directory(options.output, output::Mode::resume);
+  const output::ArchiveReader archive(output::newest_checkpoint(options.output));
+  Session s{assemble(config::read_case((options.output / kResolvedCase).string(), options.overrides), registry, {options.threads, options.instruction_set}),
+            options.output, nullptr, options};
+  dem::System& system = *s.assembly.system;
+  system.restore([&archive](const std::string& name) { return archive.read<double>("system/" + name); },
+                 [&archive](const std::string& name) { return archive.read<std::int64_t>("system/" + name); });
+  if (system.step() >= s.assembly.end_step) {
+    throw UserError(fmt::format("{}: the run has reached its end at {:.6g} s already; to go on, give a later one: millscope resume {} --set time.end_s={:.4g}",
+                                options.output.string(), system.time(), options.output.string(), 2 * system.time()));
+  }
+  directory.start();
+  // What is at the very time of the checkpoint has not been written yet: half a step decides.
+  s.recorder = std::make_unique<Recorder>(s.assembly, s.directory, system.time() - 0.5 * s.assembly.time_step);
+  if (archive.read_value<std::int64_t>("analyze_step") == s.assembly.analyze_step) {
+    const std::vector<double> numbers = archive.read<double>("window/samples");
+    s.recorder->samples().resize(numbers.size() * sizeof(double) / sizeof(Sample));
+    if (!numbers.empty()) std::memcpy(static_cast<void*>(s.recorder->samples().data()), numbers.data(), numbers.size() * sizeof(double));
+    if (archive.read_value<std::int64_t>("window/started")) s.recorder->set_window_start(load_ledger(archive, system.ledger()));
+  } else if (s.assembly.analyze_step < system.step()) {
+    throw UserError(fmt::format("--set time.analyze_from_s: the new window begins at {:.6g} s, before the checkpoint at {:.6g} s, whose samples are gone; "
+                                "give a later time or start a new run", static_cast<double>(s.assembly.analyze_step) * s.assembly.time_step, system.time()));
+  }
+  write_resolved(s, registry);
+  s.wall_before = archive.read_value<double>("wall_s");
+  s.first_step = system.step();
+  s.started = Clock::now();
+  return step_to_end(s, registry);
+}
+
+Estimate estimate(const std::string& case_file, const host::Registry& registry, const RunOptions& options) {
+  Assembly a = assemble(config::read_case(case_file, options.overrides), registry, {options.threads, options.instruction_set});
+  insert_beads(a);
+  begin(a);
+  Estimate e;
+  e.beads = a.bead_count;
+  e.time_step = a.time_step;
+  e.rayleigh_fraction = a.time_step / a.rayleigh_time;
+  e.contact_steps = a.hertz_contact_time / a.time_step;
+  e.steps = a.end_step + a.settle_steps;
+  // A trial of this very case: half a second of stepping, the first rebuilds left out. A settling bed is as dense as a developed one.
+  const Clock::time_point warm = Clock::now();
+  while (seconds_since(warm) < 0.2) a.system->advance();
+  const Clock::time_point start = Clock::now();
+  std::int64_t steps = 0;
+  for (; seconds_since(start) < 0.6; ++steps) a.system->advance();
+  const double rate = static_cast<double>(steps) / seconds_since(start);
+  e.particle_steps_per_s = rate * static_cast<double>(a.bead_count);
+  e.wall_seconds = static_cast<double>(e.steps) / rate;
+  e.memory_bytes = a.system->memory_bytes() + (40U << 20);
+  e.disk_bytes = disk_estimate(a);
+  return e;
+}
+
+}  // namespace millscope::run

@@ -1,0 +1,140 @@
+#include "kernel/run/window.hpp"
+
+#include <cmath>
+
+#include "kernel/run/statistics.hpp"
+
+namespace millscope::run {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Halves of a window may differ by this much even when the noise is smaller: what a mill engineer would call steady.
+constexpr double kSteadyTolerance = 0.01;
+
+/// P = M g ⟨x⟩ Ω, written for any direction of gravity: Ω ẑ · (M g × r) = M Ω (x·(−g_y) + y g_x).
+double power_of_centre(const Assembly& a, const Sample& s) {
+  return a.system->total_mass() * a.mill_speed * (-s.centre[0] * a.gravity[1] + s.centre[1] * a.gravity[0]);
+}
+
+
+}  // namespace
+
+Sample take_sample(const dem::System& system, const Assembly& a) {
+  Sample s;
+  s.time = system.time();
+  const dem::Ledger ledger = system.ledger();
+  const double kinetic = system.kinetic_energy();
+  s.rotational = system.rotational_energy();
+  s.translational = kinetic - s.rotational;
+  s.centre = system.centre_of_mass();
+  const double mass = system.total_mass();
+  for (std::size_t k = 0; k < 3; ++k) s.potential -= mass * a.gravity[k] * s.centre[k];
+  for (const dem::PairLedger& p : ledger.pairs) {
+    s.elastic += p.elastic;
+    s.contacts += p.contacts;
+    for (const double d : p.dissipated) s.dissipated += d;
+  }
+  for (const double w : ledger.body_force_work) s.dissipated += w;
+  for (std::size_t b = 0; b < ledger.bodies.size(); ++b) {
+    s.wall_work += ledger.bodies[b].work;
+    if (system.bodies[b].motion.speed != 0) {
+      s.torque_work += ledger.bodies[b].work;
+      s.torque += ledger.bodies[b].torque[2];
+    }
+  }
+  return s;
+}
+
+Json window_summary(const Assembly& a, const std::vector<Sample>& samples) {
+  Json j;
+  if (samples.size() < 9) {
+    j["steady"] = false;
+    j["steady_reason"] = "the analysis window holds fewer than 9 samples of 1 ms: lengthen time.end_s or lower time.analyze_from_s";
+    return j;
+  }
+  const Sample &first = samples.front(), &last = samples.back();
+  const double span = last.time - first.time;
+  std::vector<double> torque, centre, dissipation, kinetic, x[3];
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Sample& s = samples[i];
+    centre.push_back(power_of_centre(a, s));
+    kinetic.push_back(s.translational + s.rotational);
+    for (std::size_t k = 0; k < 3; ++k) x[k].push_back(s.centre[k]);
+    if (i == 0) continue;
+    const double dt = s.time - samples[i - 1].time;
+    torque.push_back((s.torque_work - samples[i - 1].torque_work) / dt);
+    dissipation.push_back((s.dissipated - samples[i - 1].dissipated) / dt);
+  }
+  const Mean pt = correlated_mean(torque), pc = correlated_mean(centre), pd = correlated_mean(dissipation), ke = correlated_mean(kinetic);
+  j["window_s"] = {first.time, last.time};
+  const Steadiness by_torque = steadiness(torque, kSteadyTolerance), by_centre = steadiness(centre, kSteadyTolerance);
+  j["steady"] = by_torque.steady && by_centre.steady;
+  j["steadiness"] = {{"torque_power_drift_W", by_torque.drift}, {"torque_power_drift_standard_errors", by_torque.standard_errors},
+                     {"com_power_drift_W", by_centre.drift},    {"com_power_drift_standard_errors", by_centre.standard_errors}};
+  j["power_W"] = {{"torque", pt.value}, {"torque_sem", pt.standard_error},           {"com", pc.value}, {"com_sem", pc.standard_error},
+                  {"dissipation", pd.value}, {"dissipation_sem", pd.standard_error}};
+  Json com = Json::array(), com_sem = Json::array();
+  for (const auto& c : x) {
+    const Mean m = correlated_mean(c);
+    com.push_back(m.value);
+    com_sem.push_back(m.standard_error);
+  }
+  j["com_m"] = com;
+  j["com_m_sem"] = com_sem;
+  j["kinetic_energy_J"] = ke.value;
+  j["kinetic_energy_J_sem"] = ke.standard_error;
+  const auto stored = [](const Sample& s) { return s.translational + s.rotational + s.elastic + s.potential; };
+  const double input = last.wall_work - first.wall_work, lost = last.dissipated - first.dissipated, kept = stored(last) - stored(first);
+  j["energy"] = {{"wall_work_J", input}, {"dissipated_J", lost}, {"stored_change_J", kept},
+                 {"imbalance_J", input - lost - kept},
+                 {"imbalance_fraction", std::abs(input) > 0 ? (input - lost - kept) / std::abs(input) : 0.0},
+                 {"elastic_J", last.elastic}, {"mean_power_span_s", span}};
+  return j;
+}
+
+std::vector<std::string> series_columns(const Assembly& a) {
+  (void)a;
+  return {"time_s", "translational_energy_J", "rotational_energy_J", "elastic_energy_J", "potential_energy_J", "wall_work_J", "dissipated_J",
+          "torque_N_m", "power_torque_W", "power_com_W", "com_x_m", "com_y_m", "com_z_m", "contacts"};
+}
+
+std::vector<double> series_row(const Sample& s, const Assembly& a, double power) {
+  return {s.time, s.translational, s.rotational, s.elastic, s.potential, s.wall_work, s.dissipated, s.torque, power, power_of_centre(a, s),
+          s.centre[0], s.centre[1], s.centre[2], static_cast<double>(s.contacts)};
+}
+
+Json collision_summary(const Assembly& a, const dem::Ledger& now, const dem::Ledger& before, double seconds) {
+  Json list = Json::array();
+  const auto& physics = a.system->physics();
+  const auto& channels = a.system->layout().channels;
+  for (std::size_t p = 0; p < physics.size(); ++p) {
+    const dem::PairLedger &n = now.pairs[p], &b = before.pairs[p];
+    Json j;
+    j["pair"] = physics[p].name;
+    j["collisions_per_s"] = static_cast<double>(n.collisions - b.collisions) / seconds;
+    j["impact_energy_W"] = (n.impact_energy - b.impact_energy) / seconds;
+    j["largest_closing_speed_m_per_s"] = n.largest_closing_speed;
+    j["largest_overlap_of_effective_radius"] = n.largest_overlap;
+    Json power;
+    for (std::size_t c = 0; c < channels.size(); ++c) power[channels[c]] = (n.dissipated[c] - b.dissipated[c]) / seconds;
+    j["dissipation_W"] = power;
+    Json edges = Json::array(), counts = Json::array();
+    int low = dem::ImpactBins::kCount, high = -1;
+    for (int k = 0; k < dem::ImpactBins::kCount; ++k) {
+      if (n.spectrum[static_cast<std::size_t>(k)] - b.spectrum[static_cast<std::size_t>(k)] > 0) {
+        low = std::min(low, k);
+        high = k;
+      }
+    }
+    for (int k = low; k <= high; ++k) {
+      edges.push_back(dem::ImpactBins::lower_edge(k));
+      counts.push_back(n.spectrum[static_cast<std::size_t>(k)] - b.spectrum[static_cast<std::size_t>(k)]);
+    }
+    j["impact_spectrum"] = {{"lower_edge_J", edges}, {"count", counts}};
+    list.push_back(j);
+  }
+  return list;
+}
+
+}  // namespace millscope::run
