@@ -1,0 +1,64 @@
+// The commands of `millscope`, each in a file of its own. Each takes what follows its name and returns the exit code.
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <string>
+#include <vector>
+
+#include "kernel/host/registry.hpp"
+
+namespace millscope::app {
+
+/// Exit codes, as `millscope --help` documents them.
+inline constexpr int kDone = 0;
+inline constexpr int kFailed = 1;       ///< a programming error or a crash of the system's
+inline constexpr int kBadInput = 2;     ///< something the user can put right
+inline constexpr int kInterrupted = 3;  ///< stopped by a signal after writing a checkpoint
+
+using Arguments = std::vector<std::string>;
+
+int run(const Arguments& arguments);
+int resume(const Arguments& arguments);
+int check(const Arguments& arguments);
+int describe(const Arguments& arguments);
+int plugins(const Arguments& arguments);
+int schema(const Arguments& arguments);
+int geometry(const Arguments& arguments);
+int plugin(const Arguments& arguments);
+
+/// One command's options: declared, parsed and explained in one place.
+class Options {
+ public:
+  /// `usage`: "run CASE.yaml -o OUT"; `what`: one sentence; `example`: a command that runs as it stands.
+  Options(std::string usage, std::string what, std::string example);
+
+  boost::program_options::options_description_easy_init add() { return visible_.add_options(); }
+  /// A positional argument, in order; `last_takes_all` for lists.
+  void positional(const std::string& name, const std::string& what, bool takes_all = false);
+  /// --plugin-dir, --instruction-set: what every command that loads plugins has.
+  void with_plugins();
+  /// --set path=value.
+  void with_overrides();
+
+  /// False when --help was asked for and printed. Throws UserError for what does not parse, with the nearest option.
+  bool parse(const Arguments& arguments);
+
+  bool has(const std::string& name) const { return values_.count(name) > 0; }
+  std::string text(const std::string& name) const;  ///< throws UserError when it was not given
+  std::vector<std::string> list(const std::string& name) const;
+  int integer(const std::string& name) const { return values_[name].as<int>(); }
+  host::Registry registry() const;
+
+ private:
+  void print_help() const;
+  std::string usage_, what_, example_;
+  boost::program_options::options_description visible_, hidden_;
+  boost::program_options::positional_options_description positions_;
+  std::vector<std::pair<std::string, std::string>> position_help_;
+  boost::program_options::variables_map values_;
+};
+
+/// The command line as it was given, for the provenance.
+extern std::vector<std::string> command_line;
+
+}  // namespace millscope::app

@@ -1,0 +1,109 @@
+// geometry export, geometry report.
+#include <fmt/core.h>
+
+#include <sstream>
+
+#include "app/commands.hpp"
+#include "kernel/config/case.hpp"
+#include "kernel/config/document.hpp"
+#include "kernel/config/values.hpp"
+#include "kernel/host/objects.hpp"
+#include "kernel/output/stl.hpp"
+
+namespace millscope::app {
+namespace {
+
+namespace po = boost::program_options;
+using config::UserError;
+
+/// One geometry to look at, from a case or from a mesh file.
+struct Named {
+  std::string name;
+  host::GeometryObject object;
+};
+
+host::GeometryObject from_mesh_file(const std::string& file, const std::string& unit, const host::Registry& registry) {
+  const host::Loaded& plugin = registry.find(Kind::geometry, "mesh");
+  const config::Node node = config::parse_document("file: " + file + "\nunit: " + unit + "\n", "command line");
+  const config::ResolvedValues values = config::resolve(*plugin.descriptor, node, Scope::instance);
+  return host::GeometryObject::create(plugin, values.view(), {"", 0});
+}
+
+std::vector<Named> from_case(const std::string& file, const std::vector<std::string>& overrides, const host::Registry& registry) {
+  std::vector<Named> all;
+  const config::Case c = config::read_case(file, overrides);
+  for (const config::GeometryCase& g : c.geometry) {
+    const host::Loaded& plugin = registry.find(Kind::geometry, g.plugin.kind, g.plugin.where);
+    const config::ResolvedValues values = config::resolve(*plugin.descriptor, g.plugin.node, Scope::instance);
+    all.push_back({g.plugin.name, host::GeometryObject::create(plugin, values.view(), g.plugin.where)});
+  }
+  if (all.empty()) throw UserError(file + ": the case has no geometry; add a section 'geometry'");
+  return all;
+}
+
+std::vector<Named> load(const Options& options, const host::Registry& registry) {
+  const std::string file = options.text("FILE");
+  if (file.ends_with(".yaml") || file.ends_with(".yml")) return from_case(file, options.list("set"), registry);
+  std::vector<Named> all;
+  all.push_back({file, from_mesh_file(file, options.text("unit"), registry)});
+  return all;
+}
+
+std::vector<std::string> slots_of(const host::GeometryObject& g) {
+  std::vector<std::string> slots;
+  std::stringstream text(g.table().material_slots(g.self()));
+  for (std::string slot; std::getline(text, slot, '|');) slots.push_back(slot);
+  return slots;
+}
+
+int export_stl(const Options& options) {
+  const host::Registry registry = options.registry();
+  const std::vector<Named> all = load(options, registry);
+  const Named* chosen = &all.front();
+  if (options.has("name")) {
+    chosen = nullptr;
+    for (const Named& n : all) {
+      if (n.name == options.text("name")) chosen = &n;
+    }
+    if (chosen == nullptr) throw UserError(fmt::format("--name {}: the case has no geometry of that name", options.text("name")));
+  } else if (all.size() > 1) {
+    std::string names;
+    for (const Named& n : all) names += " " + n.name;
+    throw UserError("the case has several geometries:" + names + "; choose one with --name");
+  }
+  Surface surface{};
+  chosen->object.table().surface(chosen->object.self(), &surface);
+  if (surface.triangle_count == 0) throw UserError(fmt::format("geometry '{}' has no surface to export", chosen->name));
+  output::write_stl(options.text("output"), surface, slots_of(chosen->object), options.has("binary") ? output::StlFormat::binary : output::StlFormat::ascii);
+  fmt::print("wrote {} ({} triangles, in metres)\n", options.text("output"), surface.triangle_count);
+  return kDone;
+}
+
+int report(const Options& options) {
+  const host::Registry registry = options.registry();
+  for (const Named& n : load(options, registry)) fmt::print("{}\n{}\n", n.name, n.object.table().report(n.object.self()));
+  return kDone;
+}
+
+}  // namespace
+
+int geometry(const Arguments& arguments) {
+  Options options("geometry export|report FILE", "Writes a geometry of a case as STL (solids named by material slot, in metres), or reports on a case's geometries or a mesh file: "
+                  "triangles, box, area, open edges, degenerate and duplicate faces, orientation.",
+                  "millscope geometry export configs/crosscheck/slice.yaml -o liner.stl");
+  options.positional("ACTION", "export or report");
+  options.positional("FILE", "a case (.yaml) or a mesh file");
+  options.add()("output,o", po::value<std::string>()->value_name("FILE.stl"), "file to write");
+  options.add()("name", po::value<std::string>()->value_name("NAME"), "which geometry of the case");
+  options.add()("binary", "write binary STL (names of solids are lost)");
+  options.add()("unit", po::value<std::string>()->value_name("UNIT")->default_value("mm"), "unit of a mesh file: mm, cm, m, inch");
+  options.with_overrides();
+  options.with_plugins();
+  if (!options.parse(arguments)) return kDone;
+  const std::string action = options.text("ACTION");
+  if (action == "export") return export_stl(options);
+  if (action == "report") return report(options);
+  throw UserError(fmt::format("geometry {}: the actions are 'export' and 'report'", action));
+}
+
+}  // namespace millscope::app

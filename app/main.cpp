@@ -1,0 +1,73 @@
+// The `millscope` command.
+#include <fmt/core.h>
+
+#include <exception>
+#include <new>
+
+#include "app/commands.hpp"
+#include "kernel/config/document.hpp"
+
+namespace millscope::app {
+namespace {
+
+struct Command {
+  const char* name;
+  const char* what;
+  int (*call)(const Arguments&);
+};
+
+constexpr Command kCommands[] = {
+    {"run", "simulate a case", run},
+    {"resume", "continue a run from its newest checkpoint", resume},
+    {"check", "check a case and predict its cost", check},
+    {"describe", "what a plugin does and which parameters it takes", describe},
+    {"plugins", "list the plugins", plugins},
+    {"schema", "JSON Schema of case files, for editors", schema},
+    {"geometry", "export a liner as STL, or report on one", geometry},
+    {"plugin", "start a plugin of your own", plugin},
+};
+
+void print_help() {
+  fmt::print("millscope {}: see inside a tumbling mill\n\nusage: millscope COMMAND …\n\n", MILLSCOPE_VERSION);
+  for (const Command& c : kCommands) fmt::print("  {:<10} {}\n", c.name, c.what);
+  fmt::print("\n'millscope COMMAND --help' explains one, with an example.\n\nExample:\n  millscope run configs/demo.yaml -o demo-out\n\n"
+             "Exit codes: 0 done · 1 internal error · 2 bad input, the one line on stderr says what and how to put it right · 3 stopped by a signal after "
+             "writing a checkpoint\n\nParticles are spheres; other shapes are not modelled yet.\n");
+}
+
+int dispatch(const Arguments& all) {
+  if (all.empty() || all[0] == "--help" || all[0] == "-h" || all[0] == "help") {
+    print_help();
+    return all.empty() ? kBadInput : kDone;
+  }
+  if (all[0] == "--version") {
+    fmt::print("millscope {}\n", MILLSCOPE_VERSION);
+    return kDone;
+  }
+  std::vector<std::string> names;
+  for (const Command& c : kCommands) {
+    if (all[0] == c.name) return c.call(Arguments(all.begin() + 1, all.end()));
+    names.emplace_back(c.name);
+  }
+  throw config::UserError(fmt::format("'{}' is no command; {}", all[0], config::suggestion(all[0], names)));
+}
+
+}  // namespace
+}  // namespace millscope::app
+
+int main(int count, char** words) {
+  using namespace millscope;
+  app::command_line.assign(words, words + count);
+  try {
+    return app::dispatch(app::Arguments(words + 1, words + count));
+  } catch (const config::UserError& e) {
+    fmt::print(stderr, "millscope: {}\n", e.what());
+    return e.exit_code();
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "millscope: out of memory; 'millscope check CASE.yaml' predicts what a case needs\n");
+    return app::kBadInput;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "millscope: internal error: {}; please report it with the case\n", e.what());
+    return app::kFailed;
+  }
+}

@@ -1,0 +1,86 @@
+#include <fmt/core.h>
+
+#include <iostream>
+#include <sstream>
+
+#include "app/commands.hpp"
+#include "kernel/config/document.hpp"
+
+namespace millscope::app {
+
+namespace po = boost::program_options;
+using config::UserError;
+
+std::vector<std::string> command_line;
+
+Options::Options(std::string usage, std::string what, std::string example)
+    : usage_(std::move(usage)), what_(std::move(what)), example_(std::move(example)), visible_("Options", 110, 60) {
+  visible_.add_options()("help,h", "show this page");
+}
+
+void Options::positional(const std::string& name, const std::string& what, bool takes_all) {
+  hidden_.add_options()(name.c_str(), po::value<std::vector<std::string>>());
+  positions_.add(name.c_str(), takes_all ? -1 : 1);
+  position_help_.emplace_back(name, what);
+}
+
+void Options::with_plugins() {
+  add()("plugin-dir", po::value<std::vector<std::string>>()->value_name("DIR"), "also load the plugins of this directory (may be repeated)");
+  add()("instruction-set", po::value<std::string>()->value_name("v2|v3|v4"), "force the builds for an x86-64 level (default: the best that this machine runs)");
+}
+
+void Options::with_overrides() {
+  add()("set", po::value<std::vector<std::string>>()->value_name("path.to.key=value"), "replace a value of the case (may be repeated), e.g. --set time.end_s=2");
+}
+
+bool Options::parse(const Arguments& arguments) {
+  po::options_description all;
+  all.add(visible_).add(hidden_);
+  try {
+    const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
+    po::store(po::command_line_parser(arguments).options(all).positional(positions_).style(style).run(), values_);
+  } catch (const po::unknown_option& e) {
+    std::vector<std::string> known;
+    for (const auto& option : visible_.options()) known.push_back("--" + option->long_name());
+    throw UserError(fmt::format("unknown option '{}'; {}", e.get_option_name(), config::suggestion(e.get_option_name(), known)));
+  } catch (const po::error& e) {
+    throw UserError(fmt::format("{}; usage: millscope {}", e.what(), usage_));
+  }
+  if (has("help")) {
+    print_help();
+    return false;
+  }
+  return true;
+}
+
+void Options::print_help() const {
+  std::ostringstream options;
+  options << visible_;
+  fmt::print("usage: millscope {}\n\n{}\n", usage_, what_);
+  if (!position_help_.empty()) fmt::print("\n");
+  for (const auto& [name, what] : position_help_) fmt::print("  {:<12} {}\n", name, what);
+  fmt::print("\n{}\nExample:\n  {}\n", options.str(), example_);
+}
+
+std::string Options::text(const std::string& name) const {
+  if (!has(name)) throw UserError(fmt::format("{} is missing; usage: millscope {}", name, usage_));
+  const auto& value = values_[name].value();
+  if (const auto* list = boost::any_cast<std::vector<std::string>>(&value)) return list->front();
+  return boost::any_cast<std::string>(value);
+}
+
+std::vector<std::string> Options::list(const std::string& name) const {
+  return has(name) ? values_[name].as<std::vector<std::string>>() : std::vector<std::string>{};
+}
+
+host::Registry Options::registry() const {
+  host::RegistryOptions options;
+  options.directories = list("plugin-dir");
+  if (has("instruction-set")) {
+    options.instruction_set = host::parse_instruction_set(text("instruction-set"));
+    if (!options.instruction_set) throw UserError(fmt::format("--instruction-set '{}': v2, v3 or v4", text("instruction-set")));
+  }
+  return host::Registry(options);
+}
+
+}  // namespace millscope::app

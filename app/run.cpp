@@ -1,0 +1,104 @@
+// run, resume, check.
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "app/commands.hpp"
+#include "kernel/run/simulation.hpp"
+
+namespace millscope::app {
+namespace {
+
+namespace po = boost::program_options;
+
+/// The first signal asks for a checkpoint and an orderly end; a second one kills as usual.
+void on_signal(int signal) {
+  run::request_stop();
+  std::signal(signal, SIG_DFL);
+}
+
+void watch_signals() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+}
+
+void add_run_options(Options& options) {
+  options.with_overrides();
+  options.with_plugins();
+  options.add()("threads", po::value<int>()->value_name("N"), "threads (default: run.threads of the case, else all cores); no influence on results");
+  options.add()("quiet,q", "print nothing but errors");
+}
+
+run::RunOptions run_options(const Options& options) {
+  run::RunOptions r;
+  r.overrides = options.list("set");
+  r.command_line = command_line;
+  r.quiet = options.has("quiet");
+  r.terminal = isatty(STDERR_FILENO) != 0;
+  if (options.has("threads")) {
+    r.threads = options.integer("threads");
+    if (r.threads < 1 || r.threads > 1024) throw config::UserError(fmt::format("--threads {}: give 1 to 1024", r.threads));
+  }
+  return r;
+}
+
+int report(run::Outcome outcome, const run::RunOptions& options) {
+  if (outcome == run::Outcome::interrupted) return kInterrupted;
+  if (!options.quiet) fmt::print("done; see {}\n", (options.output / "summary.json").string());
+  return kDone;
+}
+
+std::string bytes(std::uint64_t n) {
+  if (n >= 10'000'000'000ULL) return fmt::format("{:.1f} GB", static_cast<double>(n) * 1e-9);
+  return fmt::format("{:.1f} MB", static_cast<double>(n) * 1e-6);
+}
+
+}  // namespace
+
+int run(const Arguments& arguments) {
+  Options options("run CASE.yaml -o OUT", "Simulates a case. Particles are spheres. Writes summary.json, series.csv, checkpoints and what the case asks for into OUT.",
+                  "millscope run configs/demo.yaml -o demo-out --threads 2");
+  options.positional("CASE.yaml", "the case");
+  options.add()("output,o", po::value<std::string>()->value_name("OUT"), "directory to make; an existing run is never overwritten unless --force");
+  options.add()("force", "overwrite an earlier run in OUT");
+  add_run_options(options);
+  if (!options.parse(arguments)) return kDone;
+  run::RunOptions r = run_options(options);
+  const std::string case_file = options.text("CASE.yaml");
+  r.output = options.text("output");
+  r.force = options.has("force");
+  watch_signals();
+  return report(run::run_case(case_file, options.registry(), r), r);
+}
+
+int resume(const Arguments& arguments) {
+  Options options("resume OUT", "Continues an interrupted run from its newest checkpoint, bit for bit, or a finished one to a later --set time.end_s=….",
+                  "millscope resume demo-out --set time.end_s=3");
+  options.positional("OUT", "directory of the run");
+  add_run_options(options);
+  if (!options.parse(arguments)) return kDone;
+  run::RunOptions r = run_options(options);
+  r.output = options.text("OUT");
+  watch_signals();
+  return report(run::resume_run(options.registry(), r), r);
+}
+
+int check(const Arguments& arguments) {
+  Options options("check CASE.yaml", "Checks a case without running it, and predicts beads, time step, steps, wall time, memory and disk from a trial of under a second.",
+                  "millscope check configs/demo.yaml");
+  options.positional("CASE.yaml", "the case");
+  add_run_options(options);
+  if (!options.parse(arguments)) return kDone;
+  const run::Estimate e = run::estimate(options.text("CASE.yaml"), options.registry(), run_options(options));
+  fmt::print("beads          {}  (spheres)\n", e.beads);
+  fmt::print("time step      {:.4g} s, {:.0f} % of the Rayleigh time", e.time_step, 100 * e.rayleigh_fraction);
+  if (e.contact_steps > 0) fmt::print(", {:.0f} steps in the shortest expected contact", e.contact_steps);
+  fmt::print("\nsteps          {}\n", e.steps);
+  fmt::print("wall time      about {:.0f} s at {:.1f} M particle-steps/s\n", e.wall_seconds, 1e-6 * e.particle_steps_per_s);
+  fmt::print("memory         about {}\n", bytes(e.memory_bytes));
+  fmt::print("disk           about {}\n", bytes(e.disk_bytes));
+  return kDone;
+}
+
+}  // namespace millscope::app
