@@ -31,7 +31,9 @@ struct Contact {
   R restitution;    ///< e; the pair's own value unless a pair_parameter gives it
   R friction;       ///< μ
   R added_cap;      ///< added to F_n in Coulomb's cap
-  R time_step;
+  R time_step;      ///< s
+  R per_time_step;  ///< 1/s; 0 when the step is 0
+  bool own_e;       ///< true: `restitution` is the pair's own in every lane, so that what follows from it was computed once
 };
 
 template <class R, int Channels>
@@ -50,7 +52,9 @@ void evaluate_contacts(const void* self, ContactBatch* b) {
   R elastic_sum(0.0);
   R power_sum[Law::kChannels > 0 ? Law::kChannels : 1];
   for (R& p : power_sum) p = R(0.0);
-  for (std::int64_t s = 0; s < b->count; s += width) {
+  const std::int64_t count = b->count;
+  const R time_step(b->time_step), per_time_step(b->time_step > 0.0 ? 1.0 / b->time_step : 0.0);  // read once: the stores may alias
+  for (std::int64_t s = 0; s < count; s += width) {
     Contact<R> c;
     c.overlap = load<R>(b->overlap + s);
     c.normal = {load<R>(b->normal[0] + s), load<R>(b->normal[1] + s), load<R>(b->normal[2] + s)};
@@ -60,7 +64,9 @@ void evaluate_contacts(const void* self, ContactBatch* b) {
     c.restitution = b->restitution ? load<R>(b->restitution + s) : R(law.restitution());
     c.friction = b->friction ? load<R>(b->friction + s) : R(law.friction());
     c.added_cap = b->added_cap ? load<R>(b->added_cap + s) : R(0.0);
-    c.time_step = R(b->time_step);
+    c.time_step = time_step;
+    c.per_time_step = per_time_step;
+    c.own_e = b->restitution == nullptr;
     R history[Law::kHistory > 0 ? Law::kHistory : 1];
     for (int h = 0; h < Law::kHistory; ++h) history[h] = load<R>(b->history[h] + s);
     Response<R, Law::kChannels> out;

@@ -1,0 +1,121 @@
+// The tangential spring with a memory and Coulomb's cap, shared by the contact laws.
+//
+// symbol    here            meaning
+// S_t       stiffness       tangential stiffness, N/m; may change with the overlap
+// γ_t       damping         N s/m
+// δ⁻        history         slip kept by the spring half a step ago, m, in the world frame
+// T         trial           δ⁻ on the tangent plane + ½ v_t Δt: the spring at the time of the overlap
+// s         kept            part of T that the cap leaves
+// L         limit           μ max(F_n + added cap, 0), N
+//
+//   cap spring:  s = min(1, L/|S_t T|),           F_t = −s S_t T − γ_t v_t [no sliding]
+//   cap sum:     s = min(1, L/|S_t T + γ_t v_t|), F_t = −s (S_t T + γ_t v_t); the spring is cut back to give that sum
+//
+// The velocity is that at the time of the overlap, so the slip is advanced half a step before the force and half a step after it (the
+// midpoint rule): a whole step before the force would act as damping of S_t Δt/2.
+//
+// The ledger over one step, with p the slip that the cap took away: −F_t·v_t Δt = ΔU + friction + damping + change of stiffness,
+//   friction = S_t p·(δ⁻ − ½ p) + ½ S_t (δ⁻·n)²,  damping = γ_t v_t² Δt,  change of stiffness = −½ |δ_t|² ΔS_t (either sign),
+// where the second part of the friction is what the turning of the tangent plane takes.
+#pragma once
+
+#include "millscope/contact_law_adapter.hpp"
+
+namespace millscope::laws {
+
+enum class Cap { spring, sum };
+
+inline Cap cap_choice(const Parameters& values) { return values.text("cap") == "sum" ? Cap::sum : Cap::spring; }
+
+/// The spring's properties at this instant. `scale` x is what the laws have to divide by: one division serves them and the cap.
+template <class R>
+struct Spring {
+  R stiffness;
+  R damping;
+  R limit;
+  R scale;          ///< x > 0
+  R lag_scaled;     ///< x γ_t/S_t
+  R growth_scaled;  ///< x² (dS_t/dt)/S_t
+};
+
+template <class R>
+struct Shear {
+  Vec<R> force;
+  R elastic_energy;
+  R damping, friction, stiffness_change;  ///< W lost
+};
+
+/// Slip at the time of the overlap: the history on the tangent plane, advanced by half a step.
+template <class R>
+struct Slip {
+  Vec<R> speed;  ///< v_t
+  Vec<R> trial;  ///< T
+  R off_plane;   ///< δ⁻·n
+};
+
+template <class R>
+Slip<R> advance_slip(const Contact<R>& c, const R& normal_speed, const R (&history)[3]) {
+  Slip<R> slip;
+  slip.speed = c.velocity - normal_speed * c.normal;
+  const Vec<R> before{history[0], history[1], history[2]};
+  slip.off_plane = dot(before, c.normal);
+  slip.trial = (before - slip.off_plane * c.normal) + (R(0.5) * c.time_step) * slip.speed;
+  return slip;
+}
+
+/// Keeps the slip for the next step; without contact nothing is kept.
+template <class R>
+void keep_slip(const Contact<R>& c, const Vec<R>& now, const Vec<R>& speed, R (&history)[3]) {
+  const auto touching = c.overlap > R(0.0);
+  const R zero(0.0), half_step = R(0.5) * c.time_step;
+  history[0] = select(touching, now.x + half_step * speed.x, zero);
+  history[1] = select(touching, now.y + half_step * speed.y, zero);
+  history[2] = select(touching, now.z + half_step * speed.z, zero);
+}
+
+template <class R>
+Shear<R> pull_spring(const Contact<R>& c, const R& normal_speed, const Spring<R>& spring, Cap cap, R (&history)[3]) {
+  const R zero(0.0), one(1.0), half(0.5), tiny(1e-100);
+  const Slip<R> slip = advance_slip(c, normal_speed, history);
+  const R trial_speed = dot(slip.trial, slip.speed), trial_square = dot(slip.trial, slip.trial), speed_square = dot(slip.speed, slip.speed);
+  const R pull_square = spring.stiffness * spring.stiffness * trial_square;
+  const R damping_rate = spring.damping * speed_square;
+  Shear<R> out;
+  Vec<R> now;
+  R now_square, lost, inverse_scale;
+  if (cap == Cap::spring) {
+    const R pull = maximum(square_root(pull_square), tiny);
+    const R inverse = one / (pull * spring.scale);
+    inverse_scale = inverse * pull;
+    const auto sliding = pull > spring.limit;
+    const R kept = select(sliding, spring.limit * (inverse * spring.scale), one);
+    const R damping = select(sliding, zero, spring.damping);
+    now = kept * slip.trial;
+    now_square = kept * kept * trial_square;
+    lost = (one - kept) * ((one + kept) * trial_square - c.time_step * trial_speed);
+    out.damping = select(sliding, zero, damping_rate);
+    out.force = (-(spring.stiffness * kept)) * slip.trial - damping * slip.speed;
+  } else {
+    const R sum_square = pull_square + spring.damping * (R(2.0) * spring.stiffness * trial_speed + damping_rate);
+    const R sum = maximum(square_root(maximum(sum_square, zero)), tiny);
+    const R inverse = one / (sum * spring.scale);
+    inverse_scale = inverse * sum;
+    const R kept = select(sum > spring.limit, spring.limit * (inverse * spring.scale), one);
+    const Vec<R> taken = (one - kept) * (slip.trial + (spring.lag_scaled * inverse_scale) * slip.speed);
+    now = slip.trial - taken;
+    now_square = dot(now, now);
+    lost = dot(taken, (R(2.0) * slip.trial - c.time_step * slip.speed) - taken);
+    out.damping = damping_rate;
+    out.force = (-kept) * (spring.stiffness * slip.trial + spring.damping * slip.speed);
+  }
+  keep_slip(c, now, slip.speed, history);
+  const R half_stiffness = half * spring.stiffness;
+  out.elastic_energy = half_stiffness * now_square;
+  out.friction = maximum(half_stiffness * (lost + slip.off_plane * slip.off_plane) * c.per_time_step, zero);
+  // Within one step S_t cannot change by more than itself: bounds the rate at the first and the last touch.
+  const R growth = spring.growth_scaled * (inverse_scale * inverse_scale);
+  out.stiffness_change = -(out.elastic_energy * maximum(minimum(growth, c.per_time_step), -c.per_time_step));
+  return out;
+}
+
+}  // namespace millscope::laws
