@@ -8,147 +8,159 @@
 #include <cmath>
 #include <deque>
 
+#include "millscope/parameters.hpp"
+
 namespace millscope::geometry {
 
 namespace {
 
-/// The tree of beads is made anew when the number of beads has changed by more than this fraction since it was made.
-constexpr double kDrift = 0.05;
+// Entries of the grid below kFirstList; from there on they are places in lists_, shifted by it.
+constexpr std::uint32_t kUnknown = 0, kAsked = 1, kFar = 2, kFirstList = 3;
 
 fcl::Vector3d fcl_vector(const Point& p) { return {p.x, p.y, p.z}; }
 
-/// A triangle or a bead, as FCL sees it. FCL hands back the CollisionObject: its index stands behind it.
-struct Body : fcl::CollisionObjectd {
-  Body(const std::shared_ptr<fcl::CollisionGeometryd>& shape, std::uint32_t number) : fcl::CollisionObject<double>(shape), index(number) {}
+/// A triangle or a cell, as FCL sees it. FCL hands back the CollisionObject: its index stands behind it.
+struct Body : fcl::CollisionObject<double> {
+  Body(const std::shared_ptr<fcl::CollisionGeometryd>& shape, std::uint32_t number) : CollisionObject<double>(shape), index(number) {}
   std::uint32_t index;
 };
 
-struct NearBead {
-  std::int64_t bead;
-  Point position;
-  double reach;
-};
-
 struct Found {
-  std::uint32_t slot, triangle;
+  std::uint32_t cell, triangle;
 };
 
 struct Collector {
   const std::vector<TriangleRecord>* records;
-  const std::vector<NearBead>* beads;
-  std::vector<Found>* found;
+  const std::vector<Point>* middles;
+  double reach;
+  std::vector<Found> found;
 };
 
-/// Boxes overlap: keep the pair if the bead really is that near.
+bool is_within(const TriangleRecord& t, const Point& p, double reach) {
+  const double height = height_above(t, p);
+  return std::fabs(height) <= reach && nearest_point(t, p, height).squared <= reach * reach;
+}
+
+/// Boxes overlap: keep the pair if the triangle really is that near.
 bool collect(fcl::CollisionObjectd* sphere, fcl::CollisionObjectd* triangle, void* data) {
-  const Collector& c = *static_cast<Collector*>(data);
-  const std::uint32_t slot = static_cast<Body*>(sphere)->index, index = static_cast<Body*>(triangle)->index;
-  const TriangleRecord& t = (*c.records)[index];
-  const NearBead& bead = (*c.beads)[slot];
-  const double height = height_above(t, bead.position);
-  if (std::fabs(height) <= bead.reach && nearest_point(t, bead.position, height).squared <= bead.reach * bead.reach) {
-    c.found->push_back({slot, index});
-  }
+  Collector& c = *static_cast<Collector*>(data);
+  const std::uint32_t cell = static_cast<Body*>(sphere)->index, index = static_cast<Body*>(triangle)->index;
+  if (is_within((*c.records)[index], (*c.middles)[cell], c.reach)) c.found.push_back({cell, index});
   return false;  // go on
 }
 
 }  // namespace
 
 struct CandidateFinder::Trees {
-  std::deque<Body> triangle_bodies, bead_bodies;  // a deque does not move what it holds
-  fcl::DynamicAABBTreeCollisionManagerd triangles, beads;
-  std::size_t registered = 0, made_with = 0;
-  std::vector<NearBead> near;
-  std::vector<Found> found, sorted;
-  std::vector<std::uint32_t> first;
+  std::deque<Body> bodies;  // a deque does not move what it holds
+  fcl::DynamicAABBTreeCollisionManagerd triangles;
 
   explicit Trees(const std::vector<TriangleRecord>& records) {
     std::vector<fcl::CollisionObjectd*> all;
     all.reserve(records.size());
     for (std::uint32_t t = 0; t < records.size(); ++t) {
       const TriangleRecord& r = records[t];
-      triangle_bodies.emplace_back(std::make_shared<fcl::TrianglePd>(fcl_vector(r.a), fcl_vector(r.a + r.e), fcl_vector(r.a + r.f)), t);
-      all.push_back(&triangle_bodies.back());
+      bodies.emplace_back(std::make_shared<fcl::TrianglePd>(fcl_vector(r.a), fcl_vector(r.a + r.e), fcl_vector(r.a + r.f)), t);
+      all.push_back(&bodies.back());
     }
     triangles.registerObjects(all);
     triangles.setup();
   }
 
-  void place_beads();
-  void register_beads();
-  void sort_found();
+  /// Pairs of a place and a triangle within `reach` of it, by place, then by triangle: the same whatever the trees look like.
+  std::vector<Found> near_places(const std::vector<TriangleRecord>& records, const std::vector<Point>& middles, double reach) {
+    const auto sphere = std::make_shared<fcl::Sphered>(reach);
+    std::deque<Body> cells;
+    std::vector<fcl::CollisionObjectd*> all;
+    for (const Point& p : middles) {
+      Body& body = cells.emplace_back(sphere, static_cast<std::uint32_t>(cells.size()));
+      body.setTranslation(fcl_vector(p));
+      body.computeAABB();
+      all.push_back(&body);
+    }
+    fcl::DynamicAABBTreeCollisionManagerd spheres;
+    spheres.registerObjects(all);
+    spheres.setup();
+    Collector collector{&records, &middles, reach, {}};
+    spheres.collide(&triangles, &collector, &collect);
+    std::sort(collector.found.begin(), collector.found.end(), [](const Found& a, const Found& b) {
+      return a.cell != b.cell ? a.cell < b.cell : a.triangle < b.triangle;
+    });
+    return std::move(collector.found);
+  }
 };
 
-/// One body per near bead: moved, and its sphere resized where the radius differs.
-void CandidateFinder::Trees::place_beads() {
-  while (bead_bodies.size() < near.size()) {
-    bead_bodies.emplace_back(std::make_shared<fcl::Sphered>(1.0), static_cast<std::uint32_t>(bead_bodies.size()));
+CandidateFinder::CandidateFinder(const std::vector<TriangleRecord>& records) : records_(records), trees_(std::make_unique<Trees>(records)) {
+  std::vector<Point> corners;
+  for (const TriangleRecord& t : records) {
+    for (const Point& p : {t.a, t.a + t.e, t.a + t.f}) corners.push_back(p);
   }
-  for (std::size_t slot = 0; slot < near.size(); ++slot) {
-    Body& body = bead_bodies[slot];
-    auto& sphere = const_cast<fcl::Sphered&>(static_cast<const fcl::Sphered&>(*body.collisionGeometry()));
-    if (sphere.radius != near[slot].reach) {
-      sphere.radius = near[slot].reach;
-      sphere.computeLocalAABB();
-    }
-    body.setTranslation(fcl_vector(near[slot].position));
-    body.computeAABB();
-  }
+  box_ = bounds_of(corners);
 }
-
-void CandidateFinder::Trees::register_beads() {
-  const auto change = std::fabs(static_cast<double>(near.size()) - static_cast<double>(made_with));
-  if (registered == 0 || change > kDrift * static_cast<double>(made_with)) {
-    std::vector<fcl::CollisionObjectd*> all;
-    for (std::size_t slot = 0; slot < near.size(); ++slot) all.push_back(&bead_bodies[slot]);
-    beads.clear();
-    beads.registerObjects(all);
-    made_with = near.size();
-  } else {
-    while (registered > near.size()) beads.unregisterObject(&bead_bodies[--registered]);
-    while (registered < near.size()) beads.registerObject(&bead_bodies[registered++]);
-  }
-  registered = near.size();
-  beads.update();
-}
-
-/// By bead, then by triangle: the same whatever the trees look like.
-void CandidateFinder::Trees::sort_found() {
-  first.assign(near.size() + 1, 0);
-  for (const Found& f : found) ++first[f.slot + 1];
-  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-  sorted.resize(found.size());
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  for (const Found& f : found) sorted[next[f.slot]++] = f;
-  for (std::size_t i = 0; i + 1 < first.size(); ++i) {
-    std::sort(sorted.begin() + first[i], sorted.begin() + first[i + 1],
-              [](const Found& a, const Found& b) { return a.triangle < b.triangle; });
-  }
-}
-
-CandidateFinder::CandidateFinder(const std::vector<TriangleRecord>& records)
-    : records_(records), trees_(std::make_unique<Trees>(records)) {}
 
 CandidateFinder::~CandidateFinder() = default;
 
-void CandidateFinder::find(const GeometryBeads& beads, double margin, const CandidateSink& sink) {
-  Trees& trees = *trees_;
+void CandidateFinder::prepare(const GeometryBeads& beads, double margin) {
   double largest = 0;
   for (std::int64_t i = 0; i < beads.count; ++i) largest = std::max(largest, beads.radius[i]);
-  grid_.prepare(records_, largest + margin);
-  trees.near.clear();
+  if (!std::isfinite(largest + margin)) throw Refusal("mesh: a bead's radius or the list margin is not finite");
+  if (largest + margin <= distance_) return;
+  distance_ = 1.1 * (largest + margin);  // a little room, so that a growing margin does not empty the lists each time
+  grid_.prepare(box_, distance_);
+  lists_.clear();
+}
+
+/// Beads that are not surely far go to near_, cells never asked about to unknown_.
+void CandidateFinder::look_up(const GeometryBeads& beads) {
+  near_.clear();
+  unknown_.clear();
   for (std::int64_t i = 0; i < beads.count; ++i) {
-    const Point p{beads.position[0][i], beads.position[1][i], beads.position[2][i]};
-    if (grid_.is_near(p.x, p.y, p.z)) trees.near.push_back({i, p, beads.radius[i] + margin});
+    const std::uint64_t cell = grid_.cell_of({beads.position[0][i], beads.position[1][i], beads.position[2][i]});
+    if (cell == CellGrid::kOutside) continue;
+    std::uint32_t& entry = grid_.entry(cell);
+    if (entry == kFar) continue;
+    near_.push_back({i, cell});
+    if (entry != kUnknown) continue;
+    entry = kAsked;
+    unknown_.push_back(cell);
   }
-  trees.found.clear();
-  if (trees.near.empty()) return;
-  trees.place_beads();
-  trees.register_beads();
-  Collector collector{&records_, &trees.near, &trees.found};
-  trees.beads.collide(&trees.triangles, &collector, &collect);
-  trees.sort_found();
-  for (const Found& f : trees.sorted) sink.add(sink.host, trees.near[f.slot].bead, f.triangle);
+}
+
+void CandidateFinder::resolve_unknown() {
+  if (unknown_.empty()) return;
+  std::vector<Point> middles;
+  for (const std::uint64_t cell : unknown_) middles.push_back(grid_.middle_of(cell));
+  const std::vector<Found> found = trees_->near_places(records_, middles, distance_ + grid_.half_diagonal());
+  if (lists_.size() + unknown_.size() + found.size() > 0xffff0000U) throw Refusal("mesh: the lists of near triangles exceed 16 GB: use a coarser mesh");
+  std::size_t next = 0;
+  for (std::uint32_t c = 0; c < unknown_.size(); ++c) {
+    const std::size_t begin = next;
+    while (next < found.size() && found[next].cell == c) ++next;
+    grid_.entry(unknown_[c]) = next == begin ? kFar : static_cast<std::uint32_t>(lists_.size()) + kFirstList;
+    if (next == begin) continue;
+    lists_.push_back(static_cast<std::uint32_t>(next - begin));
+    for (std::size_t i = begin; i < next; ++i) lists_.push_back(found[i].triangle);
+  }
+}
+
+void CandidateFinder::send(const NearBead& near, const GeometryBeads& beads, double margin, const CandidateSink& sink) {
+  const std::uint32_t entry = grid_.entry(near.cell);
+  if (entry < kFirstList) return;
+  const std::int64_t i = near.bead;
+  const Point p{beads.position[0][i], beads.position[1][i], beads.position[2][i]};
+  const double reach = beads.radius[i] + margin;
+  const std::uint32_t* list = &lists_[entry - kFirstList];
+  for (std::uint32_t k = 1; k <= list[0]; ++k) {
+    if (is_within(records_[list[k]], p, reach)) sink.add(sink.host, i, list[k]);
+  }
+}
+
+void CandidateFinder::find(const GeometryBeads& beads, double margin, const CandidateSink& sink) {
+  if (beads.count == 0) return;
+  prepare(beads, margin);
+  look_up(beads);
+  resolve_unknown();
+  for (const NearBead& near : near_) send(near, beads, margin, sink);
 }
 
 }  // namespace millscope::geometry

@@ -1,13 +1,16 @@
-// Which triangles each bead may touch until the next rebuild: FCL's broadphase, one tree of beads against one of triangles.
+// Which triangles each bead may touch until the next rebuild.
 //
-// Both trees persist. The mesh's own frame never turns, so the triangle tree is made once; the tree of beads is refitted, and made
-// anew when the number of beads near the wall has drifted (a bead's slot in the tree changes as the host re-sorts its beads, but the
-// host sorts in cell order, so slots stay near their place).
+// The mesh never moves in its own frame, so what is near a place stays near it: space is cut into cells, and FCL's broadphase (a tree of
+// spheres round the cells against a tree of triangles) is asked once for each cell that a bead enters. A rebuild then costs a bead one
+// look-up and, near the wall, an exact distance to the few triangles of its cell. Asking FCL for every bead at every rebuild gave the
+// same candidates at 1.5 to 6 µs a bead instead of 0.1 to 0.3.
 #pragma once
 
 #include <memory>
+#include <vector>
 
-#include "geometry/mesh/near_grid.hpp"
+#include "geometry/mesh/cell_grid.hpp"
+#include "geometry/mesh/triangle_record.hpp"
 #include "millscope/geometry.hpp"
 
 namespace millscope::geometry {
@@ -22,8 +25,22 @@ class CandidateFinder {
 
  private:
   struct Trees;
+  struct NearBead {
+    std::int64_t bead;
+    std::uint64_t cell;
+  };
+  void prepare(const GeometryBeads& beads, double margin);
+  void look_up(const GeometryBeads& beads);
+  void resolve_unknown();
+  void send(const NearBead& near, const GeometryBeads& beads, double margin, const CandidateSink& sink);
+
   const std::vector<TriangleRecord>& records_;
-  NearGrid grid_;
+  Bounds box_;
+  CellGrid grid_;
+  double distance_ = 0;                    // the cells' lists are good for radius + margin up to this
+  std::vector<std::uint32_t> lists_;       // of the cells: a count, then that many triangles, ascending
+  std::vector<std::uint64_t> unknown_;     // cells to ask FCL about
+  std::vector<NearBead> near_;
   std::unique_ptr<Trees> trees_;
 };
 
