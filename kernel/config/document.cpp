@@ -26,12 +26,6 @@ bool same(const NodeData& a, const NodeData& b) {
   return true;
 }
 
-[[noreturn]] void refuse_type(const NodeEntry& over, const NodeData& base) {
-  throw UserError(over.value->where, fmt::format("key '{}' is of another type than at {}; a map cannot replace a value or the reverse; "
-                                                 "write it as there",
-                                                 over.written, base.where.text()));
-}
-
 /// Adds the maps of one included file to those of the files before it.
 void merge_sibling(NodeData& base, const NodeData& over) {
   for (const NodeEntry& e : over.entries) {
@@ -112,8 +106,6 @@ void overlay(NodeData& base, const NodeData& over) {
     } else if (mine->value->type == Node::Type::map && e.value->type == Node::Type::map) {
       mine->value->where = e.value->where;
       overlay(*mine->value, *e.value);
-    } else if (mine->value->type == Node::Type::map || e.value->type == Node::Type::map) {
-      refuse_type(e, *mine->value);
     } else {
       *mine = e;
     }

@@ -5,7 +5,7 @@
 //
 // `include: [other.yaml, …]` at the top of a file merges the maps of other files, paths relative to the including file:
 //  - two included files may both define a leaf only with the same text;
-//  - the including file overrides leaves of included ones (a list is one leaf); a map never replaces a leaf or the reverse;
+//  - maps are merged key by key; anything else (a list is one value) is replaced by what the including file says;
 //  - `key: ~` in the including file removes the inherited key.
 #pragma once
 

@@ -31,6 +31,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return d[a.size()][b.size()];
 }
 
+bool is_beginning(const std::string& part, const std::string& whole) { return part.size() >= 3 && whole.rfind(part, 0) == 0; }
+
 std::string trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(' ');
   if (first == std::string_view::npos) return "";
@@ -49,7 +51,11 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
       best_distance = distance;
     }
   }
-  return best;
+  if (!best.empty()) return best;
+  for (const std::string& candidate : candidates) {
+    if (is_beginning(plain(word), plain(candidate)) || is_beginning(plain(candidate), plain(word))) return candidate;
+  }
+  return "";
 }
 
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {

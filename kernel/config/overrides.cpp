@@ -72,11 +72,7 @@ void apply_override(NodeData& root, const std::string& text) {
     parent->erase(segments.back());
     return;
   }
-  Tree& slot = child(*parent, segments.back(), where);
-  if (slot->type == Node::Type::map && !slot->entries.empty() && value->type != Node::Type::map) {
-    throw UserError(where, fmt::format("'{}' is a map of several keys; name one of them", segments.back()));
-  }
-  slot = value;
+  child(*parent, segments.back(), where) = value;
 }
 
 }  // namespace millscope::config

@@ -32,7 +32,7 @@ std::size_t number_length(std::string_view text) {
 }
 
 std::string example(std::string_view si_unit) {
-  if (si_unit == "1" || si_unit.empty()) return "e.g. 0.5 or 50 %";
+  if (si_unit == "1" || si_unit.empty()) return "such as 0.5 or 50 %";
   if (si_unit == "rad/s") return "in rad/s, e.g. 6 rad/s or 58 rpm";
   return fmt::format("in {}", si_unit);
 }
@@ -55,8 +55,8 @@ double to_si(const Node& node, const Quantity& quantity, std::string_view si_uni
   const Dimension expected = parse_unit(si_unit).dimension;
   if (!quantity.has_unit) return quantity.number;
   if (quantity.unit.dimension != expected) {
-    node.fail(fmt::format("is '{}', a {}; a {} is expected, {}", node.text(), dimension_name(quantity.unit.dimension),
-                          dimension_name(expected), example(si_unit)));
+    node.fail(fmt::format("is '{}' ({}); expected: {} {}", node.text(), dimension_name(quantity.unit.dimension), dimension_name(expected),
+                          example(si_unit)));
   }
   return quantity.unit.to_si(quantity.number);
 }

@@ -162,7 +162,7 @@ Tree parse_tree(const std::string& text, const std::string& file) {
   refuse_tabs(text, file);
   Builder builder(file);
   try {
-    std::istringstream stream(text);
+    std::istringstream stream(text + "\n...\n");  // the end mark makes the library refuse a quote that is never closed
     YAML::Parser parser(stream);
     parser.HandleNextDocument(builder);
     Builder second(file);
@@ -170,6 +170,8 @@ Tree parse_tree(const std::string& text, const std::string& file) {
       throw UserError({file, second.root ? second.root->where.line : 1}, "a second document ('---') in the file; one file holds one case");
     }
   } catch (const YAML::Exception& e) {
+    const bool open_quote = e.msg.find("document indicator") != std::string::npos;  // it met the end mark
+    if (open_quote) throw UserError({file, e.mark.line + 1}, "a quoted text above is never closed; add the closing quote");
     throw UserError({file, e.mark.line + 1}, fmt::format("not valid YAML at column {}: {}", e.mark.column + 1, e.msg));
   }
   if (!builder.root || builder.root->null) {
