@@ -46,7 +46,7 @@ class HertzMindlin {
         damping_(hertz_damping(restitution_)),
         normal_root_(std::sqrt(normal_stiffness_)),
         shear_root_(std::sqrt(shear_stiffness_)),
-        per_shear_root_(1.0 / shear_root_),
+        shear_softness_(1.0 / shear_stiffness_),
         tension_(values.flag("allow_tension")),
         partial_slip_(values.text("tangential") == "mindlin_deresiewicz"),
         cap_(cap_choice(values)) {}
@@ -60,7 +60,7 @@ class HertzMindlin {
   }
 
   template <class R>
-  void force(const Contact<R>& c, R (&history)[3], Response<R, 4>& out) const {
+  [[gnu::always_inline]] inline void force(const Contact<R>& c, R (&history)[3], Response<R, 4>& out) const {
     const R zero(0.0);
     const R overlap = maximum(c.overlap, zero);
     const R normal_speed = dot(c.velocity, c.normal);
@@ -76,10 +76,10 @@ class HertzMindlin {
     const R limit = c.friction * maximum(total + c.added_cap, zero);
 
     Shear<R> shear;
-    const Spring<R> spring{R(shear_stiffness_) * contact, R(shear_root_) * root,     limit,
-                           maximum(contact, R(1e-100)),   R(per_shear_root_) * root, R(-0.5) * c.radius * normal_speed};
+    const Spring<R> spring{R(shear_stiffness_) * contact, R(shear_root_) * root, limit,
+                           maximum(contact, R(1e-100)),   R(shear_softness_),    R(-0.5) * c.radius * normal_speed};
     if (partial_slip_) {
-      shear = pull_partial_slip(c, normal_speed, elastic, spring, cap_, history);
+      shear = pull_partial_slip(Contact<R>(c), normal_speed, elastic, spring, cap_, history);
     } else {
       shear = pull_spring(c, normal_speed, spring, cap_, history);
     }
@@ -95,7 +95,7 @@ class HertzMindlin {
 
  private:
   double young_, normal_stiffness_, shear_stiffness_;  // E*, S_n/a, S_t/a
-  double restitution_, friction_, damping_, normal_root_, shear_root_, per_shear_root_;
+  double restitution_, friction_, damping_, normal_root_, shear_root_, shear_softness_;
   bool tension_, partial_slip_;
   Cap cap_;
 };

@@ -22,14 +22,14 @@ namespace millscope::laws {
 
 /// U_t/(μ N χ) at u; beyond full slip it grows along the line of constant force.
 template <class R>
-R partial_slip_energy(const R& u) {
+[[gnu::always_inline]] inline R partial_slip_energy(const R& u) {
   const R rest = maximum(R(1.0) - u, R(0.0));
   return u - R(0.4) * (R(1.0) - rest * rest * square_root(rest));
 }
 
 template <class R>
-Shear<R> pull_partial_slip(const Contact<R>& c, const R& normal_speed, const R& elastic, const Spring<R>& spring, Cap cap,
-                           R (&history)[3]) {
+[[gnu::always_inline]] inline Shear<R> pull_partial_slip(const Contact<R>& c, const R& normal_speed, const R& elastic,
+                                                         const Spring<R>& spring, Cap cap, R (&history)[3]) {
   const R zero(0.0), one(1.0), half(0.5), tiny(1e-100);
   const Slip<R> slip = advance_slip(c, normal_speed, history);
   const R load = maximum(elastic + c.added_cap, zero);

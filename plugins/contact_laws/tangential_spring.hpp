@@ -34,7 +34,7 @@ struct Spring {
   R damping;
   R limit;
   R scale;          ///< x > 0
-  R lag_scaled;     ///< x γ_t/S_t
+  R softness;       ///< x/S_t
   R growth_scaled;  ///< x² (dS_t/dt)/S_t
 };
 
@@ -54,7 +54,7 @@ struct Slip {
 };
 
 template <class R>
-Slip<R> advance_slip(const Contact<R>& c, const R& normal_speed, const R (&history)[3]) {
+[[gnu::always_inline]] inline Slip<R> advance_slip(const Contact<R>& c, const R& normal_speed, const R (&history)[3]) {
   Slip<R> slip;
   slip.speed = c.velocity - normal_speed * c.normal;
   const Vec<R> before{history[0], history[1], history[2]};
@@ -65,7 +65,7 @@ Slip<R> advance_slip(const Contact<R>& c, const R& normal_speed, const R (&histo
 
 /// Keeps the slip for the next step; without contact nothing is kept.
 template <class R>
-void keep_slip(const Contact<R>& c, const Vec<R>& now, const Vec<R>& speed, R (&history)[3]) {
+[[gnu::always_inline]] inline void keep_slip(const Contact<R>& c, const Vec<R>& now, const Vec<R>& speed, R (&history)[3]) {
   const auto touching = c.overlap > R(0.0);
   const R zero(0.0), half_step = R(0.5) * c.time_step;
   history[0] = select(touching, now.x + half_step * speed.x, zero);
@@ -74,46 +74,46 @@ void keep_slip(const Contact<R>& c, const Vec<R>& now, const Vec<R>& speed, R (&
 }
 
 template <class R>
-Shear<R> pull_spring(const Contact<R>& c, const R& normal_speed, const Spring<R>& spring, Cap cap, R (&history)[3]) {
+[[gnu::always_inline]] inline Shear<R> pull_spring(const Contact<R>& c, const R& normal_speed, const Spring<R>& spring, Cap cap,
+                                                   R (&history)[3]) {
   const R zero(0.0), one(1.0), half(0.5), tiny(1e-100);
   const Slip<R> slip = advance_slip(c, normal_speed, history);
   const R trial_speed = dot(slip.trial, slip.speed), trial_square = dot(slip.trial, slip.trial), speed_square = dot(slip.speed, slip.speed);
-  const R pull_square = spring.stiffness * spring.stiffness * trial_square;
   const R damping_rate = spring.damping * speed_square;
   Shear<R> out;
   Vec<R> now;
-  R now_square, lost, inverse_scale;
+  R now_square, lost, per_scale;
   if (cap == Cap::spring) {
-    const R pull = maximum(square_root(pull_square), tiny);
-    const R inverse = one / (pull * spring.scale);
-    inverse_scale = inverse * pull;
-    const auto sliding = pull > spring.limit;
-    const R kept = select(sliding, spring.limit * (inverse * spring.scale), one);
+    const R distance = maximum(square_root(trial_square), tiny);
+    const R inverse = one / (distance * spring.scale);
+    per_scale = inverse * distance;
+    const auto sliding = spring.stiffness * distance > spring.limit;
+    const R kept = select(sliding, spring.limit * (spring.softness * inverse), one);
     const R damping = select(sliding, zero, spring.damping);
     now = kept * slip.trial;
     now_square = kept * kept * trial_square;
     lost = (one - kept) * ((one + kept) * trial_square - c.time_step * trial_speed);
-    out.damping = select(sliding, zero, damping_rate);
+    out.damping = damping * speed_square;
     out.force = (-(spring.stiffness * kept)) * slip.trial - damping * slip.speed;
   } else {
-    const R sum_square = pull_square + spring.damping * (R(2.0) * spring.stiffness * trial_speed + damping_rate);
-    const R sum = maximum(square_root(maximum(sum_square, zero)), tiny);
+    const Vec<R> asked = spring.stiffness * slip.trial + spring.damping * slip.speed;
+    const R sum = maximum(length(asked), tiny);
     const R inverse = one / (sum * spring.scale);
-    inverse_scale = inverse * sum;
+    per_scale = inverse * sum;
     const R kept = select(sum > spring.limit, spring.limit * (inverse * spring.scale), one);
-    const Vec<R> taken = (one - kept) * (slip.trial + (spring.lag_scaled * inverse_scale) * slip.speed);
+    const Vec<R> taken = ((one - kept) * spring.softness * per_scale) * asked;
     now = slip.trial - taken;
     now_square = dot(now, now);
     lost = dot(taken, (R(2.0) * slip.trial - c.time_step * slip.speed) - taken);
     out.damping = damping_rate;
-    out.force = (-kept) * (spring.stiffness * slip.trial + spring.damping * slip.speed);
+    out.force = (-kept) * asked;
   }
   keep_slip(c, now, slip.speed, history);
   const R half_stiffness = half * spring.stiffness;
   out.elastic_energy = half_stiffness * now_square;
   out.friction = maximum(half_stiffness * (lost + slip.off_plane * slip.off_plane) * c.per_time_step, zero);
   // Within one step S_t cannot change by more than itself: bounds the rate at the first and the last touch.
-  const R growth = spring.growth_scaled * (inverse_scale * inverse_scale);
+  const R growth = spring.growth_scaled * (per_scale * per_scale);
   out.stiffness_change = -(out.elastic_energy * maximum(minimum(growth, c.per_time_step), -c.per_time_step));
   return out;
 }

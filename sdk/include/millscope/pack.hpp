@@ -37,7 +37,7 @@ struct Pack {
   wide::Native v;
   Pack() = default;
   Pack(wide::Native value) : v(value) {}
-  Pack(double value) : v(wide::Native{} + value) {}
+  Pack(double value) : v(value - wide::Native{}) {}  // a broadcast: x − 0 is x for every x, −0 included
 
   friend Pack operator+(Pack a, Pack b) { return {a.v + b.v}; }
   friend Pack operator-(Pack a, Pack b) { return {a.v - b.v}; }
