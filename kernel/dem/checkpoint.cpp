@@ -1,4 +1,6 @@
 // Everything that the next step depends on, as named arrays: a restored system continues bit for bit.
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -98,17 +100,17 @@ void System::save(const DoubleSink& put_doubles, const IntegerSink& put_integers
     put_integers(name, all.data(), all.size());
   };
   for (std::size_t q = 0; q < physics_.size(); ++q) {
-    const std::string at = "pairs/" + std::to_string(q) + "/";
+    const std::string at = fmt::format("pairs/{}/", q);
     sizes(at + "count", [q](const SlabState& s) -> const auto& { return s.lists[q].owner; });
     integers(at + "owner", [q](const SlabState& s) -> const auto& { return s.lists[q].owner; });
     integers(at + "partner", [q](const SlabState& s) -> const auto& { return s.lists[q].partner; });
     integers(at + "touching", [q](const SlabState& s) -> const auto& { return s.lists[q].touching; });
     for (std::size_t h = 0; h < slots; ++h) {
-      numbers(at + "history_" + std::to_string(h), [q, h](const SlabState& s) -> const auto& { return s.lists[q].history[h]; });
+      numbers(fmt::format("{}history_{}", at, h), [q, h](const SlabState& s) -> const auto& { return s.lists[q].history[h]; });
     }
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const std::string at = "walls/" + std::to_string(b) + "/";
+    const std::string at = fmt::format("walls/{}/", b);
     sizes(at + "beads", [b](const SlabState& s) -> const auto& { return s.walls[b].bead; });
     integers(at + "bead", [b](const SlabState& s) -> const auto& { return s.walls[b].bead; });
     sizes(at + "offsets", [b](const SlabState& s) -> const auto& { return s.walls[b].first; });
@@ -124,7 +126,7 @@ void System::save(const DoubleSink& put_doubles, const IntegerSink& put_integers
     }
     put_doubles(at + "contact_normal", normals.data(), normals.size());
     for (std::size_t h = 0; h < slots; ++h) {
-      numbers(at + "history_" + std::to_string(h), [b, h](const SlabState& s) -> const auto& { return s.walls[b].active.history[h]; });
+      numbers(fmt::format("{}history_{}", at, h), [b, h](const SlabState& s) -> const auto& { return s.walls[b].active.history[h]; });
     }
     numbers(at + "impact", [b](const SlabState& s) -> const auto& { return s.impact[b]; });
     numbers(at + "shear", [b](const SlabState& s) -> const auto& { return s.shear[b]; });
@@ -168,17 +170,17 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
   wall_moved_ = walls_moved[1];
   wall_speed_ = walls_moved[2];
   for (std::size_t q = 0; q < physics_.size(); ++q) {
-    const std::string at = "pairs/" + std::to_string(q) + "/";
+    const std::string at = fmt::format("pairs/{}/", q);
     const std::vector<std::int64_t> count = get_integers(at + "count");
     dealt(get_integers(at + "owner"), count, slabs_, [q](SlabState& s) -> auto& { return s.lists[q].owner; });
     dealt(get_integers(at + "partner"), count, slabs_, [q](SlabState& s) -> auto& { return s.lists[q].partner; });
     dealt(get_integers(at + "touching"), count, slabs_, [q](SlabState& s) -> auto& { return s.lists[q].touching; });
     for (std::size_t h = 0; h < slots; ++h) {
-      dealt(get_doubles(at + "history_" + std::to_string(h)), count, slabs_, [q, h](SlabState& s) -> auto& { return s.lists[q].history[h]; });
+      dealt(get_doubles(fmt::format("{}history_{}", at, h)), count, slabs_, [q, h](SlabState& s) -> auto& { return s.lists[q].history[h]; });
     }
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const std::string at = "walls/" + std::to_string(b) + "/";
+    const std::string at = fmt::format("walls/{}/", b);
     dealt(get_integers(at + "bead"), get_integers(at + "beads"), slabs_, [b](SlabState& s) -> auto& { return s.walls[b].bead; });
     dealt(get_integers(at + "first"), get_integers(at + "offsets"), slabs_, [b](SlabState& s) -> auto& { return s.walls[b].first; });
     dealt(get_integers(at + "candidates"), get_integers(at + "candidate_count"), slabs_, [b](SlabState& s) -> auto& { return s.walls[b].candidates; });
@@ -196,7 +198,7 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
       }
     }
     for (std::size_t h = 0; h < slots; ++h) {
-      dealt(get_doubles(at + "history_" + std::to_string(h)), contacts, slabs_, [b, h](SlabState& s) -> auto& { return s.walls[b].active.history[h]; });
+      dealt(get_doubles(fmt::format("{}history_{}", at, h)), contacts, slabs_, [b, h](SlabState& s) -> auto& { return s.walls[b].active.history[h]; });
     }
     const std::vector<std::int64_t> triangles(slabs_.size(), static_cast<std::int64_t>(slabs_[0]->impact[b].size()));
     dealt(get_doubles(at + "impact"), triangles, slabs_, [b](SlabState& s) -> auto& { return s.impact[b]; });

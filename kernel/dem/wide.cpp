@@ -57,53 +57,58 @@ inline Four negate3(Four a) {
 
 inline double root(double a) { return __builtin_sqrt(a); }
 
-std::int64_t search(const GatherContext& g, const PairListView& list, std::int64_t first, std::int64_t last, BatchArrays& b) {
+template <bool kPeriodic>
+std::int64_t search_slots(const GatherContext& g, const PairListView& list, std::int64_t first, std::int64_t last, BatchArrays& b) {
   const Box4 box = box4(g.box);
-  const double* x = reinterpret_cast<const double*>(g.position);
-  const Four reach = four(g.reach);
+  const double* __restrict x = reinterpret_cast<const double*>(g.position);
+  const std::uint32_t* __restrict owner = list.owner;
+  const std::uint32_t* __restrict partner = list.partner;
+  std::uint8_t* __restrict touching = list.touching;
+  std::uint32_t* __restrict slot = b.slot;
+  std::uint8_t* __restrict fresh = b.fresh;
+  const double reach = g.reach;
   std::int64_t n = 0;
+  const auto keep = [&](std::int64_t s, std::int64_t hit) {
+    slot[n] = static_cast<std::uint32_t>(s);
+    fresh[n] = static_cast<std::uint8_t>(touching[s] ^ 1);
+    touching[s] = static_cast<std::uint8_t>(hit);
+    n += hit;
+  };
+  const auto difference = [&](std::int64_t s) {
+    const Four d = load4(x + 4 * static_cast<std::int64_t>(owner[s])) + negate3(load4(x + 4 * static_cast<std::int64_t>(partner[s])));
+    return kPeriodic ? minimum_image(d, box) : d;
+  };
   std::int64_t s = first;
   for (; s + 4 <= last; s += 4) {
-    Four d[4];
-    for (int k = 0; k < 4; ++k) {
-      d[k] = load4(x + 4 * static_cast<std::int64_t>(list.owner[s + k])) + negate3(load4(x + 4 * static_cast<std::int64_t>(list.partner[s + k])));
-      if (box.any) d[k] = minimum_image(d[k], box);
-    }
+    Four d[4] = {difference(s), difference(s + 1), difference(s + 2), difference(s + 3)};
     transpose(d[0], d[1], d[2], d[3]);
-    const Four limit = d[3] + reach;
+    const Four limit = d[3] + four(reach);
     const FourBits hit = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) < (limit * limit);
-    for (int k = 0; k < 4; ++k) {
-      const std::int64_t h = hit[k] & 1;
-      b.slot[n] = static_cast<std::uint32_t>(s + k);
-      b.fresh[n] = static_cast<std::uint8_t>(list.touching[s + k] ^ 1);
-      list.touching[s + k] = static_cast<std::uint8_t>(h);
-      n += h;
-    }
+    for (int k = 0; k < 4; ++k) keep(s + k, hit[k] & 1);
   }
   for (; s < last; ++s) {
-    Four d = load4(x + 4 * static_cast<std::int64_t>(list.owner[s])) + negate3(load4(x + 4 * static_cast<std::int64_t>(list.partner[s])));
-    if (box.any) d = minimum_image(d, box);
-    const double limit = d[3] + g.reach;
-    const std::int64_t h = d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < limit * limit;
-    b.slot[n] = static_cast<std::uint32_t>(s);
-    b.fresh[n] = static_cast<std::uint8_t>(list.touching[s] ^ 1);
-    list.touching[s] = static_cast<std::uint8_t>(h);
-    n += h;
+    const Four d = difference(s);
+    const double limit = d[3] + reach;
+    keep(s, d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < limit * limit);
   }
   return n;
 }
 
+std::int64_t search(const GatherContext& g, const PairListView& list, std::int64_t first, std::int64_t last, BatchArrays& b) {
+  return box4(g.box).any ? search_slots<true>(g, list, first, last, b) : search_slots<false>(g, list, first, last, b);
+}
+
 /// Loads the raw differences of four contacts starting at k.
-template <bool kEqual>
-inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k, BatchArrays& b) {
-  const double* x = reinterpret_cast<const double*>(g.position);
-  const double* m = reinterpret_cast<const double*>(g.motion);
+template <bool kEqual, bool kPeriodic>
+inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k, const BatchArrays& b) {
+  const double* __restrict x = reinterpret_cast<const double*>(g.position);
+  const double* __restrict m = reinterpret_cast<const double*>(g.motion);
   Four d[4], v[4], w[4];
   Four ri, rj;
   for (int c = 0; c < 4; ++c) {
     const std::int64_t i = b.owner[k + c], j = b.partner[k + c];
     d[c] = load4(x + 4 * i) + negate3(load4(x + 4 * j));
-    if (box.any) d[c] = minimum_image(d[c], box);
+    if constexpr (kPeriodic) d[c] = minimum_image(d[c], box);
     v[c] = load4(m + 8 * i) + negate3(load4(m + 8 * j));
     if constexpr (kEqual) {
       w[c] = load4(m + 8 * i + 4) + load4(m + 8 * j + 4);
@@ -209,17 +214,17 @@ void gather_history(const PairListView& list, std::int64_t count, std::int64_t p
   for (std::int32_t h = 0; h < list.history_count; ++h) {
     const double* __restrict from = list.history[h];
     double* __restrict to = b.history[h];
-    for (std::int64_t k = 0; k < count; ++k) to[k] = b.fresh[k] ? 0.0 : from[b.slot[k]];
+    const std::uint8_t* __restrict fresh = b.fresh;
+    const std::uint32_t* __restrict slot = b.slot;
+    for (std::int64_t k = 0; k < count; ++k) to[k] = fresh[k] ? 0.0 : from[slot[k]];
     for (std::int64_t k = count; k < padded; ++k) to[k] = 0.0;
   }
 }
 
-/// Padding: a gap of 1 m, unit R* and m*, at rest.
+/// Padding: a gap of 1 m, at rest; R* and m* are those of the last contact.
 void pad(std::int64_t count, std::int64_t padded, BatchArrays& b) {
   for (std::int64_t k = count; k < padded; ++k) {
     b.overlap[k] = -1.0;
-    b.radius[k] = b.mass[k] = 1.0;
-    b.arm_i[k] = b.arm_j[k] = 0.0;
     for (int a = 0; a < 3; ++a) {
       b.normal[a][k] = a == 0 ? 1.0 : 0.0;
       b.velocity[a][k] = b.spin_i[a][k] = b.spin_j[a][k] = 0.0;
@@ -230,20 +235,32 @@ void pad(std::int64_t count, std::int64_t padded, BatchArrays& b) {
 void gather(const GatherContext& g, const PairListView& list, std::int64_t count, BatchArrays& b) {
   const Box4 box = box4(g.box);
   const std::int64_t padded = (count + 7) / 8 * 8;
+  std::uint32_t* __restrict owner = b.owner;
+  std::uint32_t* __restrict partner = b.partner;
+  const std::uint32_t* __restrict slot = b.slot;
   for (std::int64_t k = 0; k < count; ++k) {
-    b.owner[k] = list.owner[b.slot[k]];
-    b.partner[k] = list.partner[b.slot[k]];
+    owner[k] = list.owner[slot[k]];
+    partner[k] = list.partner[slot[k]];
   }
   for (std::int64_t k = count; k < padded; ++k) {
-    b.owner[k] = b.owner[count - 1];
-    b.partner[k] = b.partner[count - 1];
+    owner[k] = owner[count - 1];
+    partner[k] = partner[count - 1];
   }
   if (g.spins || !g.equal) gather_spins(g, padded, b);
+  const BatchArrays local = b;
   if (g.equal) {
-    for (std::int64_t k = 0; k < padded; k += 4) gather_four<true>(g, box, k, b);
+    if (box.any) {
+      for (std::int64_t k = 0; k < padded; k += 4) gather_four<true, true>(g, box, k, local);
+    } else {
+      for (std::int64_t k = 0; k < padded; k += 4) gather_four<true, false>(g, box, k, local);
+    }
     kinematics<true>(padded, g.radius, b);
   } else {
-    for (std::int64_t k = 0; k < padded; k += 4) gather_four<false>(g, box, k, b);
+    if (box.any) {
+      for (std::int64_t k = 0; k < padded; k += 4) gather_four<false, true>(g, box, k, local);
+    } else {
+      for (std::int64_t k = 0; k < padded; k += 4) gather_four<false, false>(g, box, k, local);
+    }
     kinematics<false>(padded, 0.0, b);
   }
   gather_history(list, count, padded, b);
@@ -285,7 +302,8 @@ void torques(std::int64_t n, bool equal, bool with_moments, BatchArrays& arrays)
 }
 
 template <bool kSame>
-void scatter_lines(const ScatterContext& s, std::int64_t count, BatchArrays& b) {
+void scatter_lines(const ScatterContext& s, std::int64_t count, const BatchArrays& arrays) {
+  const BatchArrays b = arrays;
   for (std::int64_t k = 0; k < count; k += 4) {
     Four f[4] = {load4(b.force[0] + k), load4(b.force[1] + k), load4(b.force[2] + k), four(0.0)};
     Four ti[4] = {load4(b.torque_i[0] + k), load4(b.torque_i[1] + k), load4(b.torque_i[2] + k), four(0.0)};
@@ -322,7 +340,8 @@ void scatter(const ScatterContext& s, const PairListView& list, std::int64_t cou
   for (std::int32_t h = 0; h < list.history_count; ++h) {
     const double* __restrict from = b.history[h];
     double* __restrict to = list.history[h];
-    for (std::int64_t k = 0; k < count; ++k) to[b.slot[k]] = from[k];
+    const std::uint32_t* __restrict slot = b.slot;
+    for (std::int64_t k = 0; k < count; ++k) to[slot[k]] = from[k];
   }
 }
 

@@ -1,7 +1,7 @@
 // The tables of the kinds that act on pairs: contact_law, interaction, pair_parameter.
 //
 // One object of a law is made for each unordered pair of materials, so its parameters are plain numbers. The host hands it batches
-// of contacts, arrays of doubles padded to a multiple of kLanes; padding has overlap −1, R* = m* = 1, zero elsewhere, and its
+// of contacts, arrays of doubles padded to a multiple of kLanes; padding has overlap −1 and positive R*, m*, velocity 0, and its
 // results are ignored.
 //
 // Signs: the normal n points from j to i; velocity is that of i relative to j at the contact point; force acts on i (−force on j).

@@ -8,6 +8,7 @@
 //     Interior interior() const;
 //     void candidates(const GeometryBeads&, double margin, const CandidateSink&);     // one thread; bead by bead, features ascending
 //     void touch(const WallBead&, const std::uint32_t* candidates, std::size_t count, WallContacts&) const;  // many threads
+//     void prefetch(std::uint32_t candidate) const;       // optional: called some beads before touch
 //   };
 //   constexpr GeometryTable table = make_geometry_table<MyWall>();
 #pragma once
@@ -71,9 +72,14 @@ void find_contacts(const void* self, const GeometryQuery* query, GeometryContact
   const Wall& wall = *static_cast<const Wall*>(self);
   const GeometryBeads& beads = query->beads;
   out->count = 0;
+  [[maybe_unused]] const std::int64_t total = query->first[beads.count];
   for (std::int64_t i = 0; i < beads.count; ++i) {
     const std::int64_t begin = query->first[i], end = query->first[i + 1];
     if (begin == end) continue;
+    if constexpr (requires { wall.prefetch(std::uint32_t{}); }) {
+      constexpr std::int64_t ahead = 16;  // candidates; about four beads
+      for (std::int64_t k = begin + ahead; k < end + ahead && k < total; ++k) wall.prefetch(query->candidates[k]);
+    }
     WallContacts found(query->reach);
     wall.touch({{beads.position[0][i], beads.position[1][i], beads.position[2][i]}, beads.radius[i], query->reach},
                query->candidates + begin, static_cast<std::size_t>(end - begin), found);
