@@ -30,22 +30,22 @@ struct Found {
 };
 
 struct Collector {
-  const std::vector<TriangleRecord>* records;
+  const Triangles* all;
   const std::vector<Point>* middles;
   double reach;
   std::vector<Found> found;
 };
 
-bool is_within(const TriangleRecord& t, const Point& p, double reach) {
-  const double height = height_above(t, p);
-  return std::fabs(height) <= reach && nearest_point(t, p, height).squared <= reach * reach;
+bool is_within(const Triangles& triangles, std::size_t index, const Point& p, double reach) {
+  const double height = triangles.height(index, p);
+  return std::fabs(height) <= reach && nearest_point(triangles, index, p, height, reach * reach).squared <= reach * reach;
 }
 
 /// Boxes overlap: keep the pair if the triangle really is that near.
 bool collect(fcl::CollisionObjectd* sphere, fcl::CollisionObjectd* triangle, void* data) {
   Collector& c = *static_cast<Collector*>(data);
   const std::uint32_t cell = static_cast<Body*>(sphere)->index, index = static_cast<Body*>(triangle)->index;
-  if (is_within((*c.records)[index], (*c.middles)[cell], c.reach)) c.found.push_back({cell, index});
+  if (is_within(*c.all, index, (*c.middles)[cell], c.reach)) c.found.push_back({cell, index});
   return false;  // go on
 }
 
@@ -68,7 +68,7 @@ struct CandidateFinder::Trees {
   }
 
   /// Pairs of a place and a triangle within `reach` of it, by place, then by triangle: the same whatever the trees look like.
-  std::vector<Found> near_places(const std::vector<TriangleRecord>& records, const std::vector<Point>& middles, double reach) {
+  std::vector<Found> near_places(const Triangles& all_triangles, const std::vector<Point>& middles, double reach) {
     const auto sphere = std::make_shared<fcl::Sphered>(reach);
     std::deque<Body> cells;
     std::vector<fcl::CollisionObjectd*> all;
@@ -81,18 +81,17 @@ struct CandidateFinder::Trees {
     fcl::DynamicAABBTreeCollisionManagerd spheres;
     spheres.registerObjects(all);
     spheres.setup();
-    Collector collector{&records, &middles, reach, {}};
+    Collector collector{&all_triangles, &middles, reach, {}};
     spheres.collide(&triangles, &collector, &collect);
-    std::sort(collector.found.begin(), collector.found.end(), [](const Found& a, const Found& b) {
-      return a.cell != b.cell ? a.cell < b.cell : a.triangle < b.triangle;
-    });
+    std::sort(collector.found.begin(), collector.found.end(),
+              [](const Found& a, const Found& b) { return a.cell != b.cell ? a.cell < b.cell : a.triangle < b.triangle; });
     return std::move(collector.found);
   }
 };
 
-CandidateFinder::CandidateFinder(const std::vector<TriangleRecord>& records) : records_(records), trees_(std::make_unique<Trees>(records)) {
+CandidateFinder::CandidateFinder(const Triangles& triangles) : triangles_(triangles), trees_(std::make_unique<Trees>(triangles.records)) {
   std::vector<Point> corners;
-  for (const TriangleRecord& t : records) {
+  for (const TriangleRecord& t : triangles.records) {
     for (const Point& p : {t.a, t.a + t.e, t.a + t.f}) corners.push_back(p);
   }
   box_ = bounds_of(corners);
@@ -119,7 +118,7 @@ void CandidateFinder::look_up(const GeometryBeads& beads) {
     if (cell == CellGrid::kOutside) continue;
     std::uint32_t& entry = grid_.entry(cell);
     if (entry == kFar) continue;
-    near_.push_back({i, cell});
+    near_.push_back({i, cell, entry});
     if (entry != kUnknown) continue;
     entry = kAsked;
     unknown_.push_back(cell);
@@ -130,8 +129,9 @@ void CandidateFinder::resolve_unknown() {
   if (unknown_.empty()) return;
   std::vector<Point> middles;
   for (const std::uint64_t cell : unknown_) middles.push_back(grid_.middle_of(cell));
-  const std::vector<Found> found = trees_->near_places(records_, middles, distance_ + grid_.half_diagonal());
-  if (lists_.size() + unknown_.size() + found.size() > 0xffff0000U) throw Refusal("mesh: the lists of near triangles exceed 16 GB: use a coarser mesh");
+  const std::vector<Found> found = trees_->near_places(triangles_, middles, distance_ + grid_.half_diagonal());
+  if (lists_.size() + unknown_.size() + found.size() > 0xffff0000U)
+    throw Refusal("mesh: the lists of near triangles exceed 16 GB: use a coarser mesh");
   std::size_t next = 0;
   for (std::uint32_t c = 0; c < unknown_.size(); ++c) {
     const std::size_t begin = next;
@@ -144,14 +144,14 @@ void CandidateFinder::resolve_unknown() {
 }
 
 void CandidateFinder::send(const NearBead& near, const GeometryBeads& beads, double margin, const CandidateSink& sink) {
-  const std::uint32_t entry = grid_.entry(near.cell);
+  const std::uint32_t entry = near.entry >= kFirstList ? near.entry : grid_.entry(near.cell);  // it may be known by now
   if (entry < kFirstList) return;
   const std::int64_t i = near.bead;
   const Point p{beads.position[0][i], beads.position[1][i], beads.position[2][i]};
   const double reach = beads.radius[i] + margin;
   const std::uint32_t* list = &lists_[entry - kFirstList];
   for (std::uint32_t k = 1; k <= list[0]; ++k) {
-    if (is_within(records_[list[k]], p, reach)) sink.add(sink.host, i, list[k]);
+    if (is_within(triangles_, list[k], p, reach)) sink.add(sink.host, i, list[k]);
   }
 }
 

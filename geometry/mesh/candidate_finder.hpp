@@ -17,7 +17,7 @@ namespace millscope::geometry {
 
 class CandidateFinder {
  public:
-  explicit CandidateFinder(const std::vector<TriangleRecord>& records);
+  explicit CandidateFinder(const Triangles& triangles);
   ~CandidateFinder();
 
   /// Sends every triangle within radius + margin of each bead to the sink: beads in order, triangles ascending.
@@ -28,18 +28,19 @@ class CandidateFinder {
   struct NearBead {
     std::int64_t bead;
     std::uint64_t cell;
+    std::uint32_t entry;  // of the grid, as it was when looked up
   };
   void prepare(const GeometryBeads& beads, double margin);
   void look_up(const GeometryBeads& beads);
   void resolve_unknown();
   void send(const NearBead& near, const GeometryBeads& beads, double margin, const CandidateSink& sink);
 
-  const std::vector<TriangleRecord>& records_;
+  const Triangles& triangles_;
   Bounds box_;
   CellGrid grid_;
-  double distance_ = 0;                    // the cells' lists are good for radius + margin up to this
-  std::vector<std::uint32_t> lists_;       // of the cells: a count, then that many triangles, ascending
-  std::vector<std::uint64_t> unknown_;     // cells to ask FCL about
+  double distance_ = 0;                 // the cells' lists are good for radius + margin up to this
+  std::vector<std::uint32_t> lists_;    // of the cells: a count, then that many triangles, ascending
+  std::vector<std::uint64_t> unknown_;  // cells to ask FCL about
   std::vector<NearBead> near_;
   std::unique_ptr<Trees> trees_;
 };

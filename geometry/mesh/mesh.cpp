@@ -83,11 +83,12 @@ Mesh::Mesh(Soup soup, const MeshOptions& options) {
   } catch (const Refusal& e) {
     throw Refusal("mesh file " + options.label + ": " + e.what());
   }
-  std::vector<TriangleRecord> records;
-  records.reserve(mesh_.triangles.size());
-  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) records.push_back(make_record(mesh_, t, topology_.patch[t]));
-  contact_ = MeshContact(std::move(records), mesh_.weld);
-  finder_ = std::make_unique<CandidateFinder>(contact_.records());
+  Triangles triangles;
+  triangles.planes.reserve(mesh_.triangles.size());
+  triangles.records.reserve(mesh_.triangles.size());
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) triangles.add(mesh_, t, topology_.patch[t]);
+  contact_ = MeshContact(std::move(triangles), mesh_.weld);
+  finder_ = std::make_unique<CandidateFinder>(contact_.triangles());
   face_the_beads();
 }
 

@@ -34,6 +34,8 @@ class Mesh {
     contact_.touch(bead, candidates, count, out);
   }
 
+  void prefetch(std::uint32_t candidate) const { contact_.prefetch(candidate); }
+
   const IndexedMesh& mesh() const { return mesh_; }
   const Topology& topology() const { return topology_; }
   const Survey& survey() const { return survey_; }

@@ -70,13 +70,14 @@ struct MeshContact::Hits {
   }
 };
 
+const TriangleRecord& MeshContact::record(const Hit& hit) const { return triangles_.records[hit.record]; }
+
 void MeshContact::collect(const WallBead& bead, const std::uint32_t* candidates, std::size_t count, Hits& hits) const {
   const double limit = bead.radius + bead.reach, limit_squared = limit * limit;
   for (std::size_t i = 0; i < count; ++i) {
-    const TriangleRecord& t = records_[candidates[i]];
-    const double height = height_above(t, bead.position);
+    const double height = triangles_.height(candidates[i], bead.position);
     if (std::fabs(height) >= limit) continue;
-    const Nearest nearest = nearest_point(t, bead.position, height);
+    const Nearest nearest = nearest_point(triangles_, candidates[i], bead.position, height, limit_squared);
     if (nearest.squared >= limit_squared) continue;
     hits.add({nearest.to_bead, std::sqrt(nearest.squared), candidates[i], nearest.region});
   }
@@ -84,8 +85,8 @@ void MeshContact::collect(const WallBead& bead, const std::uint32_t* candidates,
 
 /// Whether the triangle of `other` contains the place of `hit`, which is on an edge or vertex.
 bool MeshContact::contains(const Hit& other, const Hit& hit, const Point& centre) const {
-  const TriangleRecord& mine = records_[hit.record];
-  const TriangleRecord& theirs = records_[other.record];
+  const TriangleRecord& mine = record(hit);
+  const TriangleRecord& theirs = record(other);
   const Places& places = kPlaces[static_cast<std::size_t>(hit.region)];
   int shared = 0;
   for (int k = 0; k < places.count; ++k) {
@@ -94,8 +95,8 @@ bool MeshContact::contains(const Hit& other, const Hit& hit, const Point& centre
   }
   if (shared == places.count) return true;
   const Point place = centre - hit.to_bead;
-  const double height = height_above(theirs, place);
-  return std::fabs(height) <= weld_ && nearest_point(theirs, place, height).squared <= weld_ * weld_;
+  const double height = triangles_.height(other.record, place);
+  return std::fabs(height) <= weld_ && nearest_point(triangles_, other.record, place, height, weld_ * weld_).squared <= weld_ * weld_;
 }
 
 bool MeshContact::is_real(const Hits& hits, int i, const Point& centre) const {
@@ -115,20 +116,20 @@ void MeshContact::report(const WallBead& bead, const Hits& hits, WallContacts& o
     if (hits.count > 1 && !is_real(hits, i, bead.position)) continue;
     bool merged = false;
     for (int k = 0; k < count && !merged; ++k) {
-      const bool joins = (is_face(hit.region) && is_face(kept[k]->region)) || records_[hit.record].patch == records_[kept[k]->record].patch;
+      const bool joins = (is_face(hit.region) && is_face(kept[k]->region)) || record(hit).patch == record(*kept[k]).patch;
       merged = joins && dot(hit.to_bead, kept[k]->to_bead) > kSmoothCosine * hit.distance * kept[k]->distance;
     }
     if (!merged) kept[count++] = &hit;
   }
   for (int i = 0; i < count; ++i) {
     const Hit& hit = *kept[i];
-    const TriangleRecord& t = records_[hit.record];
+    const TriangleRecord& t = record(hit);
     std::uint32_t feature = t.patch;
     for (int k = 0; k < count; ++k) {  // in the order of their triangles, so that the numbers do not change places from step to step
-      if (records_[kept[k]->record].patch == t.patch && kept[k]->record < hit.record) feature += kFeatureStep;
+      if (record(*kept[k]).patch == t.patch && kept[k]->record < hit.record) feature += kFeatureStep;
     }
     // A centre on the surface itself has no direction of its own: the triangle's.
-    const Point normal = hit.distance > 0 ? (1 / hit.distance) * hit.to_bead : t.normal;
+    const Point normal = hit.distance > 0 ? (1 / hit.distance) * hit.to_bead : triangles_.planes[hit.record].normal;
     out.add({bead.radius - hit.distance, normal, feature, t.source, t.slot});
   }
 }

@@ -22,11 +22,12 @@ class MeshContact {
  public:
   MeshContact() = default;
   /// `weld`: tolerance within which a place lies on a triangle, m.
-  MeshContact(std::vector<TriangleRecord> records, double weld) : records_(std::move(records)), weld_(weld) {}
+  MeshContact(Triangles triangles, double weld) : triangles_(std::move(triangles)), weld_(weld) {}
 
   void touch(const WallBead& bead, const std::uint32_t* candidates, std::size_t count, WallContacts& out) const;
 
-  const std::vector<TriangleRecord>& records() const { return records_; }
+  const Triangles& triangles() const { return triangles_; }
+  void prefetch(std::uint32_t triangle) const { __builtin_prefetch(&triangles_.planes[triangle]); }
 
  private:
   struct Hit;
@@ -36,7 +37,9 @@ class MeshContact {
   bool is_real(const Hits& hits, int i, const Point& centre) const;
   void report(const WallBead& bead, const Hits& hits, WallContacts& out) const;
 
-  std::vector<TriangleRecord> records_;
+  const TriangleRecord& record(const Hit& hit) const;
+
+  Triangles triangles_;
   double weld_ = 0;
 };
 

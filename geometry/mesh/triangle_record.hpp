@@ -1,4 +1,4 @@
-// One triangle, ready for the nearest-point test: three cache lines, the first of which rejects most beads.
+// Triangles, ready for the nearest-point test. The planes stand apart: they reject most candidates and stay in the cache.
 //
 //   a, b, c     corners;  e = b − a, f = c − a
 //   n, o        unit normal and offset, n·x = o in the plane
@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "geometry/mesh/indexed_mesh.hpp"
 
@@ -21,35 +22,44 @@ enum class Region : std::uint8_t { face, edge_ab, edge_bc, edge_ca, vertex_a, ve
 inline bool is_face(Region r) { return r == Region::face; }
 inline bool is_vertex(Region r) { return r >= Region::vertex_a; }
 
-struct alignas(64) TriangleRecord {
+/// All that most candidates are asked: how far from the plane.
+struct TrianglePlane {
   Point normal;
   double offset;
+};
+
+struct alignas(64) TriangleRecord {
   Point a;
   std::uint32_t patch, slot;
-  // second line
   Point e, f;
-  double ee, ff;
-  // third line
-  double ef, inverse_d;
-  std::uint32_t vertex[3];  ///< welded
-  std::uint32_t source;     ///< index into the surface's triangles
-  double spare[4];
+  double ee, ff, ef, inverse_d;
+  double far_a, far_b, far_c;  ///< squares of the altitudes on a, b, c (of b and c: over D²)
+  std::uint32_t vertex[3];     ///< welded
+  std::uint32_t source;        ///< index into the surface's triangles
 };
-static_assert(sizeof(TriangleRecord) == 192);
 
-inline TriangleRecord make_record(const IndexedMesh& mesh, std::size_t t, std::uint32_t patch) {
+struct Triangles {
+  std::vector<TrianglePlane> planes;
+  std::vector<TriangleRecord> records;
+
+  std::size_t size() const { return records.size(); }
+  void add(const IndexedMesh& mesh, std::size_t t, std::uint32_t patch);
+  double height(std::size_t t, const Point& p) const { return dot(planes[t].normal, p) - planes[t].offset; }
+};
+
+inline void Triangles::add(const IndexedMesh& mesh, std::size_t t, std::uint32_t patch) {
   TriangleRecord r{};
-  const Point area = double_area(mesh, t);
+  const Point area = double_area(mesh, t), normal = (1 / length(area)) * area;
   r.a = mesh.vertex(t, 0);
   r.e = mesh.vertex(t, 1) - r.a;
   r.f = mesh.vertex(t, 2) - r.a;
-  r.normal = (1 / length(area)) * area;
-  r.offset = dot(r.normal, r.a);
   r.ee = dot(r.e, r.e), r.ff = dot(r.f, r.f), r.ef = dot(r.e, r.f);
   r.inverse_d = 1 / dot(area, area);
+  r.far_a = 1 / (r.inverse_d * (r.ee + r.ff - 2 * r.ef)), r.far_b = r.inverse_d / r.ff, r.far_c = r.inverse_d / r.ee;
   for (std::size_t k = 0; k < 3; ++k) r.vertex[k] = mesh.triangles[t][k];
   r.patch = patch, r.slot = mesh.slots[t], r.source = mesh.source[t];
-  return r;
+  planes.push_back({normal, dot(normal, r.a)});
+  records.push_back(r);
 }
 
 struct Nearest {
@@ -58,12 +68,21 @@ struct Nearest {
   Region region;
 };
 
-/// Nearest point of the triangle to p; `height` = n·p − o.
-inline Nearest nearest_point(const TriangleRecord& t, const Point& p, double height) {
+/// Nearest point of triangle number `index` to p; `height` = n·p − o. When it is surely farther than √limit, only `squared` ≥ limit
+/// is meant: the distance of the foot from the line of an edge is its weight times the altitude on that edge, and one comparison with
+/// the largest of the three spares most neighbours the tests below, whose outcome no processor can guess.
+[[gnu::always_inline]] inline Nearest nearest_point(const Triangles& triangles, std::size_t index, const Point& p, double height,
+                                                    double limit) {
+  const TriangleRecord& t = triangles.records[index];
   const Point ap = p - t.a;
   const double d1 = dot(t.e, ap), d2 = dot(t.f, ap);
   const double v = d1 * t.ff - d2 * t.ef, w = d2 * t.ee - d1 * t.ef, u = 1 - (v + w) * t.inverse_d;
-  if (u > 0 && v > 0 && w > 0) return {height * t.normal, height * height, Region::face};
+  const double beyond_a = minimum(u, 0.0), beyond_b = minimum(v, 0.0), beyond_c = minimum(w, 0.0);
+  const double beyond =
+      maximum(beyond_a * beyond_a * t.far_a, maximum(beyond_b * beyond_b * t.far_b, beyond_c * beyond_c * t.far_c)) + height * height;
+  // The allowance keeps rounding from rejecting what lies exactly on the limit.
+  if (beyond * (1 - 1e-12) > limit) return {ap, beyond, Region::face};
+  if (minimum(u, minimum(v, w)) > 0) return {height * triangles.planes[index].normal, height * height, Region::face};
   const auto at = [&](const Point& q, Region region) { return Nearest{q, dot(q, q), region}; };
   if (d1 <= 0 && d2 <= 0) return at(ap, Region::vertex_a);
   const double d3 = d1 - t.ee, d4 = d2 - t.ef, d5 = d1 - t.ef, d6 = d2 - t.ff;
@@ -74,7 +93,5 @@ inline Nearest nearest_point(const TriangleRecord& t, const Point& p, double hei
   const double to_c = d4 - d3, to_b = d5 - d6, s = minimum(maximum(to_c / (to_c + to_b), 0.0), 1.0);
   return at(ap - t.e - s * (t.f - t.e), Region::edge_bc);
 }
-
-inline double height_above(const TriangleRecord& t, const Point& p) { return dot(t.normal, p) - t.offset; }
 
 }  // namespace millscope::geometry

@@ -135,6 +135,8 @@ int MillProfile::touch(const double (&centre)[2], double radius, double reach, P
     if (distance > 0) out[0].normal[0] = -x / distance, out[0].normal[1] = -y / distance;
     return 1;
   }
+  const double safe = top_u_ - radius - reach;
+  if (safe > 0 && x * x + y * y < safe * safe) return 0;
   const Folded own = fold(x, y);
   int count = 0;
   const auto keep = [&](bool touched, int sector) {  // back from the lifter's frame to the mill's
