@@ -18,6 +18,9 @@ inline double damping_fraction(double restitution) {
   return -logarithm / std::sqrt(logarithm * logarithm + pi * pi);
 }
 
+/// For a linear spring: 2|β|, exact when tension is allowed.
+inline double linear_damping(double restitution) { return 2.0 * damping_fraction(restitution); }
+
 /// For laws with F ∝ δ^{3/2}: 2√(5/6)|β|, which gives the restitution e exactly (Antypov & Elliott 2011) when tension is allowed.
 inline double hertz_damping(double restitution) { return 2.0 * std::sqrt(5.0 / 6.0) * damping_fraction(restitution); }
 
