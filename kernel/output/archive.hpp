@@ -4,6 +4,7 @@
 // byte before it. The reader checks the seal before HDF5 sees the file, so that no damaged byte gets any further.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -47,7 +48,10 @@ class ArchiveWriter {
   }
   void write_text(const std::string& name, const std::string& text);
 
-  /// Seals, syncs and renames. At most once; nothing can be written afterwards.
+  /// Completes `path`.tmp: all that can fail for want of room. Nothing can be written afterwards. Called by `commit` where it was not
+  /// before; a checkpoint is sealed, then rotate_checkpoints, then committed.
+  void seal();
+  /// Seals, syncs and renames. At most once.
   void commit();
 
  private:
@@ -100,7 +104,7 @@ class ArchiveReader {
 std::filesystem::path checkpoint_path(const std::filesystem::path& directory);
 std::filesystem::path previous_checkpoint_path(const std::filesystem::path& directory);
 
-/// Makes checkpoint.h5 the previous one as well. Call it just before `commit` of the next; at no moment is there no checkpoint.
+/// Makes checkpoint.h5 the previous one as well. Call it between `seal` and `commit` of the next; at no moment is there no checkpoint.
 void rotate_checkpoints(const std::filesystem::path& directory);
 
 /// The checkpoint to resume from: checkpoint.h5, or the previous one where only that exists. UserError when there is none.

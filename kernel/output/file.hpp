@@ -8,6 +8,9 @@
 
 namespace millscope::output {
 
+/// Exit code of the errors that throw_write_error raises: the place cannot be written or is full.
+inline constexpr int kExitDisk = 4;
+
 /// Throws config::UserError for a write that failed with `error` (an errno): disk full, not permitted, …
 [[noreturn]] void throw_write_error(const std::filesystem::path& file, int error);
 
@@ -19,6 +22,12 @@ std::filesystem::path temporary_name(const std::filesystem::path& path);
 
 /// Syncs `temporary` and renames it to `path`; throws through throw_write_error.
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& path);
+
+/// Throws config::UserError when `path` exists already.
+void refuse_existing(const std::filesystem::path& path);
+
+/// "1.5 MB".
+std::string size_text(std::uint64_t bytes);
 
 /// A file descriptor that writes all or throws.
 class File {

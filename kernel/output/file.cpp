@@ -1,0 +1,98 @@
+#include "kernel/output/file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <utility>
+
+namespace millscope::output {
+
+namespace {
+
+constexpr std::size_t kBufferBytes = 1 << 20;
+
+// The new name survives a power cut only when its directory is synced too; file systems that cannot do that are left alone.
+void sync_directory(const std::filesystem::path& directory) {
+  const int descriptor = ::open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+File::File(std::filesystem::path path, int flags) : path_(std::move(path)), descriptor_(::open(path_.c_str(), flags | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) throw_write_error(path_, errno);
+}
+
+File::~File() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+File::File(File&& other) noexcept : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+File& File::operator=(File&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(descriptor_, other.descriptor_);
+  return *this;
+}
+
+void File::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t done = ::write(descriptor_, bytes.data(), bytes.size());
+    if (done < 0 && errno == EINTR) continue;
+    if (done < 0) throw_write_error(path_, errno);
+    bytes.remove_prefix(static_cast<std::size_t>(done));
+  }
+}
+
+void File::sync() {
+  // Pipes and some devices cannot be synced (EINVAL): nothing is lost by that.
+  if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS) throw_write_error(path_, errno);
+}
+
+void File::truncate(std::uint64_t size) {
+  if (::ftruncate(descriptor_, static_cast<off_t>(size)) != 0) throw_write_error(path_, errno);
+}
+
+void File::close() {
+  const int descriptor = std::exchange(descriptor_, -1);
+  if (descriptor >= 0 && ::close(descriptor) != 0 && errno != EINTR) throw_write_error(path_, errno);
+}
+
+std::filesystem::path temporary_name(const std::filesystem::path& path) { return path.string() + ".tmp"; }
+
+void publish(const std::filesystem::path& temporary, const std::filesystem::path& path) {
+  File file(temporary, O_RDONLY);
+  file.sync();
+  file.close();
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) throw_write_error(path, errno);
+  sync_directory(path.parent_path());
+}
+
+AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), file_(temporary_name(path_), O_WRONLY | O_CREAT | O_TRUNC) {}
+
+AtomicFile::~AtomicFile() {
+  if (!committed_) ::unlink(temporary_name(path_).c_str());
+}
+
+void AtomicFile::write(std::string_view bytes) {
+  buffer_.append(bytes);
+  if (buffer_.size() >= kBufferBytes) write_through();
+}
+
+void AtomicFile::commit() {
+  write_through();
+  file_.close();
+  publish(temporary_name(path_), path_);
+  committed_ = true;
+}
+
+void AtomicFile::write_through() {
+  file_.write(buffer_);
+  buffer_.clear();
+}
+
+}  // namespace millscope::output

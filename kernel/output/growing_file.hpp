@@ -1,0 +1,85 @@
+// HDF5 files that grow during a run and survive its end by kill -9.
+//
+// They are written in HDF5's single-writer-multiple-reader mode, whose order of writes keeps the file whole at every moment. HDF5 marks
+// such a file as "open for writing", which would lock ordinary readers out after a kill; `commit` clears that mark each time.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "kernel/output/hdf5_tools.hpp"
+
+namespace millscope::output::hdf5 {
+
+/// A dataset [rows, shape…] with unlimited rows.
+class Column {
+ public:
+  Column() = default;
+  Column(Handle set, std::filesystem::path path);
+
+  hsize_t rows() const { return extent_.front(); }
+  /// Values per row of a column [rows, size].
+  hsize_t row_size() const { return extent_.back(); }
+  /// Appends `count` rows from `values` (of the type T that the dataset was made with).
+  template <class T>
+  void append(const T* values, hsize_t count) {
+    append_raw(type_of<T>(), values, count);
+  }
+  void truncate(hsize_t rows);
+  /// All values of a column of doubles without shape.
+  std::vector<double> read_doubles() const;
+
+ private:
+  void append_raw(hid_t type, const void* values, hsize_t count);
+  Handle set_;
+  std::filesystem::path path_;
+  std::vector<hsize_t> extent_;
+};
+
+/// What a column is made of.
+struct ColumnSpec {
+  std::string name;
+  std::string unit;
+  std::vector<hsize_t> shape;  ///< of one row; empty: one value
+  hsize_t chunk_rows = 1024;
+  bool checksum = false;  ///< Fletcher32: only for chunks that are written once
+};
+
+void make_column_raw(hid_t parent, const ColumnSpec& spec, hid_t type, const std::filesystem::path& path);
+/// Makes an empty column in `parent`.
+template <class T>
+void make_column(hid_t parent, const ColumnSpec& spec, const std::filesystem::path& path) {
+  make_column_raw(parent, spec, type_of<T>(), path);
+}
+
+/// Writes a dataset that never changes.
+void write_fixed(hid_t parent, const std::string& name, hid_t type, hsize_t count, const void* values);
+
+class GrowingFile {
+ public:
+  /// Makes the file aside with `build` (which creates every object) and renames it. An existing file is a UserError.
+  static void create(const std::filesystem::path& path, const std::function<void(hid_t)>& build);
+  /// Opens it for `trim` (which may read and shrink), after clearing the mark of a killed writer. UserError when it is damaged.
+  static void reopen(const std::filesystem::path& path, const std::function<void(hid_t)>& trim);
+  /// Opens it for appending.
+  explicit GrowingFile(std::filesystem::path path);
+
+  Column column(const std::string& name) const;
+  /// To the operating system.
+  void flush();
+  /// To the operating system, and lets ordinary readers in: the end of one appended piece.
+  void commit();
+  /// To the disk.
+  void sync();
+  /// False when something could not be written.
+  bool close();
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  Handle file_;
+};
+
+}  // namespace millscope::output::hdf5

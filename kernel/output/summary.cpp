@@ -1,0 +1,59 @@
+#include "kernel/output/summary.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <ctime>
+#include <fstream>
+#include <thread>
+
+#include "kernel/output/file.hpp"
+#include "millscope/abi.hpp"
+
+namespace millscope::output {
+
+namespace {
+
+std::string processor_name() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind("model name", 0) != 0) continue;
+    const std::size_t colon = line.find(": ");
+    if (colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+}  // namespace
+
+nlohmann::ordered_json provenance(std::span<const std::string> command_line, std::span<const PluginRecord> plugins) {
+  nlohmann::ordered_json json;
+  json["version"] = MILLSCOPE_VERSION;
+  json["compiler"] = kCompiler;
+  json["host"] = host_name();
+  json["processor"] = processor_name();
+  json["cores"] = std::thread::hardware_concurrency();
+  json["date_utc"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  json["command_line"] = std::vector<std::string>(command_line.begin(), command_line.end());
+  json["plugins"] = nlohmann::ordered_json::array();
+  for (const PluginRecord& plugin : plugins) {
+    json["plugins"].push_back({{"name", plugin.name}, {"version", plugin.version}, {"file", plugin.file}, {"hash", plugin.hash}});
+  }
+  return json;
+}
+
+void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json) {
+  AtomicFile file(path);
+  // Names of files may hold any bytes; what is not UTF-8 is replaced.
+  file.write(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  file.commit();
+}
+
+}  // namespace millscope::output
