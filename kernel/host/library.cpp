@@ -48,15 +48,16 @@ const DescriptorList& list_of(const std::string& path, const boost::dll::shared_
   if (!handle.has(kSymbol)) {
     refuse(path, fmt::format("it has no symbol {}; it is no millscope plugin, or it lacks MILLSCOPE_PLUGINS(…)", kSymbol));
   }
-  const DescriptorList& list = handle.get<const DescriptorList>(kSymbol);
+  const void* address = &handle.get<const char>(kSymbol);
   Dl_info info{};
   void* extra = nullptr;
-  if (::dladdr1(&list, &info, &extra, RTLD_DL_SYMENT) == 0 || extra == nullptr) refuse(path, "its plugin list cannot be read");
+  if (::dladdr1(address, &info, &extra, RTLD_DL_SYMENT) == 0 || extra == nullptr) refuse(path, "its plugin list cannot be read");
   const auto& symbol = *static_cast<const ElfW(Sym)*>(extra);
-  if (ELF64_ST_TYPE(symbol.st_info) != STT_OBJECT || symbol.st_size < 16) {
+  if (ELF64_ST_TYPE(symbol.st_info) != STT_OBJECT || symbol.st_size < sizeof(DescriptorList) ||
+      reinterpret_cast<std::uintptr_t>(address) % alignof(DescriptorList) != 0) {
     refuse(path, fmt::format("its symbol {} is no plugin list", kSymbol));
   }
-  return list;
+  return *static_cast<const DescriptorList*>(address);
 }
 
 std::vector<const Descriptor*> checked_descriptors(const std::string& path, const DescriptorList& list) {
