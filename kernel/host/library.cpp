@@ -43,7 +43,7 @@ boost::dll::shared_library open_handle(const std::string& path) {
   }
 }
 
-/// The library's list, once the symbol is known to be data of sufficient size.
+/// The library's list, once the symbol is known to be data that holds at least the part which is the same in every ABI.
 const DescriptorList& list_of(const std::string& path, const boost::dll::shared_library& handle) {
   if (!handle.has(kSymbol)) {
     refuse(path, fmt::format("it has no symbol {}; it is no millscope plugin, or it lacks MILLSCOPE_PLUGINS(…)", kSymbol));
@@ -53,7 +53,7 @@ const DescriptorList& list_of(const std::string& path, const boost::dll::shared_
   void* extra = nullptr;
   if (::dladdr1(address, &info, &extra, RTLD_DL_SYMENT) == 0 || extra == nullptr) refuse(path, "its plugin list cannot be read");
   const auto& symbol = *static_cast<const ElfW(Sym)*>(extra);
-  if (ELF64_ST_TYPE(symbol.st_info) != STT_OBJECT || symbol.st_size < sizeof(DescriptorList) ||
+  if (ELF64_ST_TYPE(symbol.st_info) != STT_OBJECT || symbol.st_size < offsetof(DescriptorList, count) ||
       reinterpret_cast<std::uintptr_t>(address) % alignof(DescriptorList) != 0) {
     refuse(path, fmt::format("its symbol {} is no plugin list", kSymbol));
   }
