@@ -87,7 +87,9 @@ class HertzMindlin {
     out.normal_force = total;
     out.normal_stiffness = stiffness;
     out.elastic_energy = R(0.4) * elastic * overlap + shear.elastic_energy;
-    out.power[0] = (elastic - total) * normal_speed;
+    R taken = maximum(R(1.0) - stiffness * shear.lag, zero);
+    if (!tension_) taken = select(total > zero, taken, R(1.0));  // no force, no lag
+    out.power[0] = (elastic - total) * normal_speed * taken;
     out.power[1] = shear.damping;
     out.power[2] = shear.friction;
     out.power[3] = shear.stiffness_change;

@@ -98,7 +98,9 @@ class LinearSpringDashpot {
     out.normal_force = total;
     out.normal_stiffness = select(touching, R(normal_stiffness_), zero);
     out.elastic_energy = R(0.5) * elastic * overlap + shear.elastic_energy;
-    out.power[0] = (elastic - total) * normal_speed;
+    R taken = maximum(one - out.normal_stiffness * shear.lag, zero);
+    if (!tension_) taken = select(total > zero, taken, one);  // no force, no lag
+    out.power[0] = (elastic - total) * normal_speed * taken;
     out.power[1] = shear.damping;
     out.power[2] = shear.friction;
   }

@@ -10,8 +10,8 @@
 //   U_t = μ N χ [u − 2/5 (1 − (1 − u)^{5/2})]
 //
 // The spring follows the elastic F_n so that it has a potential; where damping lowers F_n, the slip is cut back to
-// u = 1 − (1 − L/(μ N))^{2/3} with L = μ max(F_n, 0). The work of turning and compressing at constant slip, (∂U_t/∂δ_n) δ̇_n, goes to
-// stiffness_change. Cap `sum` lets through the part of the damping force that keeps |F_t| ≤ L.
+// u = 1 − (1 − L/(μ N))^{2/3} with L = μ max(F_n, 0). A sliding contact is pulled with L. The work of turning and compressing at constant
+// slip, (∂U_t/∂δ_n) δ̇_n, goes to stiffness_change. Cap `sum` lets through the part of the damping force that keeps |F_t| ≤ L.
 #pragma once
 
 #include <cmath>
@@ -47,7 +47,7 @@ template <class R>
   const R scale = strength * largest;
 
   Shear<R> out;
-  const Vec<R> spring_force = (-(pull / distance)) * slip.trial;
+  const Vec<R> spring_force = (-(select(sliding, spring.limit, pull) / distance)) * slip.trial;
   const R damping = spring.damping * square_root(root);
   const R speed_square = dot(slip.speed, slip.speed);
   R passed = select(sliding, zero, one);
@@ -57,7 +57,8 @@ template <class R>
     passed = maximum(minimum((square_root(b * b + a * free) - b) / a, one), zero);
   }
   out.force = spring_force - (passed * damping) * slip.speed;
-  out.damping = passed * damping * speed_square;
+  out.lag = half * c.time_step * c.time_step / c.mass;
+  out.damping = passed * damping * speed_square * maximum(one - R(3.5) * spring.stiffness * root * out.lag, zero);
   out.elastic_energy = scale * partial_slip_energy(slipped);
 
   const Vec<R> now = kept * slip.trial, half_step = (half * c.time_step) * slip.speed;

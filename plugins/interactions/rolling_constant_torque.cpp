@@ -46,7 +46,7 @@ class RollingConstantTorque {
   template <class R>
   void post(const PairState<R>& pair, R*, PostResponse<R, 1>& out) const {
     const R zero(0.0);
-    const R moment = R(friction_) * rolling_lever(pair, effective_) * maximum(pair.normal_force, zero);
+    const R moment = R(friction_) * rolling_lever(pair, effective_) * select(pair.overlap > zero, maximum(pair.normal_force, zero), zero);
     const R stopping = R(0.1) * pair.mass * pair.radius * pair.radius / maximum(pair.time_step, R(1e-300));
     if (relative_) {
       out.moment_i = resist(rolling_part(pair.spin_i - pair.spin_j, pair.normal), moment, stopping, out.power[0]);

@@ -1,0 +1,84 @@
+// Gravity and air drag.
+#include <catch2/catch.hpp>
+
+#include "laws/plugins.hpp"
+#include "millscope/body_force.hpp"
+
+using namespace laws_test;
+
+namespace {
+
+const Descriptor& force_plugin(const std::string& name) { return open_plugin(plugin_directory() + "/lib" + name + ".so", name); }
+
+class Force {
+ public:
+  explicit Force(const ValueSet& values) : table_(static_cast<const BodyForceTable*>(values.descriptor().table)) {
+    Failure failure{};
+    const Values view = values.view();
+    if (table_->create(&view, &self_, &failure) != 0) throw Refusal(failure.message);
+  }
+  ~Force() { table_->destroy(self_); }
+  Force(const Force&) = delete;
+  Force& operator=(const Force&) = delete;
+
+  std::array<double, 3> uniform() const {
+    std::array<double, 3> a{};
+    CHECK(table_->uniform(self_, 0.0, a.data()) == 1);
+    return a;
+  }
+  /// Force on one bead, and the power taken from it.
+  std::array<double, 4> on(std::array<double, 3> x, std::array<double, 3> v, double radius) const {
+    double mass = 1e-3, force[3] = {}, moment[3] = {}, added = 0, spin = 0;
+    BodyForceBatch b{};
+    b.count = 1;
+    b.radius = &radius, b.mass = &mass, b.added_mass = &added;
+    for (std::size_t a = 0; a < 3; ++a) {
+      b.position[a] = &x[a], b.velocity[a] = &v[a], b.spin[a] = &spin, b.force[a] = &force[a], b.moment[a] = &moment[a];
+    }
+    table_->evaluate(self_, &b);
+    return {force[0], force[1], force[2], b.power_sum};
+  }
+
+ private:
+  const BodyForceTable* table_;
+  void* self_ = nullptr;
+};
+
+}  // namespace
+
+TEST_CASE("gravity points down, where it is told, and turns about z") {
+  const Descriptor& d = force_plugin("gravity");
+  CHECK(Force(ValueSet(d)).uniform() == std::array<double, 3>{0.0, -9.81, 0.0});
+  ValueSet tilted(d);
+  tilted.set("angle", 0.5);
+  CHECK(Force(tilted).uniform()[0] == Approx(9.81 * std::sin(0.5)));
+  ValueSet aside(d);
+  aside.set("direction", 2.0);  // (2, 2, 2)
+  CHECK(Force(aside).uniform()[2] == Approx(9.81 / std::sqrt(3.0)));
+  ValueSet nowhere(d);
+  nowhere.set("direction", 0.0);
+  CHECK_THROWS_WITH(Force(nowhere), Catch::Contains("no length"));
+}
+
+TEST_CASE("air drag is Stokes's at low speed, Schiller and Naumann's above, Newton's at high") {
+  const Descriptor& d = force_plugin("air_drag");
+  const Force drag{ValueSet(d)};
+  const double stokes = 6 * 3.14159265358979 * 1.82e-5 * 1e-5 * 1e-4;
+  CHECK(drag.on({}, {1e-4, 0, 0}, 1e-5)[0] == Approx(-stokes).epsilon(1e-3));
+  const double reynolds = 1.204 * 1.0 * 0.005 / 1.82e-5;
+  CHECK(drag.on({}, {0, 1, 0}, 2.5e-3)[1] == Approx(-3 * 3.14159265358979 * 1.82e-5 * 0.005 * (1 + 0.15 * std::pow(reynolds, 0.687))));
+  const double newton = 0.44 * 0.5 * 1.204 * 100 * 3.14159265358979 * 25e-6;
+  CHECK(drag.on({}, {0, 0, 10}, 5e-3)[2] == Approx(-newton));
+  CHECK(drag.on({}, {0, 0, 10}, 5e-3)[3] == Approx(10 * newton));
+}
+
+TEST_CASE("a fluid that turns with the mill does not brake a bead that turns with it") {
+  const Descriptor& d = force_plugin("air_drag");
+  ValueSet values(d);
+  values.set("flow", "turning").set("angular_velocity", -6.0);
+  const Force drag(values);
+  CHECK(drag.on({0.1, 0.05, 0}, {0.3, -0.6, 0}, 2.5e-3)[0] == Approx(0.0).margin(1e-18));
+  CHECK(drag.on({0.1, 0.0, 0}, {0, -0.3, 0}, 2.5e-3)[3] < 0.0);  // driven by the fluid
+  values.set("flow", "at_rest");
+  CHECK_THROWS_WITH(Force(values), Catch::Contains("flow: turning"));
+}

@@ -1,0 +1,189 @@
+// Rolling friction, cohesion and parameters that depend on speed.
+#include <catch2/catch.hpp>
+
+#include "laws/two_bodies.hpp"
+
+using namespace laws_test;
+
+namespace {
+
+/// One pair in a batch of eight slots; the others are padding.
+struct OnePair {
+  double overlap[8], normal[3][8]{}, velocity[3][8]{}, spin_i[3][8]{}, spin_j[3][8]{}, radius_i[8], radius_j[8], radius[8], mass[8];
+  double force[8]{}, stiffness[8]{}, history[kMaxHistory][8]{}, added_force[8]{}, added_cap[8]{}, moment_i[3][8]{}, moment_j[3][8]{};
+  InteractionBatch batch{};
+
+  OnePair() {
+    for (int k = 0; k < 8; ++k) overlap[k] = -1, radius_i[k] = radius_j[k] = 5e-3, radius[k] = 2.5e-3, mass[k] = 1e-3;
+    overlap[0] = 1e-5;
+    normal[0][0] = 1.0;
+    force[0] = 2.0;
+    stiffness[0] = 1e4;
+    batch.count = 8;
+    batch.time_step = 1e-5;
+    batch.overlap = overlap;
+    batch.radius_i = radius_i, batch.radius_j = radius_j, batch.radius = radius, batch.mass = mass;
+    batch.normal_force = force, batch.normal_stiffness = stiffness;
+    batch.added_force = added_force, batch.added_cap = added_cap;
+    for (int h = 0; h < kMaxHistory; ++h) batch.history[h] = history[h];
+    for (int a = 0; a < 3; ++a) {
+      batch.normal[a] = normal[a], batch.velocity[a] = velocity[a], batch.spin_i[a] = spin_i[a], batch.spin_j[a] = spin_j[a];
+      batch.moment_i[a] = moment_i[a], batch.moment_j[a] = moment_j[a];
+    }
+  }
+
+  void evaluate(const std::string& name, const std::string& text) {
+    const Descriptor& d = plugin(name);
+    const ValueSet values = values_of(d, text);
+    const Held<InteractionTable> held(*static_cast<const InteractionTable*>(d.table), values.view(), bead_pair());
+    for (int a = 0; a < 3; ++a) moment_i[a][0] = moment_j[a][0] = 0;
+    held.table().evaluate(held.get(), &batch);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the constant torque is mu_r L F_n against the rolling, and nothing against the twist") {
+  OnePair p;
+  p.spin_i[0][0] = 40.0;
+  p.spin_i[2][0] = 10.0;
+  p.spin_j[2][0] = -5.0;
+  p.evaluate("rolling_constant_torque", "rolling_friction=0.02");
+  CHECK(p.moment_i[0][0] == 0.0);
+  CHECK(p.moment_i[2][0] == Approx(-0.02 * 2.5e-3 * 2.0));
+  CHECK(p.moment_j[2][0] == -p.moment_i[2][0]);
+  CHECK(p.batch.power_sum[0] == Approx(0.02 * 2.5e-3 * 2.0 * 15.0));
+  p.evaluate("rolling_constant_torque", "rolling_friction=0.02 length=radius");
+  CHECK(p.moment_i[2][0] == Approx(-0.02 * 5e-3 * 2.0));
+  p.evaluate("rolling_constant_torque", "rolling_friction=0.02 spin=absolute");
+  CHECK(p.moment_j[2][0] == Approx(0.02 * 2.5e-3 * 2.0));
+  CHECK(p.moment_i[0][0] < 0.0);
+}
+
+TEST_CASE("near rest the torque does not overshoot") {
+  OnePair p;
+  p.spin_i[2][0] = 1e-4;
+  p.evaluate("rolling_constant_torque", "rolling_friction=0.5");
+  const double inertia = 0.4 * 2e-3 * 25e-6;
+  CHECK(std::fabs(p.moment_i[2][0]) * 1e-5 / inertia < 0.5 * 1e-4);
+  CHECK(p.moment_i[2][0] < 0.0);
+}
+
+TEST_CASE("a rolling sphere on a plane stops after the distance of theory") {
+  // Deceleration 5/7 μ_r g L/R with L = R for a wall: v² = 2 a s.
+  const double mass = bead().mass, radius = 5e-3, rolling = 0.05, weight = mass * 9.81;
+  OnePair p;
+  p.radius_i[0] = p.radius[0] = radius;
+  p.radius_j[0] = 0.0;
+  p.mass[0] = mass;
+  p.force[0] = weight;
+  const double inertia = 1.4 * mass * radius * radius;  // about the point of contact
+  double spin = 20.0, distance = 0.0;
+  const double start = spin * radius;
+  p.batch.time_step = 1e-4;
+  for (int step = 0; step < 20000 && spin > 1e-6; ++step) {
+    p.spin_i[2][0] = spin;
+    p.evaluate("rolling_constant_torque", "rolling_friction=0.05");
+    spin += p.moment_i[2][0] / inertia * 1e-4;
+    distance += spin * radius * 1e-4;
+  }
+  CHECK(distance == Approx(start * start / (2 * 5.0 / 7.0 * rolling * 9.81)).epsilon(0.01));
+}
+
+TEST_CASE("the elastic-plastic rolling spring is stiff at first and then capped") {
+  OnePair p;
+  p.spin_i[2][0] = 1.0;
+  const double lever = 0.1 * 2.5e-3, stiffness = 2.25 * 1e4 * lever * lever, limit = lever * 2.0;
+  p.evaluate("rolling_epsd", "rolling_friction=0.1");
+  CHECK(p.moment_i[2][0] == Approx(-stiffness * 0.5e-5));
+  double dissipated = 0;
+  for (int step = 0; step < 100000; ++step) {
+    p.evaluate("rolling_epsd", "rolling_friction=0.1");
+    dissipated += p.batch.power_sum[1] * 1e-5;
+    if (p.batch.power_sum[1] > 0) break;
+  }
+  p.evaluate("rolling_epsd", "rolling_friction=0.1");
+  CHECK(p.moment_i[2][0] == Approx(-limit));
+  CHECK(p.batch.power_sum[1] == Approx(limit * 1.0).epsilon(1e-6));
+  p.spin_i[2][0] = -1.0;  // turning back: the spring unloads before it slides the other way
+  p.evaluate("rolling_epsd", "rolling_friction=0.1");
+  p.evaluate("rolling_epsd", "rolling_friction=0.1");
+  CHECK(p.moment_i[2][0] > -limit);
+  CHECK(p.batch.power_sum[1] == 0.0);
+}
+
+TEST_CASE("cohesion is the energy density times the area of the circle of contact") {
+  OnePair p;
+  p.evaluate("cohesion_sjkr", "cohesion_energy_density=20000");
+  const double half = 5e-3 - 0.5e-5, area = 3.14159265358979 * (25e-6 - half * half);
+  CHECK(p.added_force[0] == Approx(-20000 * area).epsilon(1e-9));
+  CHECK(p.added_cap[0] == 0.0);
+  OnePair wall;
+  wall.radius_j[0] = 0.0;
+  wall.evaluate("cohesion_sjkr", "cohesion_energy_density=20000 friction=net");
+  const double depth = 5e-3 - 1e-5;
+  CHECK(wall.added_force[0] == Approx(-20000 * 3.14159265358979 * (25e-6 - depth * depth)).epsilon(1e-9));
+  CHECK(wall.added_cap[0] == wall.added_force[0]);
+  // −∂U/∂δ
+  for (double* radius_j : {p.radius_j, wall.radius_j}) {
+    OnePair low, high;
+    low.radius_j[0] = high.radius_j[0] = radius_j[0] == 0.0 ? 0.0 : 3e-3;
+    low.overlap[0] = 0.999e-5, high.overlap[0] = 1.001e-5;
+    low.evaluate("cohesion_sjkr", "cohesion_energy_density=20000");
+    high.evaluate("cohesion_sjkr", "cohesion_energy_density=20000");
+    const double slope = (high.batch.elastic_sum - low.batch.elastic_sum) / 2e-8;
+    CHECK(slope == Approx(0.5 * (low.added_force[0] + high.added_force[0])).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("restitution falls with the speed of impact, which is kept while the beads touch") {
+  const Descriptor& d = plugin("restitution_by_speed");
+  const auto& table = *static_cast<const PairParameterTable*>(d.table);
+  for (const char* form : {"viscoelastic", "plastic"}) {
+    ValueSet values(d);
+    values.set("form", form).set("reference_restitution", 0.8);
+    const Held<PairParameterTable> held(table, values.view(), bead_pair());
+    OnePair p;
+    double restitution[8];
+    PairParameterBatch b{};
+    b.count = 8;
+    b.time_step = 1e-5;
+    b.overlap = p.overlap, b.radius = p.radius, b.mass = p.mass, b.restitution = restitution;
+    for (int a = 0; a < 3; ++a) b.normal[a] = p.normal[a], b.velocity[a] = p.velocity[a];
+    for (int h = 0; h < kMaxHistory; ++h) b.history[h] = p.history[h];
+    p.velocity[0][0] = -3.0;
+    table.evaluate(held.get(), &b);
+    const double expected = form[0] == 'v' ? 1.0 - 0.2 * std::pow(3.0, 0.2) : 0.8 * std::pow(3.0, -0.25);
+    CHECK(restitution[0] == Approx(expected));
+    p.velocity[0][0] = 0.5;
+    table.evaluate(held.get(), &b);
+    CHECK(restitution[0] == Approx(expected));
+    p.overlap[0] = -1e-6;
+    table.evaluate(held.get(), &b);
+    p.overlap[0] = 1e-6;
+    p.velocity[0][0] = -1.0;
+    table.evaluate(held.get(), &b);
+    CHECK(restitution[0] == Approx(0.8));
+  }
+}
+
+TEST_CASE("friction falls with the speed of sliding") {
+  const Descriptor& d = plugin("friction_by_speed");
+  const auto& table = *static_cast<const PairParameterTable*>(d.table);
+  ValueSet values(d);
+  values.set("static_friction", 0.5).set("kinetic_ratio", 0.6).set("decay_speed", 0.2);
+  const Held<PairParameterTable> held(table, values.view(), bead_pair());
+  OnePair p;
+  double friction[8];
+  PairParameterBatch b{};
+  b.count = 8;
+  b.time_step = 1e-5;
+  b.overlap = p.overlap, b.radius = p.radius, b.mass = p.mass, b.friction = friction;
+  for (int a = 0; a < 3; ++a) b.normal[a] = p.normal[a], b.velocity[a] = p.velocity[a];
+  p.velocity[0][0] = 7.0;  // along the normal: no sliding
+  table.evaluate(held.get(), &b);
+  CHECK(friction[0] == Approx(0.5));
+  p.velocity[1][0] = 0.2;
+  table.evaluate(held.get(), &b);
+  CHECK(friction[0] == Approx(0.3 + 0.2 * std::exp(-1.0)));
+}

@@ -1,0 +1,57 @@
+// The energy ledger of a collision: what the bodies lose is what the channels book.
+#include <catch2/catch.hpp>
+
+#include "laws/two_bodies.hpp"
+
+using namespace laws_test;
+
+namespace {
+
+struct Balance {
+  double error, spread;
+};
+
+/// Mean and standard deviation of (lost − booked)/kinetic over where the first touch falls within a step.
+Balance balance(const Law& law, double speed, double sideways, double dt) {
+  constexpr int n = 32;
+  double sum = 0, squares = 0;
+  for (int k = 0; k < n; ++k) {
+    Collision c = head_on(law, speed, sideways, speed * dt * 1e5 * (k + 0.5) / n);
+    const Outcome out = c.run(dt);
+    const double error = (out.kinetic_before - out.kinetic_after - out.total_lost()) / out.kinetic_before;
+    sum += error / n;
+    squares += error * error / n;
+  }
+  return {sum, std::sqrt(std::max(0.0, squares - sum * sum))};
+}
+
+}  // namespace
+
+TEST_CASE("the ledger of a collision closes within 0.1 % at 20 % of the Rayleigh time") {
+  for (const Case& c : kCases) {
+    const Law law = make_law(c.law, c.values);
+    for (const double sideways : {0.0, 0.2, 1.0}) {
+      const Balance b = balance(law, 1.0, sideways, rayleigh_step());
+      INFO(c.law << " " << c.values << ", sideways " << sideways << ": " << b.error << " +- " << b.spread);
+      CHECK(std::fabs(b.error) < 1e-3);
+    }
+  }
+}
+
+TEST_CASE("the ledger converges with the second order of the time step") {
+  for (const Case& c : kCases) {
+    const Law law = make_law(c.law, c.values);
+    const Balance fine = balance(law, 1.0, 0.5, 0.05 * rayleigh_step());
+    INFO(c.law << " " << c.values << ": " << fine.error);
+    CHECK(std::fabs(fine.error) < 5e-5);
+  }
+}
+
+TEST_CASE("the change of stiffness is a channel of its own and may give energy back") {
+  const Law law = make_law("hertz_mindlin", "restitution=1 static_friction=10");
+  Collision c = head_on(law, 1.0, 0.2);
+  const Outcome out = c.run(1e-7);
+  CHECK(std::string(law.table().info.channel_name[3]) == "stiffness_change");
+  CHECK(std::fabs(out.lost[3]) > 1e-4 * out.kinetic_before);
+  CHECK(out.lost[0] == Approx(0.0).margin(1e-9 * out.kinetic_before));
+}
