@@ -74,7 +74,8 @@ aiMatrix4x4t<double> in_double(const aiMatrix4x4& m) {
 std::string solid_name(const aiMesh& mesh, const aiNode& node, bool is_root) {
   const auto made_up = [](const std::string& s) { return s.empty() || s[0] == '<' || s[0] == '$' || s == "defaultobject"; };
   std::string name = mesh.mName.C_Str();
-  if (made_up(name)) name = is_root ? "" : node.mName.C_Str();
+  const bool is_number = name.find_first_not_of("0123456789") == std::string::npos;  // 3MF: the object's id; its name is the node's
+  if ((is_number && !made_up(node.mName.C_Str()) && !is_root) || made_up(name)) name = is_root ? "" : node.mName.C_Str();
   if (made_up(name)) name = "all";
   for (char& c : name) {
     if (c == '|' || static_cast<unsigned char>(c) < ' ') c = '_';
@@ -131,6 +132,7 @@ void import_into(int pipe, const std::string& path, const std::string& extension
   if (!scene || !scene->mRootNode) {
     std::string why = importer.GetErrorString();
     for (char& c : why) c = static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    if (why.empty()) why = "its content is damaged";
     throw Refusal("cannot be read as " + extension + " (" + why.substr(0, 300) + "): export it again, as STL if that is possible");
   }
   send_scene(pipe, *scene, max_triangles);
