@@ -12,6 +12,7 @@ namespace millscope::config {
 
 /// The case with every default filled in and every number in SI, as YAML that reads back to the same case. Parameters of plugins that
 /// are not among `descriptors` are copied as written (relative files made absolute only where a descriptor names them).
+/// Call it after `finish`: what it copies counts as read.
 std::string resolved_yaml(const Case& c, std::span<const Descriptor* const> descriptors = {});
 
 /// JSON Schema (draft 7) of case files with the parameters of these plugins.
