@@ -125,7 +125,7 @@ TEST_CASE("Every format gives the same cube") {
   check_cube(folder.write("windows.STL",
                           [] {
                             std::string text = text_stl({"block"});
-                            for (std::size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += 2) text.insert(i, "\r");
+                            for (std::size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += 2) text.insert(i, 1, '\r');
                             return text;
                           }()),
              "block");
