@@ -1,0 +1,72 @@
+#include "kernel/output/frames.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "output/support.hpp"
+
+using namespace millscope::output;
+using namespace output_test;
+using Catch::Contains;
+
+namespace {
+
+const std::vector<std::string> kAll{"time",     "wall_angle", "angular_velocity", "wall_work",  "dissipation",    "position",
+                                    "velocity", "spin",       "beads/id",         "beads/mass", "beads/material", "beads/radius"};
+
+void write(FrameWriter& writer, Story& story, int from, int to) {
+  for (int k = from; k < to; ++k) writer.append(story.frame(k));
+}
+
+}  // namespace
+
+TEST_CASE("a resumed frames file equals that of an uninterrupted run") {
+  const Scratch scratch;
+  Story story(17);
+  FrameWriter whole = FrameWriter::create(scratch / "whole.h5", story.table());
+  write(whole, story, 0, 20);
+  CHECK(whole.frame_count() == 20);
+  whole.close();
+  {
+    FrameWriter first = FrameWriter::create(scratch / "frames.h5", story.table());
+    write(first, story, 0, 14);
+  }
+  {
+    FrameWriter second = FrameWriter::resume(scratch / "frames.h5", 17, story.frame(8).time);
+    CHECK(second.frame_count() == 9);
+    write(second, story, 9, 20);
+  }
+  FrameWriter::resume(scratch / "frames.h5", 17, 1e9).close();  // a finished run, to be continued
+  for (const std::string& name : kAll) {
+    INFO(name);
+    CHECK(read_all(scratch / "frames.h5", name) == read_all(scratch / "whole.h5", name));
+  }
+  CHECK(read_all(scratch / "frames.h5", "position").size() == 20 * 17 * 3);
+}
+
+TEST_CASE("frames can be read while the run goes on") {
+  const Scratch scratch;
+  Story story(5, 0);
+  FrameWriter writer = FrameWriter::create(scratch / "frames.h5", story.table());
+  write(writer, story, 0, 3);
+  CHECK(read_all(scratch / "frames.h5", "time") == std::vector<double>{0, 0.005, 0.01});
+  CHECK(read_all(scratch / "frames.h5", "position").size() == 45);
+}
+
+TEST_CASE("a frames file refuses what does not belong to it") {
+  const Scratch scratch;
+  Story story(5);
+  const auto path = scratch / "frames.h5";
+  CHECK_THAT(refusal([&] { FrameWriter::resume(path, 5, 0); }), Contains("is missing"));
+  FrameWriter writer = FrameWriter::create(path, story.table());
+  write(writer, story, 0, 3);
+  CHECK_THROWS_AS(writer.append(story.frame(2)), std::logic_error);
+  CHECK_THROWS_AS(writer.append(Story(4).frame(3)), std::logic_error);
+  writer.close();
+  CHECK_THAT(refusal([&] { FrameWriter::create(path, story.table()); }), Contains("exists already"));
+  CHECK_THAT(refusal([&] { FrameWriter::resume(path, 6, 0); }), Contains("holds 5 beads"));
+  spill(path, slurp(path).substr(0, 3000));
+  CHECK_THAT(refusal([&] { FrameWriter::resume(path, 5, 0); }), Contains("frames.h5"));
+  spill(path, "no HDF5");
+  CHECK_THAT(refusal([&] { FrameWriter::resume(path, 5, 0); }), Contains("is damaged at its start"));
+  CHECK_THAT(refusal([&] { FrameWriter::create(scratch / "missing/frames.h5", story.table()); }), Contains("cannot be written"));
+}

@@ -1,0 +1,53 @@
+// What the tests of the output room share.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "kernel/output/frames.hpp"
+
+namespace output_test {
+
+/// A directory of its own that vanishes with the object.
+class Scratch {
+ public:
+  Scratch();
+  ~Scratch();
+  std::filesystem::path operator/(const std::string& name) const { return path / name; }
+  std::filesystem::path path;
+};
+
+/// A file system of `bytes` on a scratch directory; `mounted` is false where that is not permitted.
+class SmallDisk {
+ public:
+  explicit SmallDisk(std::size_t bytes);
+  ~SmallDisk();
+  Scratch scratch;
+  bool mounted;
+};
+
+std::string slurp(const std::filesystem::path& path);
+void spill(const std::filesystem::path& path, const std::string& text);
+
+/// The message of the UserError that `body` throws; "" when it throws none.
+std::string refusal(const std::function<void()>& body);
+
+/// Beads that move with the frame's number: what a resumed file must repeat.
+class Story {
+ public:
+  explicit Story(std::size_t beads, std::size_t walls = 2);
+  millscope::output::BeadTable table() const;
+  /// Frame k; valid until the next call.
+  millscope::output::FrameView frame(int k);
+
+ private:
+  std::vector<std::uint32_t> id_, material_;
+  std::vector<double> radius_, mass_, work_, position_, velocity_, spin_;
+};
+
+/// All values of a dataset as doubles, read by HDF5 alone, without any help of ours; throws when HDF5 refuses.
+std::vector<double> read_all(const std::filesystem::path& file, const std::string& dataset);
+
+}  // namespace output_test
