@@ -27,6 +27,13 @@ template <class R>
   return u - R(0.4) * (R(1.0) - rest * rest * square_root(rest));
 }
 
+/// F_t/(μ N) at u.
+template <class R>
+[[gnu::always_inline]] inline R partial_slip_force(const R& u) {
+  const R rest = maximum(R(1.0) - u, R(0.0));
+  return R(1.0) - rest * square_root(rest);
+}
+
 template <class R>
 [[gnu::always_inline]] inline Shear<R> pull_partial_slip(const Contact<R>& c, const R& normal_speed, const R& elastic,
                                                          const Spring<R>& spring, Cap cap, R (&history)[3]) {
@@ -47,31 +54,34 @@ template <class R>
   const R scale = strength * largest;
 
   Shear<R> out;
-  const Vec<R> spring_force = (-(select(sliding, spring.limit, pull) / distance)) * slip.trial;
+  const R size = select(sliding, spring.limit, pull);
+  const Vec<R> spring_force = (-(size / distance)) * slip.trial;
   const R damping = spring.damping * square_root(root);
   const R speed_square = dot(slip.speed, slip.speed);
   R passed = select(sliding, zero, one);
   if (cap == Cap::sum) {  // the root in [0, 1] of |F_spring − passed γ v| = L
     const R a = maximum(damping * damping * speed_square, tiny), b = -(damping * dot(spring_force, slip.speed));
-    const R free = maximum(spring.limit * spring.limit - pull * pull, zero);
+    const R free = maximum(spring.limit * spring.limit - size * size, zero);
     passed = maximum(minimum((square_root(b * b + a * free) - b) / a, one), zero);
   }
   out.force = spring_force - (passed * damping) * slip.speed;
-  out.lag = half * c.time_step * c.time_step / c.mass;
-  out.damping = passed * damping * speed_square * maximum(one - R(3.5) * spring.stiffness * root * out.lag, zero);
+  out.per_mass = one / c.mass;
+  out.damping = passed * damping * speed_square;
   out.elastic_energy = scale * partial_slip_energy(slipped);
 
   const Vec<R> now = kept * slip.trial, half_step = (half * c.time_step) * slip.speed;
-  const R energy_before = scale * partial_slip_energy(length(slip.trial - half_step) / largest);
-  const R energy_after = scale * partial_slip_energy(length(now + half_step) / largest);
+  const R before = length(slip.trial - half_step) / largest, after = length(now + half_step) / largest;
+  const R energy_before = partial_slip_energy(before), energy_after = partial_slip_energy(after);
   const R work = -(dot(spring_force, slip.speed) * c.time_step);
-  const R lost = select(sliding, work - (energy_after - energy_before), zero);
+  const R lost = select(sliding, work - scale * (energy_after - energy_before), zero);
   out.friction = maximum((lost + half * spring.stiffness * slip.off_plane * slip.off_plane) * c.per_time_step, zero);
   keep_slip(c, now, slip.speed, history);
 
-  // ∂U_t/∂ln δ_n with N ∝ δ_n^{3/2} in its elastic part and χ = 3/2 μ N/S_t.
-  const R part = elastic / maximum(load, tiny);
-  const R with_overlap = out.elastic_energy * (R(3.0) * part - half) - pull * (slipped * largest) * (R(1.5) * part - half);
+  // ∂U_t/∂ln δ_n with N ∝ δ_n^{3/2} in its elastic part and χ = 3/2 μ N/S_t: the mean of what is held before and after the step.
+  const R part = elastic / maximum(load, tiny), by_energy = R(3.0) * part - half, by_slip = R(1.5) * part - half;
+  const R with_overlap =
+      half * scale *
+      ((energy_before + energy_after) * by_energy - (before * partial_slip_force(before) + after * partial_slip_force(after)) * by_slip);
   const R growth = maximum(minimum(R(2.0) * spring.growth_scaled / (spring.scale * spring.scale), c.per_time_step), -c.per_time_step);
   out.stiffness_change = -(with_overlap * growth);
   return out;
