@@ -82,6 +82,7 @@ void System::save(const DoubleSink& put_doubles, const IntegerSink& put_integers
   put_doubles("position", doubles(p.position), 4 * n);
   put_doubles("motion", doubles(p.motion), 8 * n);
   put_doubles("half", doubles(p.half), 8 * n);
+  put_doubles("acceleration", doubles(p.acceleration), 8 * n);
   put_doubles("reference", doubles(p.reference), 4 * n);
   const std::vector<std::int64_t> ids(p.id.begin(), p.id.end()), materials(p.material.begin(), p.material.end());
   put_integers("id", ids.data(), n);
@@ -156,6 +157,7 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
   p.resize(n);
   put(p.motion, get_doubles("motion"));
   put(p.half, get_doubles("half"));
+  put(p.acceleration, get_doubles("acceleration"));
   put(p.reference, get_doubles("reference"));
   const std::vector<std::int64_t> ids = get_integers("id"), materials = get_integers("material");
   std::copy(ids.begin(), ids.end(), p.id.begin());

@@ -217,10 +217,12 @@ void System::rebuild() {
   extract_pair_history();
   extract_wall_history();
   Particles& p = particles;
-  // The forces are zero between steps, so their lines serve as the spare half.
+  // The forces are zero between steps: their lines serve as the spare half of the accelerations.
   AlignedVector<MotionLine> spare_motion(p.motion.size());
   permute(p.motion, spare_motion, new_index_);
   permute(p.half, spare_motion, new_index_);
+  permute(p.acceleration, p.force, new_index_);
+  for (ForceLine& f : p.force) f = ForceLine{};
   AlignedVector<PositionLine> spare_position(p.position.size());
   permute(p.position, spare_position, new_index_);
   permute(p.reference, spare_position, new_index_);

@@ -116,6 +116,7 @@ void System::integrate(int slab, int worker) {
   (void)worker;
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
   const IntegrateContext context{particles.position.data(), particles.motion.data(), particles.half.data(), particles.force.data(),
+                                 particles.acceleration.data(),
                                  particles.reference.data(), slab_begin(slab), slab_begin(slab + 1), settings_.time_step,
                                  {acceleration_[0], acceleration_[1], acceleration_[2]}, largest_step_ * largest_step_};
   state.result = wide_->integrate(context);

@@ -281,7 +281,7 @@ std::uint64_t System::state_hash() const {
 
 std::size_t System::memory_bytes() const {
   const std::size_t n = particles.position.size();
-  std::size_t bytes = n * (2 * sizeof(PositionLine) + 3 * sizeof(MotionLine) + sizeof(PositionLine) + 5);
+  std::size_t bytes = n * (2 * sizeof(PositionLine) + 4 * sizeof(MotionLine) + sizeof(PositionLine) + 5);
   for (const auto& slab : slabs_) {
     for (const PairList& list : slab->lists) bytes += list.owner.capacity() * (9 + 8 * list.history.size());
     bytes += slab->halo.capacity() * sizeof(ForceLine);

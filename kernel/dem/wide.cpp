@@ -356,6 +356,10 @@ IntegrateResult integrate(const IntegrateContext& c) {
     ForceLine& force = c.force[i];
     const Four a = (load4(force.f) * four(motion.inverse_mass) + g) * keep;
     const Four alpha = load4(force.t) * four(motion.inverse_inertia) * keep;
+    ForceLine& last = c.last[i];
+    const Four next_a = a + (a - load4(last.f)), next_alpha = alpha + (alpha - load4(last.t));
+    store4(last.f, a);
+    store4(last.t, alpha);
     const Four v = load4(half.v) + dt * a;
     const Four w = load4(half.w) + dt * alpha;
     const Four step = dt * v * keep;
@@ -364,8 +368,8 @@ IntegrateResult integrate(const IntegrateContext& c) {
     const Four step2 = step * step, moved2 = moved * moved;
     store4(half.v, v);
     store4(half.w, w);
-    store4(motion.v, v + half_dt * a);
-    store4(motion.w, w + half_dt * alpha);
+    store4(motion.v, v + half_dt * next_a);
+    store4(motion.w, w + half_dt * next_alpha);
     store4(&c.position[i], x);
     store4(force.f, four(0.0));
     store4(force.t, four(0.0));

@@ -29,6 +29,7 @@ struct IntegrateContext {
   MotionLine* motion;
   MotionLine* half;
   ForceLine* force;
+  ForceLine* last;  ///< accelerations of the last step, replaced
   const PositionLine* reference;  ///< centre at the last rebuild; `radius` holds the square of the allowed displacement
   std::int64_t begin, end;
   double time_step;
