@@ -105,7 +105,7 @@ std::unique_ptr<FrameWriter::Impl> FrameWriter::Impl::open(const fs::path& path,
   for (const char* name : kBeadColumns) impl->beads.push_back(impl->file.column(name));
   if (walls > 0) impl->ledger.push_back(impl->file.column("wall_work"));
   if (dissipations > 0) impl->ledger.push_back(impl->file.column("dissipation"));
-  impl->file.commit();
+  impl->file.flush();
   return impl;
 }
 
@@ -182,7 +182,7 @@ void FrameWriter::append(const FrameView& frame) {
   if (f.dissipation_count > 0) f.ledger.back().append(frame.dissipation.data(), 1);
   f.file.flush();
   f.time.append(&frame.time, 1);  // last: what `time` lists is complete
-  f.file.commit();
+  f.file.flush();
   f.last_time = frame.time;
 }
 

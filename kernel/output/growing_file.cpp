@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 
 #include "kernel/config/error.hpp"
 #include "kernel/output/file.hpp"
@@ -123,15 +124,13 @@ Column GrowingFile::column(const std::string& name) const {
   return {checked({H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose}, path_, "opening '" + name + "'"), path_};
 }
 
-void GrowingFile::flush() { check(H5Fflush(file_, H5F_SCOPE_GLOBAL), path_, "writing"); }
-
-void GrowingFile::commit() {
-  flush();
+void GrowingFile::flush() {
+  check(H5Fflush(file_, H5F_SCOPE_GLOBAL), path_, "writing");
   clear_writer_mark(path_);
 }
 
 void GrowingFile::sync() {
-  commit();
+  flush();
   File(path_, O_RDONLY).sync();
 }
 

@@ -1,7 +1,7 @@
 // HDF5 files that grow during a run and survive its end by kill -9.
 //
 // They are written in HDF5's single-writer-multiple-reader mode, whose order of writes keeps the file whole at every moment. HDF5 marks
-// such a file as "open for writing", which would lock ordinary readers out after a kill; `commit` clears that mark each time.
+// such a file as "open for writing", which would lock ordinary readers out after a kill; `flush` clears that mark each time.
 #pragma once
 
 #include <filesystem>
@@ -67,10 +67,8 @@ class GrowingFile {
   explicit GrowingFile(std::filesystem::path path);
 
   Column column(const std::string& name) const;
-  /// To the operating system.
+  /// To the operating system, and lets ordinary readers in.
   void flush();
-  /// To the operating system, and lets ordinary readers in: the end of one appended piece.
-  void commit();
   /// To the disk.
   void sync();
   /// False when something could not be written.

@@ -58,7 +58,7 @@ struct TrackWriter::Impl {
 
   Impl(const fs::path& path, std::span<const TrackInfo> infos) : file(path) {
     for (const TrackInfo& info : infos) tracks.push_back({file.column(info.name + "/t"), file.column(info.name + "/position"), {}, {}});
-    file.commit();
+    file.flush();
   }
 
   void append(Track& track, double time, const double* position) {
@@ -90,7 +90,7 @@ void TrackWriter::Impl::write_through() {
     track.t_buffer.clear();
     track.position_buffer.clear();
   }
-  file.commit();
+  file.flush();
   full = false;
 }
 

@@ -1,4 +1,5 @@
 // A full disk: one line that says which file and what to do, and nothing of what was written before is lost.
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -23,7 +24,7 @@ constexpr std::size_t kDisk = 4 << 20;
 
 void write_checkpoint(const std::filesystem::path& directory, std::size_t count) {
   ArchiveWriter writer(checkpoint_path(directory));
-  for (int part = 0; part < 8; ++part) writer.write("x" + std::to_string(part), std::vector<double>(count / 8, 1.5));
+  for (int part = 0; part < 8; ++part) writer.write(fmt::format("x{}", part), std::vector<double>(count / 8, 1.5));
   writer.seal();
   rotate_checkpoints(directory);
   writer.commit();

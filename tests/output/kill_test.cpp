@@ -84,7 +84,7 @@ TEST_CASE("a frames file is readable right after kill -9") {
     } catch (const std::runtime_error&) {
     }
   }
-  CHECK(readable >= 15);
+  CHECK(readable >= 15);  // a kill within one of HDF5's own writes leaves the mark; see docs/format.md
 }
 
 TEST_CASE("kill -9 while a checkpoint is written leaves the one before") {
@@ -96,6 +96,7 @@ TEST_CASE("kill -9 while a checkpoint is written leaves the one before") {
     rotate_checkpoints(scratch.path);
     writer.commit();
   };
+  write(0);
   write(0);
   for (unsigned trial = 0; trial < 15; ++trial) {
     run_and_kill(
