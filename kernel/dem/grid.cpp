@@ -236,6 +236,7 @@ void System::rebuild() {
   p.id.swap(ids);
   p.material.swap(materials);
   workers_->run(settings_.partitions, [this](int slab, int) { build_pairs(slab); });
+  find_first_references();
   build_walls();
   ++rebuilds_;
   last_rebuild_step_ = step_;

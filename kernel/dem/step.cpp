@@ -7,12 +7,13 @@
 
 namespace millscope::dem {
 
-/// Phase A: pairs of this slab, then its walls.
+/// Phase A: walls, then the pairs of this slab.
 void System::contacts(int slab, int worker) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
   Scratch& scratch = *scratch_[static_cast<std::size_t>(worker)];
   BatchArrays& batch = scratch.batch;
   state.ledger.reset_instant();
+  for (std::size_t body = 0; body < bodies.size(); ++body) walls(slab, worker, body);
   const ScatterContext base{particles.force.data(), state.halo.data(), slab_begin(slab + 1), false};
   for (std::size_t p = 0; p < physics_.size(); ++p) {
     if (physics_[p].wall) continue;
@@ -43,7 +44,18 @@ void System::contacts(int slab, int worker) {
       wide_->scatter(scatter, list, count, spins, batch);
     }
   }
-  for (std::size_t body = 0; body < bodies.size(); ++body) walls(slab, worker, body);
+}
+
+void System::find_first_references() {
+  first_reference_.assign(static_cast<std::size_t>(settings_.partitions), 0);
+  for (int slab = 0; slab < settings_.partitions; ++slab) {
+    int first = slab;
+    for (int earlier = slab - 1; earlier >= 0; --earlier) {
+      const std::int64_t halo_end = slab_begin(earlier + 1) + static_cast<std::int64_t>(slabs_[static_cast<std::size_t>(earlier)]->halo.size());
+      if (halo_end > slab_begin(slab)) first = earlier;
+    }
+    first_reference_[static_cast<std::size_t>(slab)] = first;
+  }
 }
 
 /// The forces that earlier slabs computed for beads of this one, added in slab order.
@@ -111,9 +123,14 @@ void System::apply_body_forces(int slab, int worker) {
   }
 }
 
-/// Phase B.
-void System::integrate(int slab, int worker) {
-  (void)worker;
+void System::finish_slab(int slab, int worker) {
+  add_halos(slab);
+  if (has_general_body_force_) apply_body_forces(slab, worker);
+  integrate(slab);
+}
+
+/// Kick, drift, predict.
+void System::integrate(int slab) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
   const IntegrateContext context{particles.position.data(), particles.motion.data(), particles.half.data(), particles.force.data(),
                                  particles.acceleration.data(),
@@ -133,21 +150,24 @@ void System::advance() {
     }
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) poses_[b] = pose_at(bodies[b].motion, now);
-  workers_->run(settings_.partitions, [this](int slab, int worker) { contacts(slab, worker); });
-  const bool drag = has_general_body_force_;
   if (observe) {
-    workers_->run(settings_.partitions, [this, drag](int slab, int worker) {
+    workers_->run(settings_.partitions, [this](int slab, int worker) { contacts(slab, worker); });
+    workers_->run(settings_.partitions, [this](int slab, int worker) {
       add_halos(slab);
-      if (drag) apply_body_forces(slab, worker);
+      if (has_general_body_force_) apply_body_forces(slab, worker);
     });
     observe(*this);
-    workers_->run(settings_.partitions, [this](int slab, int worker) { integrate(slab, worker); });
+    workers_->run(settings_.partitions, [this](int slab, int) { integrate(slab); });
   } else {
-    workers_->run(settings_.partitions, [this, drag](int slab, int worker) {
-      add_halos(slab);
-      if (drag) apply_body_forces(slab, worker);
-      integrate(slab, worker);
+    workers_->run(settings_.partitions, [this](int slab, int worker) {
+      contacts(slab, worker);
+      if (follows_at_once(slab, worker)) finish_slab(slab, worker);
     });
+    if (workers_->count() > 1) {
+      workers_->run(settings_.partitions, [this](int slab, int worker) {
+        if (!follows_at_once(slab, worker)) finish_slab(slab, worker);
+      });
+    }
   }
   ++step_;
   wall_moved_ += settings_.time_step * wall_speed_;

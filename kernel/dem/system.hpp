@@ -1,8 +1,10 @@
 // The moving charge: beads, lists, walls and the step that advances them.
 //
 // One step, all in a fixed number K of slabs (contiguous ranges of beads in cell order), whatever the number of threads:
-//   A  each slab: pairs owned by its beads (forces on beads of later slabs go to its halo), then its beads at the walls;
+//   A  each slab: its beads at the walls, then the pairs owned by its beads (forces on beads of later slabs go to its halo);
 //   B  each slab: adds the halos of the earlier slabs in slab order, body forces, kick–drift–predict.
+// A pair's owner comes first in the order of cells, so once a slab has been through A nobody but earlier slabs reads or pushes its beads:
+// where these belong to the same worker, B follows at once, while the slab is still in the cache. The arithmetic is the same either way.
 // A rebuild happens when a bead has used up its own skin, which grows with its speed at the last rebuild: fast beads are few.
 #pragma once
 
@@ -137,8 +139,11 @@ class System {
   void build_walls();
   void contacts(int slab, int worker);
   void walls(int slab, int worker, std::size_t body);
-  void integrate(int slab, int worker);
+  void integrate(int slab);
   void apply_body_forces(int slab, int worker);
+  void finish_slab(int slab, int worker);  ///< phase B
+  void find_first_references();
+  bool follows_at_once(int slab, int worker) const { return first_reference_[static_cast<std::size_t>(slab)] >= workers_->first(worker, settings_.partitions); }
   void add_halos(int slab);
   [[noreturn]] void complain(std::int64_t bead, const char* what) const;
   int pair_index(int a, int b, bool wall) const;
@@ -164,6 +169,7 @@ class System {
   double wall_moved_ = 0;      ///< bound on its displacement since the rebuild, m
   double largest_step_ = 0;    ///< displacement in one step that no sound run reaches, m
   bool has_general_body_force_ = false;
+  std::vector<int> first_reference_;  ///< per slab: the earliest slab with a pair that reaches into it
   std::vector<std::uint8_t> normal_channel_;  ///< per channel: its work counts as impact, not shear
 
   /// All beads of a pair of materials alike: then radius and mass need no gathering.

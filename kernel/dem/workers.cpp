@@ -22,8 +22,8 @@ Workers::~Workers() {
 }
 
 void Workers::share(int worker) {
-  const int first = worker * slabs_ / count_, last = (worker + 1) * slabs_ / count_;
-  for (int slab = first; slab < last; ++slab) (*task_)(slab, worker);
+  const int last = first(worker + 1, slabs_);
+  for (int slab = first(worker, slabs_); slab < last; ++slab) (*task_)(slab, worker);
 }
 
 void Workers::run(int slabs, const std::function<void(int, int)>& task) {

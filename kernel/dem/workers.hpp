@@ -17,6 +17,8 @@ class Workers {
   Workers& operator=(const Workers&) = delete;
 
   int count() const { return count_; }
+  /// First slab of a worker.
+  int first(int worker, int slabs) const { return worker * slabs / count_; }
 
   /// Runs task(slab, worker) for each slab in [0, slabs): slab k goes to worker k·count/slabs, so that a slab stays in one cache.
   /// Returns when all are done. The task must not throw.
