@@ -1,0 +1,63 @@
+# A thin front to CMake. `make` alone lists what there is.
+BUILD  := build/release
+PREFIX ?= /usr/local
+JOBS   ?= $(shell nproc)
+CMAKE_OPTIONS ?=
+SOURCES = $(shell git ls-files '*.cpp' '*.hpp')
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test bench verify install format tidy asan tsan clean packages packages-test binary
+
+help: ## list these targets
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
+	@echo "  Variables: JOBS=$(JOBS) PREFIX=$(PREFIX) CMAKE_OPTIONS="
+
+demo: binary ## install what is missing, build, run configs/demo.yaml, say what to open
+	@out=build/demo/$$(date +%Y%m%d-%H%M%S) && mkdir -p build/demo && \
+	$(BUILD)/bin/millscope run configs/demo.yaml -o $$out && tools/what_to_open.sh $$out
+
+test: packages-test ## install what is missing, build, run every test
+	cmake --preset release -DMILLSCOPE_TESTS=ON $(CMAKE_OPTIONS)
+	cmake --build --preset release -j $(JOBS)
+	ctest --preset release -j $(JOBS)
+
+bench: packages-test binary ## time against LIGGGHTS on the cross-check case (about an hour)
+	cmake --build --preset release -j $(JOBS) --target millscope_bench
+	bench/run.sh $(BUILD) $(BENCH_OPTIONS)
+
+verify: packages-test binary ## the long checks (hours), written to docs/validation.md; VERIFY="crosscheck memory" for some
+	tools/verify.py --build $(BUILD) $(VERIFY)
+
+install: binary ## build and install to PREFIX (command, plugins, SDK)
+	cmake --install $(BUILD) --prefix $(PREFIX)
+
+format: ## clang-format every source
+	clang-format -i $(SOURCES)
+
+tidy: packages-test ## clang-tidy over every source
+	cmake --preset release -DMILLSCOPE_TESTS=ON $(CMAKE_OPTIONS)
+	tools/tidy.sh $(BUILD)
+
+asan: packages-test ## build and test with the address and undefined-behaviour sanitizers
+	cmake --preset asan $(CMAKE_OPTIONS)
+	cmake --build --preset asan -j $(JOBS)
+	ctest --preset asan -j $(JOBS)
+
+tsan: packages-test ## build and test with the thread sanitizer
+	cmake --preset tsan $(CMAKE_OPTIONS)
+	cmake --build --preset tsan -j $(JOBS)
+	ctest --preset tsan -j $(JOBS)
+
+clean: ## remove the builds of the presets
+	cmake -E rm -rf build/release build/dev build/asan build/tsan
+
+packages:
+	@tools/install_packages.sh
+
+packages-test:
+	@tools/install_packages.sh test
+
+# The command and the plugins, no tests; a build directory that has tests keeps them.
+binary: packages
+	@test -f $(BUILD)/build.ninja || cmake --preset release -DMILLSCOPE_TESTS=OFF $(CMAKE_OPTIONS)
+	cmake --build --preset release -j $(JOBS) --target millscope plugins/all geometry/all

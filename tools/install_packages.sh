@@ -1,0 +1,42 @@
+#!/bin/sh
+# tools/install_packages.sh [test]: installs the Debian packages of packages.txt that are missing; without `test`, only what building needs.
+set -eu
+list="$(dirname "$0")/../packages.txt"
+if [ "${1:-}" = test ]; then
+  wanted=$(grep -v '^#' "$list")
+else
+  wanted=$(sed '/\[test\]/,$d' "$list" | grep -v '^#')
+fi
+
+if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+  echo "millscope: this is no Debian, so nothing is installed; needed are:" $wanted >&2
+  exit 0
+fi
+
+missing=""
+for package in $wanted; do
+  case "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)" in
+    installed) ;;
+    *) missing="$missing $package" ;;
+  esac
+done
+[ -n "$missing" ] || exit 0
+
+as_root=""
+if [ "$(id -u)" != 0 ]; then
+  as_root="sudo"
+  if ! command -v sudo >/dev/null; then
+    echo "millscope: cannot install packages without root or sudo; as root: apt-get install -y --no-install-recommends$missing" >&2
+    exit 1
+  fi
+fi
+echo "installing from Debian:$missing"
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+install() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing >"$log" 2>&1; }
+if install || { $as_root apt-get update >"$log" 2>&1 && install; }; then
+  exit 0
+fi
+tail -n 5 "$log" >&2
+echo "millscope: apt-get failed; when it works again: apt-get install -y --no-install-recommends$missing" >&2
+exit 1
