@@ -87,8 +87,8 @@ class HertzMindlin {
     out.normal_force = total;
     out.normal_stiffness = stiffness;
     out.elastic_energy = R(0.4) * elastic * overlap + shear.elastic_energy;
-    R taken = maximum(R(1.0) - lag_share(c, stiffness, shear.per_mass), zero);
-    if (!tension_) taken = select(total > zero, taken, R(1.0));  // no force, no lag
+    R taken = R(1.0) + entry_share(c, stiffness, shear.per_mass);
+    if (!tension_) taken = select(total > zero, taken, R(1.0));  // no force, no loss
     out.power[0] = (elastic - total) * normal_speed * taken;
     out.power[1] = shear.damping;
     out.power[2] = shear.friction;

@@ -133,7 +133,7 @@ class Jkr {
     out.normal_stiffness = held * R(young_) * s * s * y2 * (R(8.0) * y3 - R(6.0)) / slope;
     const R stored = energy * (R(8.0 / 15.0) * y4 * y4 * y2 - R(4.0 / 3.0) * y4 * y3 + R(0.5) * y4);
     out.elastic_energy = held * stored + shear.elastic_energy;
-    const R taken = maximum(one - lag_share(c, maximum(out.normal_stiffness, zero), shear.per_mass), zero);
+    const R taken = one + entry_share(c, maximum(out.normal_stiffness, zero), shear.per_mass);
     out.power[0] = (elastic - total) * normal_speed * taken;
     out.power[1] = shear.damping;
     out.power[2] = shear.friction;

@@ -98,8 +98,8 @@ class LinearSpringDashpot {
     out.normal_force = total;
     out.normal_stiffness = select(touching, R(normal_stiffness_), zero);
     out.elastic_energy = R(0.5) * elastic * overlap + shear.elastic_energy;
-    R taken = maximum(one - lag_share(c, out.normal_stiffness, shear.per_mass), zero);
-    if (!tension_) taken = select(total > zero, taken, one);  // no force, no lag
+    R taken = one + entry_share(c, out.normal_stiffness, shear.per_mass);
+    if (!tension_) taken = select(total > zero, taken, one);  // no force, no loss
     out.power[0] = (elastic - total) * normal_speed * taken;
     out.power[1] = shear.damping;
     out.power[2] = shear.friction;

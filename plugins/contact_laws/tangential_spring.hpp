@@ -40,13 +40,13 @@ struct Spring {
   R growth_scaled;  ///< x² (dS_t/dt)/S_t
 };
 
-/// Share of c v_n² that a damped collision does not lose. The law is given the velocity predicted for the time of the overlap; the work of
-/// the step goes with (v_{n−½} + v_{n+½})/2, which lags it by ½ Δt (a_n − a_{n−1}), and the sum of the elastic work over the steps differs
-/// from ∮ F dδ by a third of that: together S_n Δt²/(3 m*) for a pair by itself. Without it a collision of 15 steps would leave up to 1 %
-/// of its energy unaccounted. In the tangential direction the two parts cancel.
+/// What a damped collision loses beyond c v_n², as a share of it. Steps of Δt sum the elastic work by trapezoids; where the force begins
+/// and ends between two steps they take too much on the way in and give back too much, at lower speed, on the way out: S_n Δt²/(6 m*) of
+/// the loss for a linear spring, about S_n Δt²/(10 m*) for Hertz's (summed over where in a step the touch falls, 10 to 20 steps per
+/// contact). One eighth leaves at most 0.4 % of a collision's loss unaccounted at 13 steps; without it, up to 0.9 %.
 template <class R>
-R lag_share(const Contact<R>& c, const R& stiffness, const R& per_mass) {
-  return R(1.0 / 3.0) * c.time_step * c.time_step * stiffness * per_mass;
+R entry_share(const Contact<R>& c, const R& stiffness, const R& per_mass) {
+  return R(1.0 / 8.0) * c.time_step * c.time_step * stiffness * per_mass;
 }
 
 template <class R>

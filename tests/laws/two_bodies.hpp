@@ -20,7 +20,7 @@ inline Vector plus(const Vector& a, double s, const Vector& b) { return {a[0] + 
 struct Body {
   double radius, mass;
   Vector position{}, velocity{}, spin{};
-  Vector half_velocity{}, half_spin{};
+  Vector half_velocity{}, half_spin{}, last_force{}, last_moment{};
   bool wall = false;
   double inertia() const { return 0.4 * mass * radius * radius; }
   double kinetic() const {
@@ -103,8 +103,11 @@ class Collision {
     b.half_velocity = plus(b.half_velocity, dt / b.mass, force);
     b.half_spin = plus(b.half_spin, dt / b.inertia(), moment);
     b.position = plus(b.position, dt, b.half_velocity);
-    b.velocity = plus(b.half_velocity, 0.5 * dt / b.mass, force);
-    b.spin = plus(b.half_spin, 0.5 * dt / b.inertia(), moment);
+    // The kernel's prediction: v(n+1) = v(n+½) + ½ Δt (2 a(n) − a(n−1)).
+    b.velocity = plus(plus(b.half_velocity, dt / b.mass, force), -0.5 * dt / b.mass, b.last_force);
+    b.spin = plus(plus(b.half_spin, dt / b.inertia(), moment), -0.5 * dt / b.inertia(), b.last_moment);
+    b.last_force = force;
+    b.last_moment = moment;
   }
 
   Body i_, j_;
