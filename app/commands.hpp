@@ -14,6 +14,7 @@ inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;       ///< a programming error or a crash of the system's
 inline constexpr int kBadInput = 2;     ///< something the user can put right
 inline constexpr int kInterrupted = 3;  ///< stopped by a signal after writing a checkpoint
+inline constexpr int kCannotWrite = 4;  ///< disk full, no permission
 
 using Arguments = std::vector<std::string>;
 

@@ -90,7 +90,7 @@ int report(const Options& options) {
 int geometry(const Arguments& arguments) {
   Options options("geometry export|report FILE", "Writes a geometry of a case as STL (solids named by material slot, in metres), or reports on a case's geometries or a mesh file: "
                   "triangles, box, area, open edges, degenerate and duplicate faces, orientation.",
-                  "millscope geometry export configs/crosscheck/slice.yaml -o liner.stl");
+                  "millscope geometry export configs/crosscheck/slice_parametric.yaml -o liner.stl");
   options.positional("ACTION", "export or report");
   options.positional("FILE", "a case (.yaml) or a mesh file");
   options.add()("output,o", po::value<std::string>()->value_name("FILE.stl"), "file to write");

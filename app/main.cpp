@@ -1,7 +1,11 @@
 // The `millscope` command.
 #include <fmt/core.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
 
 #include "app/commands.hpp"
@@ -32,7 +36,7 @@ void print_help() {
   for (const Command& c : kCommands) fmt::print("  {:<10} {}\n", c.name, c.what);
   fmt::print("\n'millscope COMMAND --help' explains one, with an example.\n\nExample:\n  millscope run configs/demo.yaml -o demo-out\n\n"
              "Exit codes: 0 done · 1 internal error · 2 bad input, the one line on stderr says what and how to put it right · 3 stopped by a signal after "
-             "writing a checkpoint\n\nParticles are spheres; other shapes are not modelled yet.\n");
+             "writing a checkpoint · 4 the output cannot be written (disk full, no permission); what was written before is whole\n\nParticles are spheres; other shapes are not modelled yet.\n");
 }
 
 int dispatch(const Arguments& all) {
@@ -59,10 +63,15 @@ int main(int count, char** words) {
   using namespace millscope;
   app::command_line.assign(words, words + count);
   try {
-    return app::dispatch(app::Arguments(words + 1, words + count));
+    const int code = app::dispatch(app::Arguments(words + 1, words + count));
+    if (std::fflush(stdout) != 0) throw config::UserError(fmt::format("standard output cannot be written ({}); send it elsewhere", std::strerror(errno)), app::kCannotWrite);
+    return code;
   } catch (const config::UserError& e) {
     fmt::print(stderr, "millscope: {}\n", e.what());
     return e.exit_code();
+  } catch (const std::filesystem::filesystem_error& e) {
+    fmt::print(stderr, "millscope: {}: {}; check the path, its permissions and the room on its disk\n", e.path1().string(), e.code().message());
+    return app::kCannotWrite;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "millscope: out of memory; 'millscope check CASE.yaml' predicts what a case needs\n");
     return app::kBadInput;

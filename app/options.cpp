@@ -63,7 +63,10 @@ void Options::print_help() const {
 }
 
 std::string Options::text(const std::string& name) const {
-  if (!has(name)) throw UserError(fmt::format("{} is missing; usage: millscope {}", name, usage_));
+  if (!has(name)) {
+    const bool is_option = visible_.find_nothrow(name, false) != nullptr;
+    throw UserError(fmt::format("{}{} is missing; usage: millscope {}", is_option ? "--" : "", name, usage_));
+  }
   const auto& value = values_[name].value();
   if (const auto* list = boost::any_cast<std::vector<std::string>>(&value)) return list->front();
   return boost::any_cast<std::string>(value);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -26,9 +27,8 @@ namespace {
 constexpr const char* kLockName = ".lock";
 
 // What a run writes, and so what --force may remove.
-constexpr std::array<std::string_view, 12> kOwnNames{
-    "checkpoint.h5", "checkpoint.previous.h5", "frames.h5",     "tracks.h5", "results.h5", "series.csv",
-    "summary.json",  "provenance.json",        "resolved.yaml", "run.log",   "vtk",        "geometry"};
+constexpr std::array<std::string_view, 9> kOwnNames{"checkpoint.h5", "checkpoint.previous.h5", "frames.h5",    "tracks.h5",          "results.h5",
+                                                    "series.csv",    "case.resolved.yaml",     "summary.json", "vtk"};
 
 bool is_own(const fs::path& entry) {
   fs::path name = entry.filename();
@@ -150,6 +150,13 @@ void OutputDirectory::start() {
   impl_->started = true;
   if (impl_->mode != Mode::overwrite) return;
   for (const fs::path& entry : entries_of(impl_->path)) fs::remove_all(entry);
+}
+
+void OutputDirectory::undo() {
+  if (impl_->mode == Mode::resume) throw std::logic_error("OutputDirectory: a run that is resumed cannot be undone");
+  impl_->started = false;
+  std::error_code ignored;
+  for (const fs::path& entry : entries_of(impl_->path)) fs::remove_all(entry, ignored);
 }
 
 const fs::path& OutputDirectory::path() const { return impl_->path; }

@@ -26,6 +26,9 @@ class OutputDirectory {
 
   /// The run begins: from here on the directory stays. With Mode::overwrite the earlier run's files are removed now.
   void start();
+  /// The run could not begin: removes what was written since `start`, and the directories that the constructor made. Not with
+  /// Mode::resume.
+  void undo();
   const std::filesystem::path& path() const;
 
  private:

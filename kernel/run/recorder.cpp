@@ -44,6 +44,10 @@ void wrap(const dem::Settings& s, double* x) {
 
 }  // namespace
 
+void Recorder::check(const Assembly& a) {
+  if (a.c.output.tracks) tracked(a);
+}
+
 Recorder::Recorder(const Assembly& a, std::filesystem::path directory, std::optional<double> resume_time)
     : a_(a), directory_(std::move(directory)), sample_steps_(steps_of(kSampleInterval, a.time_step)) {
   const config::OutputCase& o = a.c.output;

@@ -16,6 +16,8 @@ namespace millscope::run {
 
 class Recorder {
  public:
+  /// Throws UserError for outputs that this case cannot give, before anything is written.
+  static void check(const Assembly& a);
   /// `resume_time`: drop what is later; nothing: a fresh directory.
   Recorder(const Assembly& a, std::filesystem::path directory, std::optional<double> resume_time);
 

@@ -5,8 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <fstream>
-#include <sstream>
+#include <cstring>
 
 #include "kernel/config/writer.hpp"
 #include "kernel/output/archive.hpp"
@@ -29,6 +28,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 constexpr const char* kResolvedCase = "case.resolved.yaml";
+constexpr const char* kSummary = "summary.json";
 
 /// A run while it goes on.
 struct Session {
@@ -36,6 +36,8 @@ struct Session {
   std::filesystem::path directory;
   std::unique_ptr<Recorder> recorder;
   RunOptions options;
+  std::int64_t case_fingerprint = 0;
+  std::optional<double> checkpoint_time{};  ///< s, of the newest checkpoint
   double wall_before = 0;  ///< s of stepping in earlier sessions
   std::int64_t first_step = 0;
   Clock::time_point started = Clock::now();
@@ -72,19 +74,52 @@ dem::Ledger load_ledger(const output::ArchiveReader& archive, const dem::Ledger&
 
 static_assert(sizeof(Sample) % sizeof(double) == 0);
 
+class Fnv {
+ public:
+  void add(const void* data, std::size_t bytes) {
+    const unsigned char* c = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < bytes; ++i) value_ = (value_ ^ c[i]) * 0x100000001b3ULL;
+  }
+  std::int64_t value() const { return static_cast<std::int64_t>(value_); }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325ULL;
+};
+
+/// Of all that a resumed run must share with the run that wrote the checkpoint: the resolved case without what `--set` may change, and
+/// the surfaces, whose files may have been replaced.
+std::int64_t fingerprint(const Assembly& a, const host::Registry& registry) {
+  config::Case c = a.c;
+  c.name.clear();
+  c.time.end = c.time.analyze_from = 0;
+  c.run.threads = 0;
+  c.output = {};
+  Fnv fnv;
+  const std::string text = config::resolved_yaml(c, registry.descriptors());
+  fnv.add(text.data(), text.size());
+  for (const GeometryUse& g : a.geometries) {
+    fnv.add(g.surface.vertices, 3 * g.surface.vertex_count * sizeof *g.surface.vertices);
+    fnv.add(g.surface.triangles, 3 * g.surface.triangle_count * sizeof *g.surface.triangles);
+  }
+  return fnv.value();
+}
+
 void write_checkpoint(Session& s) {
   s.recorder->flush();
   output::ArchiveWriter archive(output::checkpoint_path(s.directory));
   s.assembly.system->save([&archive](const std::string& name, const double* v, std::size_t n) { archive.write("system/" + name, std::span<const double>(v, n)); },
                           [&archive](const std::string& name, const std::int64_t* v, std::size_t n) { archive.write("system/" + name, std::span<const std::int64_t>(v, n)); });
   archive.write_value("wall_s", s.wall());
+  archive.write_value("case", s.case_fingerprint);
   archive.write_value<std::int64_t>("analyze_step", s.assembly.analyze_step);
   const std::vector<Sample>& samples = s.recorder->samples();
   archive.write("window/samples", std::span<const double>(reinterpret_cast<const double*>(samples.data()), samples.size() * sizeof(Sample) / sizeof(double)));
   archive.write_value<std::int64_t>("window/started", s.recorder->window_start() ? 1 : 0);
   if (s.recorder->window_start()) save_ledger(archive, *s.recorder->window_start());
+  archive.seal();  // all that a full disk can spoil, before the older checkpoint goes
   output::rotate_checkpoints(s.directory);
   archive.commit();
+  s.checkpoint_time = s.assembly.system->time();
 }
 
 Json summary_of(Session& s) {
@@ -133,7 +168,19 @@ void write_summary(Session& s, const host::Registry& registry) {
   std::vector<output::PluginRecord> plugins;
   for (const host::PluginRecord& r : registry.records()) plugins.push_back({r.name, r.version, r.path, r.file_hash});
   j["provenance"] = output::provenance(s.options.command_line, plugins);
-  output::write_json(s.directory / "summary.json", j);
+  output::write_json(s.directory / kSummary, j);
+}
+
+/// One step. What is said of a bead that ran away is completed by what is left of the run.
+void advance(Session& s) {
+  try {
+    s.assembly.system->advance();
+  } catch (const UserError& e) {
+    if (e.exit_code() != config::kExitBadInput) throw;
+    const std::string kept = s.checkpoint_time ? fmt::format("the checkpoint at {:.6g} s is kept in {}", *s.checkpoint_time, s.directory.string())
+                                               : fmt::format("no checkpoint had been written to {}", s.directory.string());
+    throw UserError(fmt::format("{}; {}", e.what(), kept));
+  }
 }
 
 /// Steps until the end or until a stop is asked for.
@@ -149,8 +196,8 @@ Outcome step_to_end(Session& s, const host::Registry& registry) {
     } else {
       system.observe = nullptr;
     }
-    system.advance();
-    if (stop_requested.load(std::memory_order_relaxed)) {
+    advance(s);
+    if (stop_requested.load(std::memory_order_relaxed) && system.step() < s.assembly.end_step) {
       write_checkpoint(s);
       progress.finish("stopped; continue with: millscope resume " + s.directory.string());
       return Outcome::interrupted;
@@ -191,18 +238,44 @@ void write_resolved(const Session& s, const host::Registry& registry) {
   file.commit();
 }
 
+/// The newest sound checkpoint. `damaged`: it is the previous one, because the newest cannot be read.
+std::unique_ptr<output::ArchiveReader> open_checkpoint(const std::filesystem::path& directory, bool quiet, bool& damaged) {
+  const std::filesystem::path newest = output::newest_checkpoint(directory), previous = output::previous_checkpoint_path(directory);
+  damaged = false;
+  try {
+    return std::make_unique<output::ArchiveReader>(newest);
+  } catch (const UserError& e) {
+    if (newest == previous || !std::filesystem::exists(previous)) throw;
+    try {
+      auto older = std::make_unique<output::ArchiveReader>(previous);
+      damaged = true;
+      if (!quiet) fmt::print(stderr, "{} is damaged; continuing from the one before it\n", newest.string());
+      return older;
+    } catch (const UserError&) {
+      throw UserError(fmt::format("{}: neither this checkpoint nor the one before it can be read; start the run again with another -o", newest.string()));
+    }
+  }
+}
+
 }  // namespace
 
 void request_stop() { stop_requested.store(true, std::memory_order_relaxed); }
 
 Outcome run_case(const std::string& case_file, const host::Registry& registry, const RunOptions& options) {
   Session s{assemble(config::read_case(case_file, options.overrides), registry, {options.threads, options.instruction_set}), options.output, nullptr, options};
+  Recorder::check(s.assembly);
   insert_beads(s.assembly);
   output::OutputDirectory directory(options.output, options.force ? output::Mode::overwrite : output::Mode::fresh, disk_estimate(s.assembly));
   begin(s.assembly);
+  s.case_fingerprint = fingerprint(s.assembly, registry);
   directory.start();
-  write_resolved(s, registry);
-  s.recorder = std::make_unique<Recorder>(s.assembly, s.directory, std::nullopt);
+  try {
+    write_resolved(s, registry);
+    s.recorder = std::make_unique<Recorder>(s.assembly, s.directory, std::nullopt);
+  } catch (...) {
+    directory.undo();
+    throw;
+  }
   s.first_step = -s.assembly.settle_steps;
   s.started = Clock::now();
   return step_to_end(s, registry);
@@ -217,17 +290,34 @@ Outcome resume_run(const host::Registry& registry, const RunOptions& options) {
     }
   }
   output::OutputDirectory directory(options.output, output::Mode::resume);
-  const output::ArchiveReader archive(output::newest_checkpoint(options.output));
+  bool damaged = false;
+  const auto opened = open_checkpoint(options.output, options.quiet, damaged);
+  const output::ArchiveReader& archive = *opened;
   Session s{assemble(config::read_case((options.output / kResolvedCase).string(), options.overrides), registry, {options.threads, options.instruction_set}),
             options.output, nullptr, options};
+  s.case_fingerprint = fingerprint(s.assembly, registry);
+  if (archive.read_value<std::int64_t>("case") != s.case_fingerprint) {
+    throw UserError(fmt::format("{}: it or a mesh that it names is no longer what the checkpoint was written with; put it back, or start a new run with "
+                                "another -o", (options.output / kResolvedCase).string()));
+  }
   dem::System& system = *s.assembly.system;
   system.restore([&archive](const std::string& name) { return archive.read<double>("system/" + name); },
                  [&archive](const std::string& name) { return archive.read<std::int64_t>("system/" + name); });
-  if (system.step() >= s.assembly.end_step) {
+  // A run that ended before it could write its summary is brought to its end.
+  const std::filesystem::path summary = options.output / kSummary;
+  if (system.step() > s.assembly.end_step || (system.step() == s.assembly.end_step && std::filesystem::exists(summary))) {
     throw UserError(fmt::format("{}: the run has reached its end at {:.6g} s already; to go on, give a later one: millscope resume {} --set time.end_s={:.4g}",
                                 options.output.string(), system.time(), options.output.string(), 2 * system.time()));
   }
+  if (s.assembly.analyze_step < system.step() && archive.read_value<std::int64_t>("analyze_step") != s.assembly.analyze_step) {
+    throw UserError(fmt::format("--set time.analyze_from_s: the new window begins at {:.6g} s, before the checkpoint at {:.6g} s, whose samples are gone; "
+                                "give a later time or start a new run", static_cast<double>(s.assembly.analyze_step) * s.assembly.time_step, system.time()));
+  }
   directory.start();
+  // A damaged newest checkpoint must not become the previous one, which is now the only one.
+  if (damaged) std::filesystem::rename(output::previous_checkpoint_path(options.output), output::checkpoint_path(options.output));
+  std::filesystem::remove(summary);  // is there when, and only when, the run has reached its end
+  s.checkpoint_time = system.time();
   // What is at the very time of the checkpoint has not been written yet: half a step decides.
   s.recorder = std::make_unique<Recorder>(s.assembly, s.directory, system.time() - 0.5 * s.assembly.time_step);
   if (archive.read_value<std::int64_t>("analyze_step") == s.assembly.analyze_step) {
@@ -235,9 +325,6 @@ Outcome resume_run(const host::Registry& registry, const RunOptions& options) {
     s.recorder->samples().resize(numbers.size() * sizeof(double) / sizeof(Sample));
     if (!numbers.empty()) std::memcpy(static_cast<void*>(s.recorder->samples().data()), numbers.data(), numbers.size() * sizeof(double));
     if (archive.read_value<std::int64_t>("window/started")) s.recorder->set_window_start(load_ledger(archive, system.ledger()));
-  } else if (s.assembly.analyze_step < system.step()) {
-    throw UserError(fmt::format("--set time.analyze_from_s: the new window begins at {:.6g} s, before the checkpoint at {:.6g} s, whose samples are gone; "
-                                "give a later time or start a new run", static_cast<double>(s.assembly.analyze_step) * s.assembly.time_step, system.time()));
   }
   write_resolved(s, registry);
   s.wall_before = archive.read_value<double>("wall_s");
@@ -248,6 +335,7 @@ Outcome resume_run(const host::Registry& registry, const RunOptions& options) {
 
 Estimate estimate(const std::string& case_file, const host::Registry& registry, const RunOptions& options) {
   Assembly a = assemble(config::read_case(case_file, options.overrides), registry, {options.threads, options.instruction_set});
+  Recorder::check(a);
   insert_beads(a);
   begin(a);
   Estimate e;

@@ -27,8 +27,8 @@ enum class Outcome { finished, interrupted };
 /// Runs a case from its start. Throws UserError.
 Outcome run_case(const std::string& case_file, const host::Registry& registry, const RunOptions& options);
 
-/// Continues from the newest checkpoint of `options.output`; `overrides` may change time.end_s, time.analyze_from_s, run.threads and
-/// output.* only. Throws UserError.
+/// Continues from the newest checkpoint of `options.output`; `overrides` may change time.end_s, time.analyze_from_s and run.threads
+/// only. Throws UserError.
 Outcome resume_run(const host::Registry& registry, const RunOptions& options);
 
 /// Asks the current run to write a checkpoint and stop (SIGINT, SIGTERM); safe in a signal handler.
