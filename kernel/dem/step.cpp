@@ -11,7 +11,6 @@ namespace millscope::dem {
 void System::contacts(int slab, int worker) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
   Scratch& scratch = *scratch_[static_cast<std::size_t>(worker)];
-  BatchArrays& batch = scratch.batch;
   state.ledger.reset_instant();
   for (std::size_t body = 0; body < bodies.size(); ++body) walls(slab, worker, body);
   const ScatterContext base{particles.force.data(), state.halo.data(), slab_begin(slab + 1), false};
@@ -19,18 +18,19 @@ void System::contacts(int slab, int worker) {
     if (physics_[p].wall) continue;
     const PairPhysics& physics = physics_[p];
     const Equality& equality = equality_[p];
+    BatchArrays batch = scratch.batch;
+    if (equality.equal) {
+      // Arrays that hold the same number everywhere, made once.
+      batch.radius = equality.arrays[0]->data();
+      batch.mass = equality.arrays[1]->data();
+      batch.radius_i = batch.radius_j = equality.arrays[2]->data();
+    }
     const bool spins = std::any_of(physics.interactions.begin(), physics.interactions.end(), [](const auto& i) { return !i.pre; });
     const PairListView list = state.lists[p].view();
     const GatherContext gather{particles.position.data(), particles.motion.data(), settings_.periodic, physics.reach,
                                equality.equal, spins, equality.radius, 0.5 * equality.mass};
     ScatterContext scatter = base;
     scatter.equal = equality.equal;
-    if (equality.equal) {
-      std::fill(batch.radius, batch.radius + kBatchStride, 0.5 * equality.radius);
-      std::fill(batch.mass, batch.mass + kBatchStride, 0.5 * equality.mass);
-      std::fill(batch.radius_i, batch.radius_i + kBatchStride, equality.radius);
-      std::fill(batch.radius_j, batch.radius_j + kBatchStride, equality.radius);
-    }
     PairLedger& ledger = state.ledger.pairs[p];
     for (std::int64_t first = 0; first < list.count; first += kBatch) {
       const std::int64_t last = std::min(list.count, first + kBatch);

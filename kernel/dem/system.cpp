@@ -94,7 +94,7 @@ void System::prepare() {
   }
   equality_.assign(physics_.size(), Equality{});
   for (std::size_t p = 0; p < physics_.size(); ++p) {
-    Equality e{true, -1, 0};
+    Equality e{true, -1, 0, {}};
     for (std::size_t i = 0; i < particles.position.size() && e.equal; ++i) {
       if (particles.material[i] != physics_[p].first && (physics_[p].wall || particles.material[i] != physics_[p].second)) continue;
       const double mass = 1.0 / particles.motion[i].inverse_mass;
@@ -104,7 +104,12 @@ void System::prepare() {
       }
       e.equal = particles.position[i].radius == e.radius && mass == e.mass;
     }
-    equality_[p] = e.radius < 0 ? Equality{} : e;
+    if (e.radius < 0 || !e.equal) continue;
+    const double constants[3] = {0.5 * e.radius, 0.5 * e.mass, e.radius};
+    for (std::size_t k = 0; k < 3; ++k) {
+      e.arrays[k] = std::make_shared<AlignedVector<double>>(static_cast<std::size_t>(kBatchStride), constants[k]);
+    }
+    equality_[p] = e;
   }
 }
 

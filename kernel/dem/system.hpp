@@ -60,11 +60,11 @@ struct Body {
 
 struct Settings {
   double time_step = 0;     ///< s
-  int partitions = 16;      ///< K
+  int partitions = 8;       ///< K
   int threads = 1;
   PeriodicBox periodic{};
   double periodic_low[3] = {0, 0, 0};
-  double skin_steps = 24;   ///< a bead's skin lasts this many steps at its present speed …
+  double skin_steps = 30;   ///< a bead's skin lasts this many steps at its present speed …
   double skin_base = 0.05;  ///< … beyond this fraction of its radius
   double skin_cap = 0.6;    ///< and no more than this fraction of the largest radius
   double low[3], high[3];   ///< a bead outside has left the domain, m
@@ -176,6 +176,7 @@ class System {
   struct Equality {
     bool equal = false;
     double radius = 0, mass = 0;
+    std::array<std::shared_ptr<AlignedVector<double>>, 3> arrays{};  ///< R*, m*, R, one batch long
   };
   std::vector<Equality> equality_;
 
