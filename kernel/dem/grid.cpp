@@ -12,11 +12,10 @@ double component(const PositionLine& p, int axis) { return axis == 0 ? p.x : axi
 
 double speed(const MotionLine& m) { return std::sqrt(m.v[0] * m.v[0] + m.v[1] * m.v[1] + m.v[2] * m.v[2]); }
 
-/// Copies `from` into the order given by new_index, using `spare` as the other half of a swap.
-template <class T>
-void permute(AlignedVector<T>& values, AlignedVector<T>& spare, const std::vector<std::uint32_t>& new_index) {
-  for (std::size_t i = 0; i < values.size(); ++i) spare[new_index[i]] = values[i];
-  values.swap(spare);
+/// Puts items first…last of `values` where the new order wants them.
+template <class Values>
+void move_items(const Values& values, Values& to, const std::vector<std::uint32_t>& new_index, std::int64_t first, std::int64_t last) {
+  for (std::size_t i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i) to[new_index[i]] = values[i];
 }
 
 }  // namespace
@@ -29,24 +28,38 @@ void System::sort_beads() {
   for (const PairPhysics& pair : physics_) law_reach = std::max(law_reach, pair.reach);
   for (const PositionLine& x : p.position) largest_radius = std::max(largest_radius, x.radius);
   reaches_.resize(static_cast<std::size_t>(n));
-  double low[3], high[3];
-  std::fill(low, low + 3, 1e300);
-  std::fill(high, high + 3, -1e300);
-  for (std::int64_t i = 0; i < n; ++i) {
-    PositionLine& x = p.position[static_cast<std::size_t>(i)];
-    double* c = &x.x;
-    for (int a = 0; a < 3; ++a) {
-      const double length = settings_.periodic.length[a];
-      if (length > 0) c[a] -= length * std::floor((c[a] - settings_.periodic_low[a]) / length);
-      if (!(c[a] >= settings_.low[a] && c[a] <= settings_.high[a])) complain(i, "has left the domain");
-      low[a] = std::min(low[a], c[a]);
-      high[a] = std::max(high[a], c[a]);
+  struct Extent {
+    double low[3] = {1e300, 1e300, 1e300}, high[3] = {-1e300, -1e300, -1e300}, reach = 0;
+    std::int64_t lost = -1;
+  };
+  std::vector<Extent> extents(static_cast<std::size_t>(settings_.partitions));
+  workers_->run(settings_.partitions, [&](int slab, int) {
+    Extent& e = extents[static_cast<std::size_t>(slab)];
+    for (std::int64_t i = slab_begin(slab); i < slab_begin(slab + 1); ++i) {
+      const std::size_t k = static_cast<std::size_t>(i);
+      PositionLine& x = p.position[k];
+      double* c = &x.x;
+      for (int a = 0; a < 3; ++a) {
+        const double length = settings_.periodic.length[a];
+        if (length > 0) c[a] -= length * std::floor((c[a] - settings_.periodic_low[a]) / length);
+        if (!(c[a] >= settings_.low[a] && c[a] <= settings_.high[a])) e.lost = i;
+        e.low[a] = std::min(e.low[a], c[a]);
+        e.high[a] = std::max(e.high[a], c[a]);
+      }
+      const double skin = std::min(settings_.skin_cap * largest_radius, settings_.skin_base * x.radius + settings_.skin_steps * settings_.time_step * speed(p.motion[k]));
+      reaches_[k] = {x.x, x.y, x.z, x.radius + skin + 0.5 * law_reach};
+      p.reference[k] = {x.x, x.y, x.z, skin * skin};
+      e.reach = std::max(e.reach, reaches_[k].radius);
     }
-    const double skin = std::min(settings_.skin_cap * largest_radius,
-                                 settings_.skin_base * x.radius + settings_.skin_steps * settings_.time_step * speed(p.motion[static_cast<std::size_t>(i)]));
-    reaches_[static_cast<std::size_t>(i)] = {x.x, x.y, x.z, x.radius + skin + 0.5 * law_reach};
-    p.reference[static_cast<std::size_t>(i)] = {x.x, x.y, x.z, skin * skin};
-    largest_reach = std::max(largest_reach, x.radius + skin + 0.5 * law_reach);
+  });
+  double low[3] = {1e300, 1e300, 1e300}, high[3] = {-1e300, -1e300, -1e300};
+  for (const Extent& e : extents) {
+    if (e.lost >= 0) complain(e.lost, "has left the domain");
+    largest_reach = std::max(largest_reach, e.reach);
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], e.low[a]);
+      high[a] = std::max(high[a], e.high[a]);
+    }
   }
   // The grid: cells no smaller than the largest interaction distance, at most about four cells a bead.
   double edge = 2 * largest_reach * (1 + 1e-9);
@@ -85,10 +98,12 @@ void System::sort_beads() {
   const std::size_t cell_count = static_cast<std::size_t>(grid_.cells[0]) * static_cast<std::size_t>(grid_.cells[1]) * static_cast<std::size_t>(grid_.cells[2]);
   grid_.start.assign(cell_count + 1, 0);
   new_index_.resize(static_cast<std::size_t>(n));
-  for (std::size_t i = 0; i < new_index_.size(); ++i) {
-    new_index_[i] = cell_of(reaches_[i]);
-    ++grid_.start[new_index_[i] + 1];
-  }
+  workers_->run(settings_.partitions, [&](int slab, int) {
+    for (std::size_t i = static_cast<std::size_t>(slab_begin(slab)); i < static_cast<std::size_t>(slab_begin(slab + 1)); ++i) {
+      new_index_[i] = cell_of(reaches_[i]);
+    }
+  });
+  for (const std::uint32_t cell : new_index_) ++grid_.start[cell + 1];
   std::partial_sum(grid_.start.begin(), grid_.start.end(), grid_.start.begin());
   std::vector<std::uint32_t> next(grid_.start.begin(), grid_.start.end() - 1);
   for (std::uint32_t& index : new_index_) index = next[index]++;
@@ -217,24 +232,22 @@ void System::rebuild() {
   extract_pair_history();
   extract_wall_history();
   Particles& p = particles;
+  const auto permute = [this](auto& values, auto& spare) {
+    workers_->run(settings_.partitions, [&](int slab, int) { move_items(values, spare, new_index_, slab_begin(slab), slab_begin(slab + 1)); });
+    values.swap(spare);
+  };
   // The forces are zero between steps: their lines serve as the spare half of the accelerations.
-  AlignedVector<MotionLine> spare_motion(p.motion.size());
-  permute(p.motion, spare_motion, new_index_);
-  permute(p.half, spare_motion, new_index_);
-  permute(p.acceleration, p.force, new_index_);
-  for (ForceLine& f : p.force) f = ForceLine{};
-  AlignedVector<PositionLine> spare_position(p.position.size());
-  permute(p.position, spare_position, new_index_);
-  permute(p.reference, spare_position, new_index_);
-  permute(reaches_, spare_position, new_index_);
-  std::vector<std::uint32_t> ids(p.id.size());
-  std::vector<std::uint8_t> materials(p.material.size());
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    ids[new_index_[i]] = p.id[i];
-    materials[new_index_[i]] = p.material[i];
-  }
-  p.id.swap(ids);
-  p.material.swap(materials);
+  permute(p.acceleration, p.force);
+  workers_->run(settings_.partitions, [&p, this](int slab, int) {
+    std::fill(p.force.begin() + slab_begin(slab), p.force.begin() + slab_begin(slab + 1), ForceLine{});
+  });
+  permute(p.motion, spare_motion_);
+  permute(p.half, spare_motion_);
+  permute(p.position, spare_position_);
+  permute(p.reference, spare_position_);
+  permute(reaches_, spare_position_);
+  permute(p.id, spare_id_);
+  permute(p.material, spare_material_);
   workers_->run(settings_.partitions, [this](int slab, int) { build_pairs(slab); });
   find_first_references();
   build_walls();

@@ -190,9 +190,12 @@ class System {
   } grid_;
   AlignedVector<PositionLine> reaches_;  ///< centre; `radius`: radius + skin + half the largest law reach
   std::vector<std::uint32_t> new_index_;
-  struct Carried {
-    std::uint32_t owner, partner;
-  };
+  // the other halves of swaps, kept from rebuild to rebuild
+  AlignedVector<MotionLine> spare_motion_;
+  AlignedVector<PositionLine> spare_position_;
+  std::vector<std::uint32_t> spare_id_;
+  std::vector<std::uint8_t> spare_material_;
+  std::vector<double> wall_coordinates_[4];  ///< x, y, z in a body's frame, and reach, of every bead
   std::vector<std::uint32_t> carried_start_;
   std::vector<std::uint32_t> carried_partner_;
   std::vector<double> carried_history_;

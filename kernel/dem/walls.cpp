@@ -86,8 +86,6 @@ void System::extract_wall_history() {
 void System::build_walls() {
   const std::int64_t n = particles.count();
   const std::size_t slots = static_cast<std::size_t>(layout_.history_count());
-  std::vector<double> coordinates[3], radius(static_cast<std::size_t>(n));
-  for (auto& c : coordinates) c.resize(static_cast<std::size_t>(n));
   std::vector<std::pair<std::uint32_t, std::uint32_t>> near;
   wall_speed_ = 0;
   for (const Body& body : bodies) {
@@ -101,17 +99,18 @@ void System::build_walls() {
   }
   // The walls may move this far before the lists must be made anew.
   wall_moved_ = 0;
-  wall_margin_ = wall_speed_ * 1.5 * settings_.skin_steps * settings_.time_step;
+  wall_margin_ = wall_speed_ * 1.1 * settings_.skin_steps * settings_.time_step;
   for (std::size_t body_index = 0; body_index < bodies.size(); ++body_index) {
     const Body& body = bodies[body_index];
     const Pose pose = pose_at(body.motion, time());
-    for (std::int64_t i = 0; i < n; ++i) {
-      const std::size_t k = static_cast<std::size_t>(i);
-      const Row x = to_body(pose, wrapped(particles.position[k], settings_));
-      for (std::size_t a = 0; a < 3; ++a) coordinates[a][k] = x[a];
-      radius[k] = reaches_[k].radius;
-    }
-    const GeometryBeads beads{n, {coordinates[0].data(), coordinates[1].data(), coordinates[2].data()}, radius.data()};
+    workers_->run(settings_.partitions, [&](int slab, int) {
+      for (std::size_t k = static_cast<std::size_t>(slab_begin(slab)); k < static_cast<std::size_t>(slab_begin(slab + 1)); ++k) {
+        const Row x = to_body(pose, wrapped(particles.position[k], settings_));
+        for (std::size_t a = 0; a < 3; ++a) wall_coordinates_[a][k] = x[a];
+        wall_coordinates_[3][k] = reaches_[k].radius;
+      }
+    });
+    const GeometryBeads beads{n, {wall_coordinates_[0].data(), wall_coordinates_[1].data(), wall_coordinates_[2].data()}, wall_coordinates_[3].data()};
     near.clear();
     const CandidateSink sink{&near, [](void* host, std::int64_t bead, std::uint32_t feature) {
                                static_cast<decltype(near)*>(host)->emplace_back(static_cast<std::uint32_t>(bead), feature);
@@ -120,7 +119,7 @@ void System::build_walls() {
     if (body.table->candidates(body.self, &beads, wall_margin_, &sink, &failure) != 0) {
       throw config::UserError(std::string("geometry '") + body.name + "': " + failure.message);
     }
-    std::sort(near.begin(), near.end());
+    if (!std::is_sorted(near.begin(), near.end())) std::sort(near.begin(), near.end());
 
     std::vector<CarriedContact> carried;
     for (const auto& slab : slabs_) {

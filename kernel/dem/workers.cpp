@@ -3,8 +3,10 @@
 namespace millscope::dem {
 namespace {
 
-// A phase lasts tens of microseconds to milliseconds: spin a while, then sleep, so that an idle team costs nothing.
-constexpr int kSpins = 20000;
+// A phase lasts tens of microseconds to milliseconds: spin about as long, then give the core away (on a busy machine the other worker
+// may be waiting for it), then sleep, so that an idle team costs nothing.
+constexpr int kSpins = 1000;
+constexpr int kYields = 100;
 
 void pause() { __builtin_ia32_pause(); }
 
@@ -45,7 +47,13 @@ void Workers::run(int slabs, const std::function<void(int, int)>& task) {
 void Workers::loop(int worker) {
   unsigned seen = 0;
   for (;;) {
-    for (int spin = 0; generation_.load(std::memory_order_acquire) == seen && spin < kSpins; ++spin) pause();
+    for (int spin = 0; generation_.load(std::memory_order_acquire) == seen && spin < kSpins + kYields; ++spin) {
+      if (spin < kSpins) {
+        pause();
+      } else {
+        std::this_thread::yield();
+      }
+    }
     generation_.wait(seen, std::memory_order_acquire);
     seen = generation_.load(std::memory_order_acquire);
     if (stop_.load()) return;
