@@ -1,0 +1,149 @@
+// The same bits from any number of threads, any instruction set, and across a restart.
+#include <catch2/catch.hpp>
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "dem/support.hpp"
+#include "kernel/config/error.hpp"
+
+using namespace dem_test;
+
+namespace {
+
+/// 300 beads of two sizes and two materials in a turning drum with lifters; nothing is equal, so every path of the step is taken.
+Setup mixed_drum(int partitions = 16) {
+  Setup s;
+  s.pairs = "restitution: 0.8, static_friction: 0.34, rolling_friction: 0.02";
+  s.wall_pairs = "restitution: 0.55, static_friction: 0.30, rolling_friction: 0.02";
+  s.beads = "{light: {material: glass, diameter: 5 mm, share: 60 %}, dense: {material: heavy, diameter: 3 mm, share: 40 %}}";
+  s.fill = "{count: 300, settle_s: 0.01}";
+  s.interactions = "{rolling: {kind: rolling_epsd}}";
+  s.body_forces = "{gravity: {kind: gravity}, air: {kind: air_drag}}";
+  s.geometry = "{drum: {kind: mill, diameter: 80 mm, length: 20 mm, lifters: 6, lifter_height: 4 mm, lifter_width: 10 mm, material: wall, "
+               "motion: {rotation: {speed: 14 rad/s}}}}";
+  s.domain = "{periodic: {z: [0, 20 mm]}}";
+  s.run = fmt::format("{{partitions: {}}}", partitions);
+  return s;
+}
+
+/// Beads of one size on the liner that is committed as a mesh.
+Setup mesh_drum() {
+  Setup s;
+  s.fill = "{count: 300, settle_s: 0.01}";
+  s.body_forces = kWithGravity;
+  s.geometry = "{liner: {kind: mesh, file: " MILLSCOPE_SOURCE_DIR "/configs/crosscheck/liner.stl, unit: m, period: 20 mm, material: wall, "
+               "motion: {rotation: {speed: 6 rad/s}}}}";
+  s.domain = "{periodic: {z: [0, 20 mm]}}";
+  s.run = "{partitions: 16}";
+  return s;
+}
+
+Assembly ready(const Setup& s, int threads = 1, const std::string& level = "") {
+  Assembly a = assembled(s, {threads, level}, level);
+  run::insert_beads(a);
+  run::begin(a);
+  return a;
+}
+
+std::uint64_t hash_after(const Setup& s, int steps, int threads, const std::string& level) {
+  Assembly a = ready(s, threads, level);
+  advance(a, steps);
+  return a.system->state_hash();
+}
+
+double dissipated(const Assembly& a) {
+  double sum = 0;
+  for (const dem::PairLedger& p : a.system->ledger().pairs) {
+    for (const double d : p.dissipated) sum += d;
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("threads and instruction sets change no bit") {
+  const int steps = 1500;  // three turns of the lists' life, a tenth of a turn of the drum
+  for (const Setup& s : {mixed_drum(), mesh_drum()}) {
+    const std::uint64_t expected = hash_after(s, steps, 1, "v2");
+    for (const std::string& level : levels()) {
+      INFO(level);
+      CHECK(hash_after(s, steps, 1, level) == expected);
+    }
+    for (const int threads : {2, 3}) {
+      INFO(threads << " threads");
+      CHECK(hash_after(s, steps, threads, "") == expected);
+    }
+    CHECK(hash_after(s, steps, 2, "v2") == expected);
+  }
+}
+
+TEST_CASE("the hash sees the state: another time, another seed, another speed") {
+  Assembly a = ready(mixed_drum());
+  const std::uint64_t first = a.system->state_hash();
+  CHECK(ready(mixed_drum()).system->state_hash() == first);
+  a.system->advance();
+  CHECK(a.system->state_hash() != first);
+  Assembly b = ready(mixed_drum());
+  b.system->particles.half[17].w[2] += 1e-12;
+  CHECK(b.system->state_hash() != first);
+}
+
+TEST_CASE("partitions other than 1 and more than beads work; the physics stays") {
+  Setup s = mixed_drum(1);
+  Assembly one = ready(s);
+  advance(one, 1500);
+  for (const int partitions : {7, 400}) {
+    s.run = fmt::format("{{partitions: {}}}", partitions);
+    Assembly many = ready(s);
+    advance(many, 1500);
+    INFO(partitions << " partitions");
+    CHECK(many.system->centre_of_mass()[1] == Approx(one.system->centre_of_mass()[1]).margin(2e-4));
+    CHECK(dissipated(many) == Approx(dissipated(one)).epsilon(0.05));
+  }
+}
+
+TEST_CASE("a restored system continues bit for bit") {
+  for (const Setup& s : {mixed_drum(), mesh_drum()}) {
+    Assembly whole = ready(s);
+    advance(whole, 1500);
+    std::vector<Saved> states;
+    for (int k = 0; k < 7; ++k) {  // at all distances from the last rebuild
+      states.push_back(saved(whole));
+      advance(whole, 7);
+    }
+    advance(whole, 400);
+    const std::uint64_t expected = whole.system->state_hash();
+    const double lost = dissipated(whole), work = whole.system->ledger().bodies[0].work;
+    const std::int64_t rebuilds = whole.system->rebuilds(), last = whole.system->step();
+    bool wall_contacts = false, pair_contacts = false;
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      wall_contacts = wall_contacts || !states[k].integers.at("walls/0/contact_bead").empty();
+      for (const std::int64_t touching : states[k].integers.at("pairs/0/touching")) pair_contacts = pair_contacts || touching != 0;
+      Assembly part = assembled(s, {k == 3 ? 2 : 1, ""});
+      restore(part, states[k]);
+      while (part.system->step() < last) part.system->advance();
+      INFO("saved " << 7 * k << " steps later");
+      CHECK(part.system->state_hash() == expected);
+      CHECK(part.system->rebuilds() == rebuilds);
+      CHECK(dissipated(part) == lost);
+      CHECK(part.system->ledger().bodies[0].work == work);
+    }
+    CHECK(wall_contacts);
+    CHECK(pair_contacts);
+  }
+}
+
+TEST_CASE("a checkpoint of other partitions, materials or plugins is refused") {
+  const Saved state = saved(ready(mixed_drum()));
+  Assembly same = assembled(mixed_drum());
+  CHECK_NOTHROW(restore(same, state));
+  Assembly other = assembled(mixed_drum(8));
+  CHECK_THROWS_WITH(restore(other, state), Catch::Contains("partitions"));
+  Setup plain = mixed_drum();
+  plain.interactions = "{}";
+  plain.pairs = plain.wall_pairs = "restitution: 0.8, static_friction: 0.34";
+  Assembly without = assembled(plain);
+  CHECK_THROWS_WITH(restore(without, state), Catch::Contains("plugins"));
+}
