@@ -76,48 +76,48 @@ void System::add_halos(int slab) {
   }
 }
 
-/// Body forces that differ from bead to bead.
+/// Body forces that differ from bead to bead; the fluid that moves with a bead slows all that acts on it.
 void System::apply_body_forces(int slab, int worker) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
-  double* const* array = scratch_[static_cast<std::size_t>(worker)]->body_arrays;
+  Scratch& scratch = *scratch_[static_cast<std::size_t>(worker)];
+  double* const* array = scratch.body_arrays;
   const std::int64_t end = slab_begin(slab + 1);
-  for (std::size_t f = 0; f < body_forces.size(); ++f) {
-    double uniform[3];
-    if (body_forces[f].table->uniform(body_forces[f].self, time(), uniform)) continue;
-    for (std::int64_t begin = slab_begin(slab); begin < end; begin += kBatch) {
-      const std::int64_t count = std::min(kBatch, end - begin);
-      for (std::int64_t k = 0; k < count; ++k) {
-        const std::size_t i = static_cast<std::size_t>(begin + k);
-        const double* x = &particles.position[i].x;
-        const MotionLine& m = particles.motion[i];
-        for (int a = 0; a < 3; ++a) {
-          array[a][k] = x[a];
-          array[3 + a][k] = m.v[a];
-          array[6 + a][k] = m.w[a];
-          array[11 + a][k] = array[14 + a][k] = 0.0;
-        }
-        array[9][k] = particles.position[i].radius;
-        array[10][k] = 1.0 / m.inverse_mass;
+  for (std::int64_t begin = slab_begin(slab); begin < end; begin += kBatch) {
+    const std::int64_t count = std::min(kBatch, end - begin);
+    for (std::int64_t k = 0; k < count; ++k) {
+      const std::size_t i = static_cast<std::size_t>(begin + k);
+      const double* x = &particles.position[i].x;
+      const MotionLine& m = particles.motion[i];
+      for (int a = 0; a < 3; ++a) {
+        array[a][k] = x[a];
+        array[3 + a][k] = m.v[a];
+        array[6 + a][k] = m.w[a];
+        array[11 + a][k] = array[14 + a][k] = 0.0;
       }
-      std::vector<double>& added_mass = scratch_[static_cast<std::size_t>(worker)]->added_mass;
-      added_mass.assign(static_cast<std::size_t>(count), 0.0);
+      array[9][k] = particles.position[i].radius;
+      array[10][k] = 1.0 / m.inverse_mass;
+    }
+    scratch.added_mass.assign(static_cast<std::size_t>(count), 0.0);
+    for (std::size_t f = 0; f < body_forces.size(); ++f) {
+      double uniform[3];
+      if (body_forces[f].table->uniform(body_forces[f].self, time(), uniform)) continue;
       BodyForceBatch batch{count, time(), settings_.time_step, {array[0], array[1], array[2]}, {array[3], array[4], array[5]},
                            {array[6], array[7], array[8]}, array[9], array[10], {array[11], array[12], array[13]},
-                           {array[14], array[15], array[16]}, added_mass.data(), 0.0};
+                           {array[14], array[15], array[16]}, scratch.added_mass.data(), 0.0};
       body_forces[f].table->evaluate(body_forces[f].self, &batch);
       state.ledger.body_force_work[f] += batch.power_sum * settings_.time_step;
-      for (std::int64_t k = 0; k < count; ++k) {
-        ForceLine& line = particles.force[static_cast<std::size_t>(begin + k)];
-        for (int a = 0; a < 3; ++a) {
-          line.f[a] += array[11 + a][k];
-          line.t[a] += array[14 + a][k];
-        }
-        const double added = added_mass[static_cast<std::size_t>(k)];
-        if (added != 0.0) {
-          // (m + m_a) a = ΣF + m g: scale so that the integrator's F/m + g gives that.
-          const double mass = array[10][k], ratio = mass / (mass + added);
-          for (std::size_t a = 0; a < 3; ++a) line.f[a] = ratio * (line.f[a] + mass * acceleration_[a]) - mass * acceleration_[a];
-        }
+    }
+    for (std::int64_t k = 0; k < count; ++k) {
+      ForceLine& line = particles.force[static_cast<std::size_t>(begin + k)];
+      for (int a = 0; a < 3; ++a) {
+        line.f[a] += array[11 + a][k];
+        line.t[a] += array[14 + a][k];
+      }
+      const double added = scratch.added_mass[static_cast<std::size_t>(k)];
+      if (added != 0.0) {
+        // (m + m_a) a = ΣF + m g: scale so that the integrator's F/m + g gives that.
+        const double mass = array[10][k], ratio = mass / (mass + added);
+        for (std::size_t a = 0; a < 3; ++a) line.f[a] = ratio * (line.f[a] + mass * acceleration_[a]) - mass * acceleration_[a];
       }
     }
   }
