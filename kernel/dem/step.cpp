@@ -25,7 +25,8 @@ void System::contacts(int slab, int worker) {
       batch.mass = equality.arrays[1]->data();
       batch.radius_i = batch.radius_j = equality.arrays[2]->data();
     }
-    const bool spins = std::any_of(physics.interactions.begin(), physics.interactions.end(), [](const auto& i) { return !i.pre; });
+    const bool spins = !physics.interactions.empty();
+    const bool moments = std::any_of(physics.interactions.begin(), physics.interactions.end(), [](const auto& i) { return !i.pre; });
     const PairListView list = state.lists[p].view();
     const GatherContext gather{particles.position.data(), particles.motion.data(), settings_.periodic, physics.reach,
                                equality.equal, spins, equality.radius, 0.5 * equality.mass};
@@ -41,7 +42,7 @@ void System::contacts(int slab, int worker) {
       if (step_ % 16 == 0) note_overlap(count, batch, ledger);
       ledger.contacts += count;
       evaluate({&physics, settings_.time_step, count, false}, batch, ledger);
-      wide_->scatter(scatter, list, count, spins, batch);
+      wide_->scatter(scatter, list, count, moments, batch);
     }
   }
 }

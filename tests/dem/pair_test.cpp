@@ -62,7 +62,36 @@ constexpr NamedLaw kLaws[] = {
     {"{kind: hertz_mindlin}", "restitution: 0.7, static_friction: 0.3, cohesion_energy_density: 1e4 J/m^3", "{cohesion: {kind: cohesion_sjkr}}"},
 };
 
+struct SeenSpins {
+  double i = 0, j = 0;
+};
+
+const InteractionTable kWatcher{{0, 0, {1, 1, 1, 1, 1, 1}, {"", "", "", "", "", ""}, {"", "", "", "", "", ""}},
+                                nullptr,
+                                nullptr,
+                                [](const void*, double) { return 0.0; },
+                                [](const void* self, InteractionBatch* b) {
+                                  *static_cast<SeenSpins*>(const_cast<void*>(self)) = {b->spin_i[2][0], b->spin_j[2][0]};
+                                  b->elastic_sum = 0;
+                                },
+                                nullptr};
+
 }  // namespace
+
+TEST_CASE("an interaction before the law sees the spins of both beads") {
+  Assembly a = assembled(Setup{});
+  SeenSpins seen;
+  std::vector<dem::PairPhysics> physics = a.system->physics();
+  physics[0].interactions.push_back({&kWatcher, &seen, true, "watcher"});
+  a.system = std::make_unique<dem::System>(a.system->settings(), a.system->layout(), physics, 1);
+  Bead p, q;
+  q.position = {1.999 * kRadius, 0, 0};
+  p.spin = {0, 0, 3};
+  q.spin = {0, 0, -5};
+  start(a, {p, q});
+  a.system->advance();
+  CHECK(seen.i * seen.j == Approx(-15));
+}
 
 TEST_CASE("two free spheres keep momentum and angular momentum, and the ledger knows where the energy went") {
   for (const NamedLaw& law : kLaws) {
