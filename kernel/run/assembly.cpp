@@ -200,26 +200,70 @@ void check_time_step(const Assembly& a) {
   }
 }
 
-/// The box that no bead may leave: what the user gave, else the geometries' own bounds with a margin of a bead.
+/// Bounds of all places that a body's surface takes until the run's end.
+config::Box swept(const Surface& s, const dem::Motion& m, double end) {
+  config::Box box;
+  box.low.fill(1e300);
+  box.high.fill(-1e300);
+  for (std::uint64_t v = 0; v < s.vertex_count; ++v) {
+    const double* x = s.vertices + 3 * v;
+    double along = 0, square = 0;
+    for (std::size_t a = 0; a < 3; ++a) along += (x[a] - m.point[a]) * m.axis[a];
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double off = x[a] - m.point[a] - along * m.axis[a];
+      square += off * off;
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+      // A vertex that turns runs on a circle round the axis.
+      const double centre = m.speed != 0 ? m.point[a] + along * m.axis[a] : x[a];
+      const double reach = m.speed != 0 ? std::sqrt(square * std::max(0.0, 1 - m.axis[a] * m.axis[a])) : 0.0;
+      box.low[a] = std::min(box.low[a], centre - reach);
+      box.high[a] = std::max(box.high[a], centre + reach);
+    }
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double shift = m.velocity[a] * std::max(0.0, end - m.translation_start), swing = 2 * std::abs(m.oscillation_amplitude[a]);
+    box.low[a] += std::min(0.0, shift) - swing;
+    box.high[a] += std::max(0.0, shift) + swing;
+  }
+  return box;
+}
+
+/// Range of a coordinate that a moving surface can reach until `end`.
+std::pair<double, double> swept(const Surface& s, const dem::Motion& m, std::size_t axis, double end) {
+  double low = 1e300, high = -1e300;
+  for (std::uint64_t v = 0; v < s.vertex_count; ++v) {
+    low = std::min(low, s.vertices[3 * v + axis]);
+    high = std::max(high, s.vertices[3 * v + axis]);
+  }
+  if (low > high) return {low, high};
+  if (m.speed != 0) {
+    // Across the axis a turning body reaches as far as its farthest vertex.
+    const double across = greatest_distance(s, m) * std::sqrt(std::max(0.0, 1 - m.axis[axis] * m.axis[axis]));
+    low = std::min(low, m.point[axis] - across);
+    high = std::max(high, m.point[axis] + across);
+  }
+  const double shift = m.velocity[axis] * end, swing = 2 * std::abs(m.oscillation_amplitude[axis]);
+  return {low + std::min(0.0, shift) - swing, high + std::max(0.0, shift) + swing};
+}
+
+/// The box that no bead may leave: what the user gave, else the bounds of the bodies on their way, with a margin of a bead. A plane has
+/// no end and bounds nothing.
 void set_domain(const Assembly& a, dem::Settings& s) {
+  config::Box bounds;
+  bounds.low.fill(1e300);
+  bounds.high.fill(-1e300);
+  for (std::size_t g = 0; g < a.geometries.size(); ++g) {
+    if (!a.geometries[g].interior.is_bounded) continue;
+    const config::Box box = swept(a.geometries[g].surface, motion_of(a.c.geometry[g].motion), a.c.time.end);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      bounds.low[axis] = std::min(bounds.low[axis], box.low[axis]);
+      bounds.high[axis] = std::max(bounds.high[axis], box.high[axis]);
+    }
+  }
+  const double margin = a.c.largest_diameter();
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    double low = 1e300, high = -1e300;
-    for (const GeometryUse& g : a.geometries) {
-      for (std::uint64_t v = 0; v < g.surface.vertex_count; ++v) {
-        low = std::min(low, g.surface.vertices[3 * v + axis]);
-        high = std::max(high, g.surface.vertices[3 * v + axis]);
-      }
-    }
-    const double margin = a.c.largest_diameter();
-    // A body that turns sweeps the greatest of its extents.
-    if (low <= high && axis < 2) {
-      for (const GeometryUse& g : a.geometries) {
-        if (g.interior.is_bounded && g.interior.is_cylinder) {
-          low = std::min(low, -g.interior.radius);
-          high = std::max(high, g.interior.radius);
-        }
-      }
-    }
+    const double low = bounds.low[axis], high = bounds.high[axis];
     const double user_low = a.c.domain.box.low[axis], user_high = a.c.domain.box.high[axis];
     s.low[axis] = std::isfinite(user_low) ? user_low : low <= high ? low - margin : -1e3;
     s.high[axis] = std::isfinite(user_high) ? user_high : low <= high ? high + margin : 1e3;
@@ -292,6 +336,10 @@ Assembly assemble(config::Case c, const host::Registry& registry, const Assembly
   for (const dem::InteractionReference& i : pairs.front().interactions) layout.add(i.name, i.table->info);
   for (const dem::PairParameterReference& p : pairs.front().pair_parameters) layout.add("", p.table->info);
 
+  if (layout.signs.size() > static_cast<std::size_t>(dem::kMaxHistories)) {
+    throw UserError(a.c.contact.law.where, fmt::format("law, interactions and pair parameters keep {} numbers per contact together; at most {} are possible: "
+                                                       "leave one of them out", layout.signs.size(), dem::kMaxHistories));
+  }
   dem::Settings s;
   s.time_step = a.time_step;
   s.partitions = a.c.run.partitions;
