@@ -12,7 +12,7 @@ struct Mean {
 };
 
 /// Mean of an evenly sampled series. The standard error is s √(2 τ/n) with the integrated autocorrelation time τ summed up to the first
-/// lag ≥ 5 τ (Sokal 1997); NaN for fewer than 4 samples.
+/// lag W ≥ 5 τ (Sokal 1997), times 1 + (2 W + 1)/n because the series' own mean was taken off (Wolff 2004); NaN for fewer than 4 samples.
 Mean correlated_mean(std::span<const double> series);
 
 struct Steadiness {
@@ -21,8 +21,8 @@ struct Steadiness {
   double standard_errors = 0;  ///< |drift| over its standard error
 };
 
-/// Compares the halves of a window: steady when they differ by less than three standard errors of the difference, or by less than
-/// `tolerance` (relative to the mean), whichever is wider.
+/// Compares the halves of a window: steady when they differ by less than three standard errors of the difference (of the series without
+/// its linear trend), or by less than `tolerance` (relative to the mean), whichever is wider.
 Steadiness steadiness(std::span<const double> series, double tolerance);
 
 }  // namespace millscope::run
