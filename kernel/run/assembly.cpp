@@ -229,24 +229,6 @@ config::Box swept(const Surface& s, const dem::Motion& m, double end) {
   return box;
 }
 
-/// Range of a coordinate that a moving surface can reach until `end`.
-std::pair<double, double> swept(const Surface& s, const dem::Motion& m, std::size_t axis, double end) {
-  double low = 1e300, high = -1e300;
-  for (std::uint64_t v = 0; v < s.vertex_count; ++v) {
-    low = std::min(low, s.vertices[3 * v + axis]);
-    high = std::max(high, s.vertices[3 * v + axis]);
-  }
-  if (low > high) return {low, high};
-  if (m.speed != 0) {
-    // Across the axis a turning body reaches as far as its farthest vertex.
-    const double across = greatest_distance(s, m) * std::sqrt(std::max(0.0, 1 - m.axis[axis] * m.axis[axis]));
-    low = std::min(low, m.point[axis] - across);
-    high = std::max(high, m.point[axis] + across);
-  }
-  const double shift = m.velocity[axis] * end, swing = 2 * std::abs(m.oscillation_amplitude[axis]);
-  return {low + std::min(0.0, shift) - swing, high + std::max(0.0, shift) + swing};
-}
-
 /// The box that no bead may leave: what the user gave, else the bounds of the bodies on their way, with a margin of a bead. A plane has
 /// no end and bounds nothing.
 void set_domain(const Assembly& a, dem::Settings& s) {
