@@ -187,7 +187,7 @@ void System::complain(std::int64_t bead, const char* what) const {
   std::snprintf(line, sizeof line,
                 "at t = %.6g s bead %u %s: centre (%.4g, %.4g, %.4g) m, velocity (%.4g, %.4g, %.4g) m/s. Likely causes, in order: a time step "
                 "too long for the stiffness (lower time.step_fraction), beads that overlapped walls or each other at the start, a liner with "
-                "an open edge (millscope geometry report). The last checkpoint is intact",
+                "an open edge (millscope geometry report)",
                 time(), particles.id[i], what, x.x, x.y, x.z, m.v[0], m.v[1], m.v[2]);
   throw config::UserError(line);
 }

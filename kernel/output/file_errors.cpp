@@ -6,6 +6,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <limits>
 
 #include "kernel/config/error.hpp"
 #include "kernel/output/archive.hpp"
@@ -50,6 +51,7 @@ std::uint64_t free_bytes(const fs::path& path) {
     if (place == place.parent_path()) return 0;
     place = place.parent_path();
   }
+  if (disk.f_blocks == 0) return std::numeric_limits<std::uint64_t>::max();  // no disk (/proc): what is wrong there is found on writing
   return static_cast<std::uint64_t>(disk.f_bavail) * disk.f_frsize;
 }
 

@@ -12,18 +12,22 @@ namespace {
 
 std::int64_t steps_of(double interval, double time_step) { return std::max<std::int64_t>(1, std::llround(interval / time_step)); }
 
+[[noreturn]] void refuse_tracks(const Assembly& a, const std::string& message) {
+  a.c.root.at("output").at("tracks").at("beads").fail(message);
+}
+
 /// Which beads to follow: the user's ids, or a seeded draw.
 std::vector<std::uint32_t> tracked(const Assembly& a) {
   const config::OutputCase::Tracks& t = *a.c.output.tracks;
   std::vector<std::uint32_t> ids;
   if (!t.ids.empty()) {
     for (const std::uint64_t id : t.ids) {
-      if (id >= a.bead_count) throw config::UserError(fmt::format("output.tracks.beads: there is no bead {}; ids run from 0 to {}", id, a.bead_count - 1));
+      if (id >= a.bead_count) refuse_tracks(a, fmt::format("names bead {}, but ids run from 0 to {}; choose one of these", id, a.bead_count - 1));
       ids.push_back(static_cast<std::uint32_t>(id));
     }
     return ids;
   }
-  if (t.count > a.bead_count) throw config::UserError(fmt::format("output.tracks.beads: {} beads are to be followed but there are only {}", t.count, a.bead_count));
+  if (t.count > a.bead_count) refuse_tracks(a, fmt::format("asks for {} beads, but there are only {}; give at most that many", t.count, a.bead_count));
   Random random(a.c.seed ^ 0x747261636b73ULL);  // another stream than the filling's
   std::vector<std::uint32_t> all(a.bead_count);
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);
