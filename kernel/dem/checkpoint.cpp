@@ -30,10 +30,7 @@ void each_number(LedgerType& ledger, const Visit& visit) {
     visit(p.largest_closing_speed);
     visit(p.largest_overlap);
   }
-  for (auto& b : ledger.bodies) {
-    visit(b.work);
-    visit(b.torque_impulse);
-  }
+  for (auto& b : ledger.bodies) visit(b.work);
   for (auto& w : ledger.body_force_work) visit(w);
 }
 

@@ -17,7 +17,7 @@ bool has_pre(const PairPhysics& p) {
 
 void fill(double* array, std::int64_t count, double value) { std::fill(array, array + count, value); }
 
-InteractionBatch interaction_batch(const BatchRun& run, std::int64_t padded, BatchArrays& b) {
+InteractionBatch interaction_batch(const BatchRun& run, bool pre, std::int64_t padded, BatchArrays& b) {
   InteractionBatch r{};
   r.count = padded;
   r.time_step = run.time_step;
@@ -34,8 +34,8 @@ InteractionBatch interaction_batch(const BatchRun& run, std::int64_t padded, Bat
   r.radius_j = b.radius_j;
   r.radius = b.radius;
   r.mass = b.mass;
-  r.normal_force = b.normal_force;
-  r.normal_stiffness = b.normal_stiffness;
+  r.normal_force = pre ? nullptr : b.normal_force;
+  r.normal_stiffness = pre ? nullptr : b.normal_stiffness;
   r.added_force = b.added_force;
   r.added_cap = b.added_cap;
   return r;
@@ -66,7 +66,7 @@ void run_interactions(const BatchRun& run, bool pre, std::int64_t padded, BatchA
   Place at{run.physics->law.table->info.history_count, run.physics->law.table->info.channel_count};
   for (const InteractionReference& i : run.physics->interactions) {
     if (i.pre == pre) {
-      InteractionBatch batch = interaction_batch(run, padded, b);
+      InteractionBatch batch = interaction_batch(run, pre, padded, b);
       for (std::size_t h = 0; h < i.table->info.history_count; ++h) batch.history[h] = b.history[at.history + h];
       i.table->evaluate(i.self, &batch);
       ledger.elastic += batch.elastic_sum;

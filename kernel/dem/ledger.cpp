@@ -47,7 +47,6 @@ void Ledger::add(const Ledger& other) {
     }
     p.power += q.power;
     p.work += q.work;
-    p.torque_impulse += q.torque_impulse;
   }
   for (std::size_t i = 0; i < body_force_work.size(); ++i) body_force_work[i] += other.body_force_work[i];
 }

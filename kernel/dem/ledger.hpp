@@ -33,7 +33,6 @@ struct BodyLedger {
   std::array<double, 3> torque{};  ///< on the body about its centre at this instant, N m
   double power = 0;                ///< that the body gives to the charge at this instant, W
   double work = 0;                 ///< since the start, J
-  double torque_impulse = 0;       ///< ∫ torque·axis dt, N m s
 };
 
 struct Ledger {

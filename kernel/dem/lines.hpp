@@ -30,13 +30,16 @@ struct PeriodicBox {
   double length[3];
 };
 
+/// Numbers that law, interactions and pair parameters may keep per contact, all together.
+inline constexpr int kMaxHistories = 24;
+
 /// One part of the pair list: all listed pairs of one slab and one pair of materials. Owner i < partner j.
 struct PairListView {
   std::int64_t count;
   const std::uint32_t* owner;
   const std::uint32_t* partner;
   std::uint8_t* touching;   ///< 1 while within reach
-  double* history[24];      ///< per slot
+  double* history[kMaxHistories];  ///< per slot
   std::int32_t history_count;
 };
 
@@ -75,7 +78,7 @@ struct BatchArrays {
   double* friction;
   double* elastic;
   double* power[6];
-  double* history[24];
+  double* history[kMaxHistories];
 };
 
 }  // namespace millscope::dem

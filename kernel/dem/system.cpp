@@ -31,7 +31,11 @@ System::System(Settings settings, Layout layout, std::vector<PairPhysics> physic
     table[static_cast<std::size_t>(physics_[p].first * material_count + physics_[p].second)] = static_cast<int>(p);
     if (!physics_[p].wall) table[static_cast<std::size_t>(physics_[p].second * material_count + physics_[p].first)] = static_cast<int>(p);
   }
-  for (const std::string& channel : layout_.channels) normal_channel_.push_back(channel.find("normal") != std::string::npos);
+  for (const std::string& channel : layout_.channels) {
+    // "plugin.channel": what acts along the normal is impact, the rest shear.
+    const std::string own = channel.substr(channel.rfind('.') + 1);
+    normal_channel_.push_back(own.find("normal") != std::string::npos || own.find("adhesion") != std::string::npos);
+  }
 }
 
 System::~System() = default;

@@ -29,15 +29,9 @@ Row to_world(const Pose& p, const Row& n) {
 Row cross(const Row& a, const Row& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
 double dot(const Row& a, const Row& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Centre of a bead with periodic coordinates brought back into the box.
-Row wrapped(const PositionLine& x, const Settings& s) {
-  Row r{x.x, x.y, x.z};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double length = s.periodic.length[a];
-    if (length > 0) r[a] -= length * std::floor((r[a] - s.periodic_low[a]) / length);
-  }
-  return r;
-}
+/// Centre of a bead. Periodic coordinates are wrapped at list rebuilds only: wrapped here, a bead that crosses the boundary would jump away
+/// from the features that were listed for it. A surface must therefore reach a skin beyond the box (mesh: `period`).
+Row centre(const PositionLine& x) { return {x.x, x.y, x.z}; }
 
 struct CarriedContact {
   std::uint32_t bead, feature;  // bead: new index
@@ -87,6 +81,9 @@ void System::build_walls() {
   const std::int64_t n = particles.count();
   const std::size_t slots = static_cast<std::size_t>(layout_.history_count());
   std::vector<std::pair<std::uint32_t, std::uint32_t>> near;
+  // reaches_ holds half of the laws' reach, for two beads share it; a wall has none of its own.
+  double law_reach = 0;
+  for (const PairPhysics& p : physics_) law_reach = std::max(law_reach, p.reach);
   wall_speed_ = 0;
   for (const Body& body : bodies) {
     const double rotation = std::abs(body.motion.speed) * (1 + std::abs(body.motion.ripple_amplitude));
@@ -105,9 +102,9 @@ void System::build_walls() {
     const Pose pose = pose_at(body.motion, time());
     workers_->run(settings_.partitions, [&](int slab, int) {
       for (std::size_t k = static_cast<std::size_t>(slab_begin(slab)); k < static_cast<std::size_t>(slab_begin(slab + 1)); ++k) {
-        const Row x = to_body(pose, wrapped(particles.position[k], settings_));
+        const Row x = to_body(pose, centre(particles.position[k]));
         for (std::size_t a = 0; a < 3; ++a) wall_coordinates_[a][k] = x[a];
-        wall_coordinates_[3][k] = reaches_[k].radius;
+        wall_coordinates_[3][k] = reaches_[k].radius + 0.5 * law_reach;
       }
     });
     const GeometryBeads beads{n, {wall_coordinates_[0].data(), wall_coordinates_[1].data(), wall_coordinates_[2].data()}, wall_coordinates_[3].data()};
@@ -179,7 +176,7 @@ void System::walls(int slab, int worker, std::size_t body_index) {
     const std::int64_t count = std::min(kBeadsPerQuery, near_count - begin);
     for (std::int64_t k = 0; k < count; ++k) {
       const PositionLine& line = particles.position[wall.bead[static_cast<std::size_t>(begin + k)]];
-      const Row x = to_body(pose, wrapped(line, settings_));
+      const Row x = to_body(pose, centre(line));
       for (std::size_t a = 0; a < 3; ++a) scratch.query_position[a][k] = x[a];
       scratch.query_radius[k] = line.radius;
       scratch.query_first[static_cast<std::size_t>(k)] = wall.first[static_cast<std::size_t>(begin + k)];
@@ -205,7 +202,7 @@ void System::walls(int slab, int worker, std::size_t body_index) {
       wall.next.bead[base + k] = local;
       wall.next.feature[base + k] = scratch.pair[k] >= 0 ? found.feature[c] : std::numeric_limits<std::uint32_t>::max();
       wall.next.normal[base + k] = normal;
-      const std::ptrdiff_t match = take_match(wall.active, cursor, local, found.feature[c], normal);
+      const std::ptrdiff_t match = scratch.pair[k] < 0 ? -1 : take_match(wall.active, cursor, local, found.feature[c], normal);
       b.fresh[c] = match < 0;
       for (std::size_t h = 0; h < slots; ++h) wall.next.history[h][base + k] = match < 0 ? 0.0 : wall.active.history[h][static_cast<std::size_t>(match)];
     }
@@ -220,7 +217,7 @@ void System::walls(int slab, int worker, std::size_t body_index) {
         if (scratch.pair[k] != static_cast<std::int32_t>(p)) continue;
         const std::uint32_t bead = wall.bead[wall.next.bead[base + k]];
         const MotionLine& motion = particles.motion[bead];
-        const Row position = wrapped(particles.position[bead], settings_);
+        const Row position = centre(particles.position[bead]);
         const double radius = particles.position[bead].radius;
         const Row& n = scratch.normal[k];
         const double arm = radius - 0.5 * found.overlap[c];

@@ -245,6 +245,11 @@ void set_domain(const Assembly& a, dem::Settings& s) {
   }
   const double margin = a.c.largest_diameter();
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    // An open floor does not bound what is put above it.
+    if (a.c.fill.region && bounds.low[axis] <= bounds.high[axis]) {
+      bounds.low[axis] = std::min(bounds.low[axis], a.c.fill.region->low[axis]);
+      bounds.high[axis] = std::max(bounds.high[axis], a.c.fill.region->high[axis]);
+    }
     const double low = bounds.low[axis], high = bounds.high[axis];
     const double user_low = a.c.domain.box.low[axis], user_high = a.c.domain.box.high[axis];
     s.low[axis] = std::isfinite(user_low) ? user_low : low <= high ? low - margin : -1e3;

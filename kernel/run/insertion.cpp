@@ -34,7 +34,7 @@ Region region_of(const Assembly& a) {
     r.box.high[axis] = std::min(r.box.high[axis], high);
   };
   for (const GeometryUse& g : a.geometries) {
-    if (!g.interior.is_bounded) continue;
+    if (!g.interior.is_bounded || (a.c.fill.region && !g.interior.is_cylinder)) continue;
     for (std::size_t axis = 0; axis < 3; ++axis) narrow(axis, g.interior.low[axis], g.interior.high[axis]);
     if (g.interior.is_cylinder) {
       r.cylinder = true;

@@ -12,9 +12,15 @@ using Json = nlohmann::ordered_json;
 // Halves of a window may differ by this much even when the noise is smaller: what a mill engineer would call steady.
 constexpr double kSteadyTolerance = 0.01;
 
-/// P = M g ⟨x⟩ Ω, written for any direction of gravity: Ω ẑ · (M g × r) = M Ω (x·(−g_y) + y g_x).
+/// P = M g ⟨x⟩ Ω, for any direction of gravity and any axis: Ω a · (M g × (r − p)) with the turning body's axis a through p.
 double power_of_centre(const Assembly& a, const Sample& s) {
-  return a.system->total_mass() * a.mill_speed * (-s.centre[0] * a.gravity[1] + s.centre[1] * a.gravity[0]);
+  const int body = a.wall_body_of_mill();
+  if (body < 0) return 0.0;
+  const dem::Motion& m = a.system->bodies[static_cast<std::size_t>(body)].motion;
+  const std::array<double, 3>& g = a.gravity;
+  const std::array<double, 3> r{s.centre[0] - m.point[0], s.centre[1] - m.point[1], s.centre[2] - m.point[2]};
+  const double moment = m.axis[0] * (g[1] * r[2] - g[2] * r[1]) + m.axis[1] * (g[2] * r[0] - g[0] * r[2]) + m.axis[2] * (g[0] * r[1] - g[1] * r[0]);
+  return a.system->total_mass() * m.speed * moment;
 }
 
 
