@@ -131,7 +131,6 @@ def crosscheck(bench):
     imbalance = abs(s["energy"]["imbalance_fraction"])
     rows.append(row("energy not accounted for", "%.2f %%" % (100 * imbalance), "< 0.5 %", imbalance < 0.005))
     rows.append(row("steady", "yes" if s["steady"] else "no", "yes", bool(s["steady"])))
-    rows.append(row("speed, %d threads" % s["threads"], "%.1f M particle-steps/s" % (1e-6 * s["particle_steps_per_s"])))
     return rows
 
 
