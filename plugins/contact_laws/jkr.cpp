@@ -9,11 +9,11 @@
 //
 //   δ_n = a²/R* − √(2π w a/E*)                     ⇔  y⁴ − y = D, the larger root
 //   F   = 4/3 E* a³/R* − √(8π w E* a³)             =  2π w R* (4/3 y⁶ − 2 y³), at least −3/2 π w R*
-//   U   = ∫ F dδ_n                                 =  E* c³ R* s (8/15 y¹⁰ − 4/3 y⁷ + ½ y⁴)
+//   U   = ∫ F dδ_n                                 =  E* c³ R* s (8/15 y¹⁰ − 4/3 y⁷ + ½ y⁴ − y₀⁴/5), y₀³ = ¼
 //   S_t = 8 G* a,   |S_t δ_t| ≤ μ (F_n + 2 · 3/2 π w R*)   (Thornton 1991)
 //
 // The surfaces jump into contact at δ_n = 0, y = 1, and part at y³ = ¼, D = −0.4725, a gap: history remembers whether they touch. What
-// both jumps take, 0.3 and 0.0315 of E* c³ R* s, is the channel `adhesion`. The damping is Hertz's at stiffness 2 E* a, so e is
+// both jumps take, 0.3 and 0.0315 of E* c³ R* s, is the channel `adhesion`; U is counted from separation. The damping is Hertz's at stiffness 2 E* a, so e is
 // reached where adhesion does not count.
 // Ferrari: y = ½ (√(2m) + √(√(2/m) − 2m)) with m the positive root of m³ + D m − ⅛ = 0, polished by three Newton steps.
 #include "options.hpp"
@@ -131,15 +131,15 @@ class Jkr {
     out.force = total * c.normal + shear.force;
     out.normal_force = total;
     out.normal_stiffness = held * R(young_) * s * s * y2 * (R(8.0) * y3 - R(6.0)) / slope;
-    const R stored = energy * (R(8.0 / 15.0) * y4 * y4 * y2 - R(4.0 / 3.0) * y4 * y3 + R(0.5) * y4);
+    const R stored = energy * (R(8.0 / 15.0) * y4 * y4 * y2 - R(4.0 / 3.0) * y4 * y3 + R(0.5) * y4 - R(kJumpOut));
     out.elastic_energy = held * stored + shear.elastic_energy;
     const R taken = one + entry_share(c, maximum(out.normal_stiffness, zero), shear.per_mass);
     out.power[0] = (elastic - total) * normal_speed * taken;
     out.power[1] = shear.damping;
     out.power[2] = shear.friction;
     out.power[3] = shear.stiffness_change;
-    const R jump_in = select(touching && !before, R(kJumpIn), zero), jump_out = select(before && !touching, R(kJumpOut), zero);
-    out.power[4] = energy * (jump_in + jump_out) * c.per_time_step;
+    // Both jumps are booked at the touch, where U begins: at separation, its zero, the host may already have dropped the pair.
+    out.power[4] = energy * select(touching && !before, R(kJumpIn + kJumpOut), zero) * c.per_time_step;
   }
 
  private:
