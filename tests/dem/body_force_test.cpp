@@ -22,7 +22,8 @@ struct Push {
 std::int32_t not_uniform(const void*, double, double*) { return 0; }
 
 const BodyForceTable kCompanion{nullptr, nullptr, not_uniform, [](const void* self, BodyForceBatch* b) {
-                                  for (std::int64_t k = 0; k < b->count; ++k) b->added_mass[k] += static_cast<const Companion*>(self)->share * b->mass[k];
+                                  for (std::int64_t k = 0; k < b->count; ++k)
+                                    b->added_mass[k] += static_cast<const Companion*>(self)->share * b->mass[k];
                                   b->power_sum = 0;
                                 }};
 const BodyForceTable kPush{nullptr, nullptr, not_uniform, [](const void* self, BodyForceBatch* b) {

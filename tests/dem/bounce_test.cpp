@@ -38,7 +38,9 @@ Bounce bounce(Setup setup, const Vector& impact, const Vector& impact_spin = {},
   return {-velocity(a, 0)[1] / impact[1], static_cast<double>(touching) * a.time_step, velocity(a, 0), spin(a, 0)};
 }
 
-std::string pair_of(double restitution, double friction = 0.3) { return fmt::format("restitution: {}, static_friction: {}", restitution, friction); }
+std::string pair_of(double restitution, double friction = 0.3) {
+  return fmt::format("restitution: {}, static_friction: {}", restitution, friction);
+}
 
 /// The two spring laws; the linear one takes its stiffness (N/m) from the pair.
 struct SpringLaw {

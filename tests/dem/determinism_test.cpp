@@ -21,8 +21,9 @@ Setup mixed_drum(int partitions = 16) {
   s.fill = "{count: 300, settle_s: 0.01}";
   s.interactions = "{rolling: {kind: rolling_epsd}}";
   s.body_forces = "{gravity: {kind: gravity}, air: {kind: air_drag}}";
-  s.geometry = "{drum: {kind: mill, diameter: 80 mm, length: 20 mm, lifters: 6, lifter_height: 4 mm, lifter_width: 10 mm, material: wall, "
-               "motion: {rotation: {speed: 14 rad/s}}}}";
+  s.geometry =
+      "{drum: {kind: mill, diameter: 80 mm, length: 20 mm, lifters: 6, lifter_height: 4 mm, lifter_width: 10 mm, material: wall, "
+      "motion: {rotation: {speed: 14 rad/s}}}}";
   s.domain = "{periodic: {z: [0, 20 mm]}}";
   s.run = fmt::format("{{partitions: {}}}", partitions);
   return s;
@@ -33,7 +34,8 @@ Setup mesh_drum() {
   Setup s;
   s.fill = "{count: 300, settle_s: 0.01}";
   s.body_forces = kWithGravity;
-  s.geometry = "{liner: {kind: mesh, file: " MILLSCOPE_SOURCE_DIR "/configs/crosscheck/liner.stl, unit: m, period: 20 mm, material: wall, "
+  s.geometry = "{liner: {kind: mesh, file: " MILLSCOPE_SOURCE_DIR
+               "/configs/crosscheck/liner.stl, unit: m, period: 20 mm, material: wall, "
                "motion: {rotation: {speed: 6 rad/s}}}}";
   s.domain = "{periodic: {z: [0, 20 mm]}}";
   s.run = "{partitions: 16}";

@@ -20,7 +20,8 @@ std::vector<Bead> pile(double period) {
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) {
         Bead b;
-        b.position = {kRadius * (1.2 + 2.15 * i + 0.2 * (layer % 2)), kRadius * (1.1 + 2.1 * layer), (0.1 + (k + 0.3 * (layer % 3)) / 3.0) * period};
+        b.position = {kRadius * (1.2 + 2.15 * i + 0.2 * (layer % 2)), kRadius * (1.1 + 2.1 * layer),
+                      (0.1 + (k + 0.3 * (layer % 3)) / 3.0) * period};
         b.velocity = {0.3 * (i - 1), -0.5, 0.2 * (k - 1)};
         b.spin = {10.0 * i, 5.0 * k, -20};
         beads.push_back(b);
@@ -48,8 +49,10 @@ constexpr double kPeriod = 20e-3;
 }  // namespace
 
 TEST_CASE("a quarter turn of everything about z turns the result") {
-  Assembly upright = assembled(vessel("low: [0, 0, 0], high: [17.5 mm, 40 mm, 20 mm]", "[0.2, -1, 0]", "{low: [-1, -1, -1], high: [1, 1, 1]}"));
-  Assembly lying = assembled(vessel("low: [-40 mm, 0, 0], high: [0, 17.5 mm, 20 mm]", "[1, 0.2, 0]", "{low: [-1, -1, -1], high: [1, 1, 1]}"));
+  Assembly upright =
+      assembled(vessel("low: [0, 0, 0], high: [17.5 mm, 40 mm, 20 mm]", "[0.2, -1, 0]", "{low: [-1, -1, -1], high: [1, 1, 1]}"));
+  Assembly lying =
+      assembled(vessel("low: [-40 mm, 0, 0], high: [0, 17.5 mm, 20 mm]", "[1, 0.2, 0]", "{low: [-1, -1, -1], high: [1, 1, 1]}"));
   std::vector<Bead> beads = pile(0.8 * kPeriod), other = beads;
   for (Bead& b : other) {
     b.position = turned(b.position);

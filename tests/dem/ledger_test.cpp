@@ -34,8 +34,9 @@ Setup drum() {
   s.wall_pairs = "restitution: 0.55, static_friction: 0.30";
   s.fill = "{count: 200, settle_s: 0.05}";
   s.body_forces = kWithGravity;
-  s.geometry = "{drum: {kind: mill, diameter: 60 mm, length: 20 mm, lifters: 4, lifter_height: 4 mm, lifter_width: 10 mm, material: wall, "
-               "motion: {rotation: {speed: 12 rad/s}}}}";
+  s.geometry =
+      "{drum: {kind: mill, diameter: 60 mm, length: 20 mm, lifters: 4, lifter_height: 4 mm, lifter_width: 10 mm, material: wall, "
+      "motion: {rotation: {speed: 12 rad/s}}}}";
   s.domain = "{periodic: {z: [0, 20 mm]}}";
   s.run = "{partitions: 4}";
   return s;
@@ -70,8 +71,9 @@ TEST_CASE("in a rotating drum the ledger closes within 0.5 % at 20 % of the Rayl
 
 TEST_CASE("in a shaken box the ledger closes within 0.5 %, air drag included") {
   Setup s = drum();
-  s.geometry = "{box: {kind: box, low: [0, 0, 0], high: [30 mm, 60 mm, 30 mm], material: wall, "
-               "motion: {translation: {oscillation: {amplitude: [0, 4 mm, 2 mm], frequency: 20 Hz}}}}}";
+  s.geometry =
+      "{box: {kind: box, low: [0, 0, 0], high: [30 mm, 60 mm, 30 mm], material: wall, "
+      "motion: {translation: {oscillation: {amplitude: [0, 4 mm, 2 mm], frequency: 20 Hz}}}}}";
   s.domain = "{}";
   s.body_forces = "{gravity: {kind: gravity}, air: {kind: air_drag, strength: 20}}";
   const Balance b = balance(s, 0.15, 0.4);

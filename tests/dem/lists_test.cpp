@@ -25,7 +25,8 @@ IdPairs listed(const Assembly& a) {
     const auto& partner = s.integers.at(fmt::format("pairs/{}/partner", p));
     for (std::size_t k = 0; k < owner.size(); ++k) {
       REQUIRE(owner[k] < partner[k]);
-      const std::uint32_t i = a.system->particles.id[static_cast<std::size_t>(owner[k])], j = a.system->particles.id[static_cast<std::size_t>(partner[k])];
+      const std::uint32_t i = a.system->particles.id[static_cast<std::size_t>(owner[k])],
+                          j = a.system->particles.id[static_cast<std::size_t>(partner[k])];
       REQUIRE(found.emplace(std::min(i, j), std::max(i, j)).second);
     }
   }

@@ -44,7 +44,8 @@ std::vector<Bead> glancing(double radius, double density, int material) {
   return {a, b};
 }
 
-constexpr const char* kTwoKinds = "{light: {material: glass, diameter: 5 mm, share: 50 %}, dense: {material: heavy, diameter: 3 mm, share: 50 %}}";
+constexpr const char* kTwoKinds =
+    "{light: {material: glass, diameter: 5 mm, share: 50 %}, dense: {material: heavy, diameter: 3 mm, share: 50 %}}";
 
 struct NamedLaw {
   const char* law;
@@ -57,9 +58,12 @@ constexpr NamedLaw kLaws[] = {
     {"{kind: hertz_mindlin, allow_tension: false}", "restitution: 0.7, static_friction: 0.3", "{}"},
     {"{kind: linear_spring_dashpot}", "restitution: 0.7, static_friction: 0.3, normal_stiffness: 20000 N/m", "{}"},
     {"{kind: jkr}", "restitution: 0.7, static_friction: 0.3, surface_energy: 0.05 J/m^2", "{}"},
-    {"{kind: hertz_mindlin}", "restitution: 0.7, static_friction: 0.3, rolling_friction: 0.05", "{rolling: {kind: rolling_constant_torque}}"},
-    {"{kind: hertz_mindlin}", "restitution: 0.7, static_friction: 0.3, rolling_friction: 0.05", "{rolling: {kind: rolling_epsd, damping_ratio: 0.1}}"},
-    {"{kind: hertz_mindlin}", "restitution: 0.7, static_friction: 0.3, cohesion_energy_density: 1e4 J/m^3", "{cohesion: {kind: cohesion_sjkr}}"},
+    {"{kind: hertz_mindlin}", "restitution: 0.7, static_friction: 0.3, rolling_friction: 0.05",
+     "{rolling: {kind: rolling_constant_torque}}"},
+    {"{kind: hertz_mindlin}", "restitution: 0.7, static_friction: 0.3, rolling_friction: 0.05",
+     "{rolling: {kind: rolling_epsd, damping_ratio: 0.1}}"},
+    {"{kind: hertz_mindlin}", "restitution: 0.7, static_friction: 0.3, cohesion_energy_density: 1e4 J/m^3",
+     "{cohesion: {kind: cohesion_sjkr}}"},
 };
 
 struct SeenSpins {

@@ -49,8 +49,9 @@ std::string Setup::text() const {
        "  wall: {density: 2500 kg/m^3, young_modulus: 63.96 GPa, poisson_ratio: 0.23}\n";
   t += "beads: " + beads + "\nfill: " + fill + "\n";
   t += "contact:\n  law: " + law + "\n  interactions: " + interactions + "\n  pair_parameters: " + pair_parameters + "\n";
-  t += fmt::format("pairs:\n  glass~glass: {{{0}}}\n  glass~heavy: {{{0}}}\n  heavy~heavy: {{{0}}}\n  glass~wall: {{{1}}}\n  heavy~wall: {{{1}}}\n",
-                   pairs, walls);
+  t += fmt::format(
+      "pairs:\n  glass~glass: {{{0}}}\n  glass~heavy: {{{0}}}\n  heavy~heavy: {{{0}}}\n  glass~wall: {{{1}}}\n  heavy~wall: {{{1}}}\n",
+      pairs, walls);
   t += "body_forces: " + body_forces + "\n";
   if (geometry != "{}") t += "geometry: " + geometry + "\n";
   if (!mill.empty()) t += "mill: " + mill + "\n";
@@ -167,7 +168,8 @@ Saved saved(const Assembly& a) {
 }
 
 void restore(Assembly& a, const Saved& s) {
-  a.system->restore([&s](const std::string& name) { return s.doubles.at(name); }, [&s](const std::string& name) { return s.integers.at(name); });
+  a.system->restore([&s](const std::string& name) { return s.doubles.at(name); },
+                    [&s](const std::string& name) { return s.integers.at(name); });
 }
 
 double length(const Vector& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }

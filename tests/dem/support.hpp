@@ -25,12 +25,12 @@ std::vector<std::string> levels();
 /// Sections of a case as YAML flow text. Materials: glass (beads), heavy (beads), wall.
 struct Setup {
   std::string law = "{kind: hertz_mindlin}";
-  std::string pairs = "restitution: 0.8, static_friction: 0.3";       ///< of every pair of materials …
-  std::string wall_pairs;                                              ///< … those with the wall, when they differ
+  std::string pairs = "restitution: 0.8, static_friction: 0.3";  ///< of every pair of materials …
+  std::string wall_pairs;                                        ///< … those with the wall, when they differ
   std::string beads = "{glass: {material: glass, diameter: 5 mm}}";
   std::string fill = "{count: 1, settle_s: 0}";
   std::string interactions = "{}", pair_parameters = "{}";
-  std::string body_forces = "{}";                                      ///< or "{gravity: {kind: gravity}}"
+  std::string body_forces = "{}";  ///< or "{gravity: {kind: gravity}}"
   std::string geometry = "{}";
   std::string domain = "{low: [-10, -10, -10], high: [10, 10, 10]}";
   std::string time = "{end_s: 100, step_fraction: 0.2}";

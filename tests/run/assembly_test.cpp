@@ -54,8 +54,9 @@ TEST_CASE("the domain holds what the walls may sweep") {
     CHECK(d.low[0] == Approx(5e-3));
     CHECK(d.high[1] == Approx(25e-3));
   }
-  s.geometry = "{box: {kind: box, low: [10 mm, 0, 0], high: [40 mm, 20 mm, 30 mm], material: wall, "
-               "motion: {translation: {velocity: [0, 0, 0.001], oscillation: {amplitude: [0, 30 mm, 0], frequency: 5 Hz}}}}}";
+  s.geometry =
+      "{box: {kind: box, low: [10 mm, 0, 0], high: [40 mm, 20 mm, 30 mm], material: wall, "
+      "motion: {translation: {velocity: [0, 0, 0.001], oscillation: {amplitude: [0, 30 mm, 0], frequency: 5 Hz}}}}}";
   {
     const dem::Settings d = assembled(s).system->settings();  // 100 s
     CHECK(d.low[1] <= -30e-3);

@@ -21,7 +21,8 @@ Setup drum(const std::string& fill) {
   Setup s;
   s.fill = fill;
   s.body_forces = kWithGravity;
-  s.geometry = "{drum: {kind: mill, diameter: 100 mm, length: 20 mm, lifters: 8, lifter_height: 8 mm, lifter_width: 20 mm, material: wall}}";
+  s.geometry =
+      "{drum: {kind: mill, diameter: 100 mm, length: 20 mm, lifters: 8, lifter_height: 8 mm, lifter_width: 20 mm, material: wall}}";
   s.domain = "{periodic: {z: [0, 20 mm]}}";
   return s;
 }
