@@ -34,8 +34,8 @@ Setup mesh_drum() {
   Setup s;
   s.fill = "{count: 300, settle_s: 0.01}";
   s.body_forces = kWithGravity;
-  s.geometry = "{liner: {kind: mesh, file: " MILLSCOPE_SOURCE_DIR
-               "/configs/crosscheck/liner.stl, unit: m, period: 20 mm, material: wall, "
+  s.geometry = "{liner: {kind: mesh, file: " MILLSCOPE_BINARY_DIR
+               "/tests/liner.stl, unit: m, period: 20 mm, material: wall, "
                "motion: {rotation: {speed: 6 rad/s}}}}";
   s.domain = "{periodic: {z: [0, 20 mm]}}";
   s.run = "{partitions: 16}";

@@ -98,7 +98,7 @@ TEST_CASE("where a period begins does not matter, nor in which image a bead star
 TEST_CASE("a bead slides along a periodic mesh without noticing where the period ends") {
   Setup s;
   s.pairs = "restitution: 0.3, static_friction: 0.01";
-  s.geometry = "{liner: {kind: mesh, file: " MILLSCOPE_SOURCE_DIR "/configs/crosscheck/liner.stl, unit: m, period: 20 mm, material: wall}}";
+  s.geometry = "{liner: {kind: mesh, file: " MILLSCOPE_BINARY_DIR "/tests/liner.stl, unit: m, period: 20 mm, material: wall}}";
   s.body_forces = kWithGravity;
   s.domain = "{periodic: {z: [0, 20 mm]}}";
   Assembly a = assembled(s);
