@@ -7,6 +7,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <system_error>
 
 #include "app/commands.hpp"
 #include "kernel/config/document.hpp"
@@ -72,6 +73,9 @@ int main(int count, char** words) {
   } catch (const std::filesystem::filesystem_error& e) {
     fmt::print(stderr, "millscope: {}: {}; check the path, its permissions and the room on its disk\n", e.path1().string(), e.code().message());
     return app::kCannotWrite;
+  } catch (const std::system_error& e) {  // standard output, or a thread
+    fmt::print(stderr, "millscope: {}; check the room on the disk and this session's limits (ulimit -a)\n", e.what());
+    return e.code() == std::errc::resource_unavailable_try_again ? app::kBadInput : app::kCannotWrite;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "millscope: out of memory; 'millscope check CASE.yaml' predicts what a case needs\n");
     return app::kBadInput;

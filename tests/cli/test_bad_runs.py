@@ -1,0 +1,90 @@
+"""What goes wrong while a run goes on: full disks, explosions."""
+import os
+import re
+import subprocess
+import unittest
+
+from support import CliTest, tree_of
+
+UNSTABLE = ("--set", "time.step_fraction=1", "--set", "run.allow_unstable=true")
+
+
+class Explosion(CliTest):
+    def test_it_names_time_bead_and_cause(self):
+        result = self.millscope("run", "case.yaml", "-o", "out", "-q", *UNSTABLE, "--set", "time.end_s=5")
+        self.assert_one_line(result, r"at t = \S+ s bead \d+", r"centre \(.*\) m, velocity \(.*\) m/s", "time step too long", "lower time.step_fraction",
+                             "no checkpoint had been written to out")
+        self.assertFalse((self.folder / "out/checkpoint.h5").exists())
+        self.assertFalse((self.folder / "out/summary.json").exists())
+        self.assert_one_line(self.millscope("resume", "out"), "no checkpoint")
+
+    def test_the_last_checkpoint_is_kept(self):
+        """A sound run whose beads then leave through a wall of the domain."""
+        self.run_case("out")
+        case = (self.folder / "case.yaml").read_text().replace("periodic: {z: [0, 26 mm]}", "periodic: {z: [0, 26 mm]}\n  high: {x: 30 mm}")
+        self.write("open.yaml", case)
+        result = self.millscope("run", "open.yaml", "-o", "lost", "-q", "--set", "output.checkpoint.every_wall_s=0.001", "--set", "time.end_s=5")
+        if "kept in lost" in result.stderr:
+            self.assertTrue((self.folder / "lost/checkpoint.h5").exists())
+        self.assert_one_line(result, r"bead \d+ has left the domain", "kept in lost|no checkpoint had been written to lost")
+
+
+@unittest.skipUnless(os.geteuid() == 0, "only root can make a small disk to fill")
+class FullDisk(CliTest):
+    def disk(self, size):
+        place = self.folder / "disk"
+        place.mkdir()
+        made = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(place)], capture_output=True, text=True, check=False)
+        if made.returncode != 0:
+            self.skipTest("mount is not allowed here: " + made.stderr.strip())
+        self.addCleanup(subprocess.run, ["umount", "-l", str(place)], check=False)
+        return place
+
+    def test_too_small_from_the_start(self):
+        place = self.disk("1m")
+        self.assert_one_line(self.millscope("run", "case.yaml", "-o", "disk/out"), "the run will write about", "make room", code=4)
+        self.assertEqual(tree_of(place), {})
+
+    def test_read_only(self):
+        place = self.disk("20m")
+        subprocess.run(["mount", "-o", "remount,ro", str(place)], check=True)
+        self.assert_one_line(self.millscope("run", "case.yaml", "-o", "disk/out"), "disk/out", "cannot be written", "-o", code=4)
+        self.assertEqual(tree_of(place), {})
+
+    def test_full_in_the_run_and_resumed(self):
+        self.write_case(("end_s: 0.1, analyze_from_s: 0.05", "end_s: 0.3, analyze_from_s: 0.1"))
+        self.run_case("whole")
+        place = self.disk("12m")
+        process = self.start("run", "case.yaml", "-o", "disk/out", "-q", "--set", "output.checkpoint.every_wall_s=0.05")
+        self.wait_for("disk/out/checkpoint.h5", process)
+        self.wait_for("disk/out/vtk/beads_000004.vtp", process)
+        with open(place / "ballast", "wb", buffering=0) as ballast:
+            try:
+                while True:
+                    ballast.write(b"x" * 4096)
+            except OSError:
+                pass
+        out, err = process.communicate(timeout=60)
+        result = subprocess.CompletedProcess("run", process.returncode, out, err)
+        self.assert_one_line(result, "the disk is full", "the last checkpoint is intact", "make room, then 'millscope resume disk/out'", code=4)
+        self.assertEqual([p for p in tree_of(place) if p.endswith(".tmp")], [])
+        self.assertFalse((place / "out/summary.json").exists())
+        os.remove(place / "ballast")
+        self.resume("disk/out")
+        self.assert_same_run("whole", "disk/out")
+
+    def test_full_before_the_first_step(self):
+        """Room for the estimate is there when it is asked for; then it goes. Nothing of the run may stay."""
+        place = self.disk("20m")
+        free = os.statvfs(place).f_bavail * os.statvfs(place).f_frsize
+        # The estimate of this case is about 5 MB and its bead table and first frames take less: leave too little of either.
+        result = self.millscope("run", "case.yaml", "-o", "disk/out", "--set", "output.vtk.every_s=1e-5")
+        needed = re.search(r"will write about ([\d.]+ \w+)", result.stderr)
+        self.assertIsNotNone(needed, result.stderr)
+        self.assertEqual(result.returncode, 4)
+        self.assertGreater(free, 19e6)
+        self.assertEqual(tree_of(place), {})
+
+
+if __name__ == "__main__":
+    unittest.main()
