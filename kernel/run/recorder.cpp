@@ -20,14 +20,8 @@ std::int64_t steps_of(double interval, double time_step) { return std::max<std::
 std::vector<std::uint32_t> tracked(const Assembly& a) {
   const config::OutputCase::Tracks& t = *a.c.output.tracks;
   std::vector<std::uint32_t> ids;
-  if (!t.ids.empty()) {
-    for (const std::uint64_t id : t.ids) {
-      if (id >= a.bead_count) refuse_tracks(a, fmt::format("names bead {}, but ids run from 0 to {}; choose one of these", id, a.bead_count - 1));
-      ids.push_back(static_cast<std::uint32_t>(id));
-    }
-    return ids;
-  }
-  if (t.count > a.bead_count) refuse_tracks(a, fmt::format("asks for {} beads, but there are only {}; give at most that many", t.count, a.bead_count));
+  for (const std::uint64_t id : t.ids) ids.push_back(static_cast<std::uint32_t>(id));
+  if (!ids.empty()) return ids;
   Random random(a.c.seed ^ 0x747261636b73ULL);  // another stream than the filling's
   std::vector<std::uint32_t> all(a.bead_count);
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);
@@ -49,7 +43,14 @@ void wrap(const dem::Settings& s, double* x) {
 }  // namespace
 
 void Recorder::check(const Assembly& a) {
-  if (a.c.output.tracks) tracked(a);
+  if (!a.c.output.tracks) return;
+  const config::OutputCase::Tracks& t = *a.c.output.tracks;
+  if (t.count > a.bead_count)
+    refuse_tracks(a, fmt::format("asks for {} beads, but there are only {}; give at most that many", t.count, a.bead_count));
+  for (const std::uint64_t id : t.ids) {
+    if (id >= a.bead_count)
+      refuse_tracks(a, fmt::format("names bead {}, but ids run from 0 to {}; choose one of these", id, a.bead_count - 1));
+  }
 }
 
 Recorder::Recorder(const Assembly& a, std::filesystem::path directory, std::optional<double> resume_time)
@@ -107,7 +108,8 @@ Recorder::Recorder(const Assembly& a, std::filesystem::path directory, std::opti
     picture_steps_ = steps_of(o.vtk->every, a.time_step);
     std::filesystem::create_directories(directory_ / "vtk");
     const auto open = [&](const char* name) {
-      return resume_time ? output::PictureSeries::resume(directory_ / "vtk" / name, *resume_time) : output::PictureSeries::create(directory_ / "vtk" / name);
+      return resume_time ? output::PictureSeries::resume(directory_ / "vtk" / name, *resume_time)
+                         : output::PictureSeries::create(directory_ / "vtk" / name);
     };
     bead_pictures_ = open("beads.pvd");
     mesh_pictures_ = open("mesh.pvd");
@@ -218,7 +220,8 @@ void Recorder::write_pictures(const dem::System& system) {
     }
     const std::vector<double> impact = system.impact_work(b), shear = system.shear_work(b);
     const std::string mesh = fmt::format("{}_{:06d}.vtp", system.bodies[b].name, number);
-    output::write_mesh_vtp(directory_ / "vtk" / mesh, {moved, {s.triangles, 3 * s.triangle_count}, {s.triangle_materials, s.triangle_count}, impact, shear});
+    output::write_mesh_vtp(directory_ / "vtk" / mesh,
+                           {moved, {s.triangles, 3 * s.triangle_count}, {s.triangle_materials, s.triangle_count}, impact, shear});
     mesh_pictures_->add(system.time(), mesh, static_cast<int>(b));
   }
 }

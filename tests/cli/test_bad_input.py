@@ -30,8 +30,8 @@ class Refusals(CliTest):
 
 class Keys(Refusals):
     def test_unknown_key(self):
-        self.refuse_case([("  filling: 30 %", "  fillling: 30 %")], "fill", "filling")
-        self.refuse_case([("lifters: 6", "lifter: 6")], "", "lifter")
+        self.refuse_case([("  filling: 30 %", "  fillling: 30 %")], "fillling", "did you mean 'filling'")
+        self.refuse_case([("lifters: 6", "lifter: 6")], "lifter:", "did you mean 'lifters'")
         self.refuse_case([("seed: 1", "sede: 1")], "sede", "did you mean 'seed'")
         self.refuse_case([("static_friction: 0.3", "static_frictoin: 0.3")], "default", "static_friction")
 
@@ -84,7 +84,7 @@ class Values(Refusals):
 
     def test_not_a_number(self):
         for word in ("nan", ".nan", "inf", "-.inf", "1e999", "five", "''", "~", "[1]", "{a: 1}", "0x10", "1,5"):
-            self.refuse_case([("end_s: 0.1", f"end_s: {word}")], "time", "end_s")
+            self.refuse_case([("end_s: 0.1", f"end_s: {word}")], "time", "end_s|finite|decimal")
             self.refuse(("--set", f"fill.filling={word}"))
         self.write_case()
         for word in ("nan", "inf"):
@@ -107,8 +107,7 @@ class Values(Refusals):
         self.refuse_case([("filling: 30 %", "filling: 95 %")], "fill", "only", "fit", "lower the filling")
 
     def test_beads_too_large_for_the_period(self):
-        self.refuse_case([("diameter: 8 mm", "diameter: 12 mm")], "domain|period", "lengthen the slice") if False else \
-            self.refuse(("--set", "beads.glass8.diameter=12 mm"), "period", "lengthen the slice")
+        self.refuse(("--set", "beads.glass8.diameter=12 mm"), "period", "lengthen the slice")
 
     def test_huge_numbers_of_beads(self):
         self.refuse(("--set", "fill.filling=~", "--set", "fill.count=4000000000"), "fit|memory")

@@ -8,7 +8,7 @@ import unittest
 
 from support import CliTest, tree_of
 
-LONG = [("settle_s: 0.02", "settle_s: 0.05"), ("end_s: 0.1, analyze_from_s: 0.05", "end_s: 0.3, analyze_from_s: 0.1")]
+LONG = [("settle_s: 0.02", "settle_s: 0.05"), ("end_s: 0.1, analyze_from_s: 0.05", "end_s: 0.5, analyze_from_s: 0.1")]
 INTERVAL = 0.1  # s of wall time between checkpoints
 
 
@@ -101,17 +101,17 @@ class Restart(CliTest):
 
     def test_a_finished_run_goes_on_to_a_later_end(self):
         self.run_case("later", "--set", "time.end_s=0.2")
-        self.resume("later", "--set", "time.end_s=0.3")
+        self.resume("later", "--set", "time.end_s=0.5")
         self.assert_same_run("whole", "later")
 
     def test_a_new_window(self):
         self.run_case("window", "--set", "time.analyze_from_s=0.2")
         self.run_case("moved", "--set", "time.end_s=0.15")
-        self.resume("moved", "--set", "time.end_s=0.3", "--set", "time.analyze_from_s=0.2")
+        self.resume("moved", "--set", "time.end_s=0.5", "--set", "time.analyze_from_s=0.2")
         for key in ("power_W", "com_m", "state_hash", "window_s", "pairs"):
             self.assertEqual(self.summary("moved")[key], self.summary("window")[key])
         before = tree_of(self.folder / "moved")
-        self.assert_one_line(self.millscope("resume", "moved", "--set", "time.end_s=0.4", "--set", "time.analyze_from_s=0.25"), "samples are gone")
+        self.assert_one_line(self.millscope("resume", "moved", "--set", "time.end_s=0.6", "--set", "time.analyze_from_s=0.3"), "samples are gone")
         self.assertEqual(before, tree_of(self.folder / "moved"))
 
     def test_a_run_cut_off_before_its_summary_gets_one(self):
@@ -123,7 +123,7 @@ class Restart(CliTest):
     def test_an_unfinished_continuation_has_no_summary(self):
         shutil.copytree(self.folder / "whole", self.folder / "open")
         process = self.start("resume", "open", "-q", "--set", "time.end_s=5")
-        self.wait_for("open/vtk/beads_000016.vtp", process)
+        self.wait_for("open/vtk/beads_000026.vtp", process)
         process.send_signal(signal.SIGINT)
         process.wait(60)
         self.assertFalse((self.folder / "open/summary.json").exists())
@@ -144,21 +144,22 @@ class Refused(Restart):
     def test_the_end_has_been_reached(self):
         self.refuse("whole", (), "reached its end", "--set time.end_s=")
         self.refuse("whole", ("--set", "time.end_s=0.25"), "reached its end")
+        self.refuse("whole", ("--set", "time.end_s=0.05"), "analyze_from_s")
 
     def test_other_physics(self):
         for change in ("pairs.default.restitution=0.3", "mill.speed=10", "stiffness_factor=0.001", "fill.filling=0.2", "time.step_fraction=0.1", "seed=2"):
-            self.refuse("whole", ("--set", "time.end_s=0.4", "--set", change), "would change the run", "start a new run")
+            self.refuse("whole", ("--set", "time.end_s=0.6", "--set", change), "would change the run", "start a new run")
 
     def test_an_edited_case(self):
         case = self.copy("edited") / "case.resolved.yaml"
         case.write_text(case.read_text().replace("restitution: 0.6", "restitution: 0.5"))
-        self.refuse("edited", ("--set", "time.end_s=0.4"), r"case\.resolved\.yaml", "put it back")
+        self.refuse("edited", ("--set", "time.end_s=0.6"), r"case\.resolved\.yaml", "put it back")
 
     def test_missing_parts(self):
         for part, remedy in (("case.resolved.yaml", "no such file"), ("series.csv", "put it back"), ("frames.h5", "frames.h5"), ("tracks.h5", "tracks.h5")):
             out = self.copy("without-" + part)
             os.remove(out / part)
-            result = self.millscope("resume", out.name, "--set", "time.end_s=0.4")
+            result = self.millscope("resume", out.name, "--set", "time.end_s=0.6")
             self.assertIn(result.returncode, (2, 4), result.stderr)
             self.assertRegex(self.assert_one_line(result, code=result.returncode), part)
             self.assertRegex(result.stderr, remedy)
@@ -180,7 +181,7 @@ class Refused(Restart):
             out = self.copy(f"damaged-{k}")
             newest = out / "checkpoint.h5"
             newest.write_bytes(damage(newest.read_bytes()))
-            self.refuse(out.name, ("--set", "time.end_s=0.4"), r"checkpoint\.h5", "start the run again")
+            self.refuse(out.name, ("--set", "time.end_s=0.6"), r"checkpoint\.h5", "start the run again")
 
     def test_the_checkpoint_before_a_damaged_one_is_used(self):
         _, err = self.interrupted("fallback", signal.SIGINT, 9, "--set", "output.checkpoint.every_wall_s=0.02")
