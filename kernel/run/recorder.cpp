@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "kernel/run/random.hpp"
 
@@ -51,6 +52,8 @@ void Recorder::check(const Assembly& a) {
     if (id >= a.bead_count)
       refuse_tracks(a, fmt::format("names bead {}, but ids run from 0 to {}; choose one of these", id, a.bead_count - 1));
   }
+  const std::set<std::uint64_t> different(t.ids.begin(), t.ids.end());
+  if (different.size() < t.ids.size()) refuse_tracks(a, "names a bead twice; name each once");
 }
 
 Recorder::Recorder(const Assembly& a, std::filesystem::path directory, std::optional<double> resume_time)

@@ -99,8 +99,9 @@ class Values(Refusals):
         glass.write_text("\n".join(lines) + "\n")
         self.refuse((), rf"glass\.yaml:{number}: ", "0.76", "below 0.5", "no isotropic solid")
 
-    def test_beads_that_do_not_exist(self):
+    def test_beads_that_cannot_be_followed(self):
         self.refuse_case([("tracks: {beads: 2", "tracks: {beads: [0, 324]")], "tracks", "324", "0 to 323")
+        self.refuse_case([("tracks: {beads: 2", "tracks: {beads: [7, 7]")], "tracks", "twice", "once")
         self.refuse_case([("tracks: {beads: 2", "tracks: {beads: 400")], "tracks", "only 324")
 
     def test_beads_that_do_not_fit(self):
