@@ -74,7 +74,8 @@ int export_stl(const Options& options) {
   Surface surface{};
   chosen->object.table().surface(chosen->object.self(), &surface);
   if (surface.triangle_count == 0) throw UserError(fmt::format("geometry '{}' has no surface to export", chosen->name));
-  output::write_stl(options.text("output"), surface, slots_of(chosen->object), options.has("binary") ? output::StlFormat::binary : output::StlFormat::ascii);
+  output::write_stl(options.text("output"), surface, slots_of(chosen->object),
+                    options.has("binary") ? output::StlFormat::binary : output::StlFormat::ascii);
   fmt::print("wrote {} ({} triangles, in metres)\n", options.text("output"), surface.triangle_count);
   return kDone;
 }
@@ -88,9 +89,11 @@ int report(const Options& options) {
 }  // namespace
 
 int geometry(const Arguments& arguments) {
-  Options options("geometry export|report FILE", "Writes a geometry of a case as STL (solids named by material slot, in metres), or reports on a case's geometries or a mesh file: "
-                  "triangles, box, area, open edges, degenerate and duplicate faces, orientation.",
-                  "millscope geometry export configs/crosscheck/slice_parametric.yaml -o liner.stl");
+  Options options(
+      "geometry export|report FILE",
+      "Writes a geometry of a case as STL (solids named by material slot, in metres), or reports on a case's geometries or a mesh file: "
+      "triangles, box, area, open edges, degenerate and duplicate faces, orientation.",
+      "millscope geometry export configs/crosscheck/slice_parametric.yaml -o liner.stl");
   options.positional("ACTION", "export or report");
   options.positional("FILE", "a case (.yaml) or a mesh file");
   options.add()("output,o", po::value<std::string>()->value_name("FILE.stl"), "file to write");

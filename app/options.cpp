@@ -25,12 +25,15 @@ void Options::positional(const std::string& name, const std::string& what, bool 
 }
 
 void Options::with_plugins() {
-  add()("plugin-dir", po::value<std::vector<std::string>>()->value_name("DIR"), "also load the plugins of this directory (may be repeated)");
-  add()("instruction-set", po::value<std::string>()->value_name("v2|v3|v4"), "force the builds for an x86-64 level (default: the best that this machine runs)");
+  add()("plugin-dir", po::value<std::vector<std::string>>()->value_name("DIR"),
+        "also load the plugins of this directory (may be repeated)");
+  add()("instruction-set", po::value<std::string>()->value_name("v2|v3|v4"),
+        "force the builds for an x86-64 level (default: the best that this machine runs)");
 }
 
 void Options::with_overrides() {
-  add()("set", po::value<std::vector<std::string>>()->value_name("path.to.key=value"), "replace a value of the case (may be repeated), e.g. --set time.end_s=2");
+  add()("set", po::value<std::vector<std::string>>()->value_name("path.to.key=value"),
+        "replace a value of the case (may be repeated), e.g. --set time.end_s=2");
 }
 
 bool Options::parse(const Arguments& arguments) {

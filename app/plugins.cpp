@@ -12,7 +12,8 @@ namespace millscope::app {
 namespace po = boost::program_options;
 
 int describe(const Arguments& arguments) {
-  Options options("describe PLUGIN", "Shows what a plugin does: equation, citation, parameters with unit, default and range, ledger channels, hypotheses.",
+  Options options("describe PLUGIN",
+                  "Shows what a plugin does: equation, citation, parameters with unit, default and range, ledger channels, hypotheses.",
                   "millscope describe hertz_mindlin");
   options.positional("PLUGIN", "name of a plugin");
   options.add()("json", "print JSON");
@@ -40,8 +41,10 @@ int plugins(const Arguments& arguments) {
 }
 
 int schema(const Arguments& arguments) {
-  Options options("schema", "Prints the JSON Schema of case files, with the parameters of all loaded plugins, for editors that complete and check YAML.",
-                  "millscope schema > millscope.schema.json");
+  Options options(
+      "schema",
+      "Prints the JSON Schema of case files, with the parameters of all loaded plugins, for editors that complete and check YAML.",
+      "millscope schema > millscope.schema.json");
   options.with_plugins();
   if (!options.parse(arguments)) return kDone;
   const host::Registry registry = options.registry();
@@ -50,7 +53,8 @@ int schema(const Arguments& arguments) {
 }
 
 int plugin(const Arguments& arguments) {
-  Options options("plugin new KIND NAME", "Writes a plugin project of its own (CMake, source, test, README) that builds against the installed SDK.",
+  Options options("plugin new KIND NAME",
+                  "Writes a plugin project of its own (CMake, source, test, README) that builds against the installed SDK.",
                   "millscope plugin new contact_law my_law");
   options.positional("ACTION", "new");
   options.positional("KIND", "contact_law, interaction, body_force, analyzer");

@@ -26,7 +26,8 @@ void watch_signals() {
 void add_run_options(Options& options) {
   options.with_overrides();
   options.with_plugins();
-  options.add()("threads", po::value<int>()->value_name("N"), "threads (default: run.threads of the case, else all cores); no influence on results");
+  options.add()("threads", po::value<int>()->value_name("N"),
+                "threads (default: run.threads of the case, else all cores); no influence on results");
   options.add()("quiet,q", "print nothing but errors");
 }
 
@@ -57,10 +58,13 @@ std::string bytes(std::uint64_t n) {
 }  // namespace
 
 int run(const Arguments& arguments) {
-  Options options("run CASE.yaml -o OUT", "Simulates a case. Particles are spheres. Writes summary.json, series.csv, checkpoints and what the case asks for into OUT.",
-                  "millscope run configs/demo.yaml -o demo-out --threads 2");
+  Options options(
+      "run CASE.yaml -o OUT",
+      "Simulates a case. Particles are spheres. Writes summary.json, series.csv, checkpoints and what the case asks for into OUT.",
+      "millscope run configs/demo.yaml -o demo-out --threads 2");
   options.positional("CASE.yaml", "the case");
-  options.add()("output,o", po::value<std::string>()->value_name("OUT"), "directory to make; an existing run is never overwritten unless --force");
+  options.add()("output,o", po::value<std::string>()->value_name("OUT"),
+                "directory to make; an existing run is never overwritten unless --force");
   options.add()("force", "overwrite an earlier run in OUT");
   add_run_options(options);
   if (!options.parse(arguments)) return kDone;
@@ -73,7 +77,8 @@ int run(const Arguments& arguments) {
 }
 
 int resume(const Arguments& arguments) {
-  Options options("resume OUT", "Continues an interrupted run from its newest checkpoint, bit for bit, or a finished one to a later --set time.end_s=….",
+  Options options("resume OUT",
+                  "Continues an interrupted run from its newest checkpoint, bit for bit, or a finished one to a later --set time.end_s=….",
                   "millscope resume demo-out --set time.end_s=3");
   options.positional("OUT", "directory of the run");
   add_run_options(options);
@@ -85,8 +90,10 @@ int resume(const Arguments& arguments) {
 }
 
 int check(const Arguments& arguments) {
-  Options options("check CASE.yaml", "Checks a case without running it, and predicts beads, time step, steps, wall time, memory and disk from a trial of under a second.",
-                  "millscope check configs/demo.yaml");
+  Options options(
+      "check CASE.yaml",
+      "Checks a case without running it, and predicts beads, time step, steps, wall time, memory and disk from a trial of under a second.",
+      "millscope check configs/demo.yaml");
   options.positional("CASE.yaml", "the case");
   add_run_options(options);
   if (!options.parse(arguments)) return kDone;

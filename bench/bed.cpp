@@ -62,11 +62,11 @@ Bed read_bed(const std::string& file) {
 
 void write_bed(const Bed& bed, const std::string& file) {
   TextFile out(file);
-  out.print("millscope_bed {} {} {} {} {} {} {} {}\n", bed.beads.size(), bed.time, bed.time_step, bed.angle, bed.omega, bed.radius, bed.density,
-            bed.period);
+  out.print("millscope_bed {} {} {} {} {} {} {} {}\n", bed.beads.size(), bed.time, bed.time_step, bed.angle, bed.omega, bed.radius,
+            bed.density, bed.period);
   for (const Bed::Bead& b : bed.beads) {
-    out.print("{} {} {} {} {} {} {} {} {}\n", b.position[0], b.position[1], b.position[2], b.velocity[0], b.velocity[1], b.velocity[2], b.spin[0],
-              b.spin[1], b.spin[2]);
+    out.print("{} {} {} {} {} {} {} {} {}\n", b.position[0], b.position[1], b.position[2], b.velocity[0], b.velocity[1], b.velocity[2],
+              b.spin[0], b.spin[1], b.spin[2]);
   }
   out.commit();
 }
@@ -127,7 +127,10 @@ void start_from(run::Assembly& a, const Bed& bed) {
   for (std::size_t i = 0; i < bed.beads.size(); ++i) {
     const Bed::Bead& b = bed.beads[i];
     p.position[i] = {b.position[0], b.position[1], b.position[2], bed.radius};
-    p.motion[i] = {{b.velocity[0], b.velocity[1], b.velocity[2]}, 1 / mass, {b.spin[0], b.spin[1], b.spin[2]}, 1 / (0.4 * mass * bed.radius * bed.radius)};
+    p.motion[i] = {{b.velocity[0], b.velocity[1], b.velocity[2]},
+                   1 / mass,
+                   {b.spin[0], b.spin[1], b.spin[2]},
+                   1 / (0.4 * mass * bed.radius * bed.radius)};
     p.half[i] = p.motion[i];
     p.force[i] = dem::ForceLine{};
     p.id[i] = static_cast<std::uint32_t>(i);

@@ -81,13 +81,16 @@ void time_steps(run::Assembly& a, int warm_up, int steps) {
   const double beads = static_cast<double>(a.bead_count), particle_steps = beads * steps;
   std::int64_t contacts = 0;
   for (const dem::PairLedger& p : s.ledger().pairs) contacts += p.contacts;
-  fmt::print("{{\"beads\": {}, \"steps\": {}, \"threads\": {}, \"cpu_s\": {:.6f}, \"wall_s\": {:.6f}, \"ns_per_particle_step\": {:.3f}, "
-             "\"M_particle_steps_per_cpu_s\": {:.4f}, \"M_particle_steps_per_wall_s\": {:.4f}, \"steps_per_rebuild\": {:.2f}, \"contacts_per_bead\": {:.4f}, "
-             "\"listed_pairs_per_bead\": {:.3f}, \"system_bytes_per_bead\": {:.1f}, \"peak_bytes\": {}, \"simulated_s\": {:.6f}, \"state_hash\": \"{:016x}\"}}\n",
-             a.bead_count, steps, s.settings().threads, cpu_used, wall_used, 1e9 * cpu_used / particle_steps, 1e-6 * particle_steps / cpu_used,
-             1e-6 * particle_steps / wall_used, steps / static_cast<double>(std::max<std::int64_t>(1, s.rebuilds() - rebuilds)),
-             static_cast<double>(contacts) / beads, static_cast<double>(s.listed_pairs()) / beads, static_cast<double>(s.memory_bytes()) / beads,
-             peak_bytes(), s.time(), s.state_hash());
+  fmt::print(
+      "{{\"beads\": {}, \"steps\": {}, \"threads\": {}, \"cpu_s\": {:.6f}, \"wall_s\": {:.6f}, \"ns_per_particle_step\": {:.3f}, "
+      "\"M_particle_steps_per_cpu_s\": {:.4f}, \"M_particle_steps_per_wall_s\": {:.4f}, \"steps_per_rebuild\": {:.2f}, "
+      "\"contacts_per_bead\": {:.4f}, "
+      "\"listed_pairs_per_bead\": {:.3f}, \"system_bytes_per_bead\": {:.1f}, \"peak_bytes\": {}, \"simulated_s\": {:.6f}, \"state_hash\": "
+      "\"{:016x}\"}}\n",
+      a.bead_count, steps, s.settings().threads, cpu_used, wall_used, 1e9 * cpu_used / particle_steps, 1e-6 * particle_steps / cpu_used,
+      1e-6 * particle_steps / wall_used, steps / static_cast<double>(std::max<std::int64_t>(1, s.rebuilds() - rebuilds)),
+      static_cast<double>(contacts) / beads, static_cast<double>(s.listed_pairs()) / beads, static_cast<double>(s.memory_bytes()) / beads,
+      peak_bytes(), s.time(), s.state_hash());
 }
 
 int run_bench(const po::variables_map& options) {

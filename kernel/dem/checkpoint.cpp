@@ -71,8 +71,13 @@ void dealt(const std::vector<T>& all, const std::vector<std::int64_t>& counts, S
 void System::save(const DoubleSink& put_doubles, const IntegerSink& put_integers) const {
   const Particles& p = particles;
   const std::size_t n = p.position.size(), slots = static_cast<std::size_t>(layout_.history_count());
-  const std::vector<std::int64_t> counters{step_, rebuilds_, last_rebuild_step_, rebuild_needed_ ? 1 : 0, settings_.partitions,
-                                           static_cast<std::int64_t>(slots), static_cast<std::int64_t>(physics_.size())};
+  const std::vector<std::int64_t> counters{step_,
+                                           rebuilds_,
+                                           last_rebuild_step_,
+                                           rebuild_needed_ ? 1 : 0,
+                                           settings_.partitions,
+                                           static_cast<std::int64_t>(slots),
+                                           static_cast<std::int64_t>(physics_.size())};
   put_integers("counters", counters.data(), counters.size());
   const double walls_moved[3] = {wall_margin_, wall_moved_, wall_speed_};
   put_doubles("walls_moved", walls_moved, 3);
@@ -99,35 +104,52 @@ void System::save(const DoubleSink& put_doubles, const IntegerSink& put_integers
   };
   for (std::size_t q = 0; q < physics_.size(); ++q) {
     const std::string at = fmt::format("pairs/{}/", q);
-    sizes(at + "count", [q](const SlabState& s) -> const auto& { return s.lists[q].owner; });
-    integers(at + "owner", [q](const SlabState& s) -> const auto& { return s.lists[q].owner; });
-    integers(at + "partner", [q](const SlabState& s) -> const auto& { return s.lists[q].partner; });
-    integers(at + "touching", [q](const SlabState& s) -> const auto& { return s.lists[q].touching; });
+    sizes(
+        at + "count", [q](const SlabState& s) -> const auto& { return s.lists[q].owner; });
+    integers(
+        at + "owner", [q](const SlabState& s) -> const auto& { return s.lists[q].owner; });
+    integers(
+        at + "partner", [q](const SlabState& s) -> const auto& { return s.lists[q].partner; });
+    integers(
+        at + "touching", [q](const SlabState& s) -> const auto& { return s.lists[q].touching; });
     for (std::size_t h = 0; h < slots; ++h) {
-      numbers(fmt::format("{}history_{}", at, h), [q, h](const SlabState& s) -> const auto& { return s.lists[q].history[h]; });
+      numbers(
+          fmt::format("{}history_{}", at, h), [ q, h ](const SlabState& s) -> const auto& { return s.lists[q].history[h]; });
     }
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const std::string at = fmt::format("walls/{}/", b);
-    sizes(at + "beads", [b](const SlabState& s) -> const auto& { return s.walls[b].bead; });
-    integers(at + "bead", [b](const SlabState& s) -> const auto& { return s.walls[b].bead; });
-    sizes(at + "offsets", [b](const SlabState& s) -> const auto& { return s.walls[b].first; });
-    integers(at + "first", [b](const SlabState& s) -> const auto& { return s.walls[b].first; });
-    sizes(at + "candidate_count", [b](const SlabState& s) -> const auto& { return s.walls[b].candidates; });
-    integers(at + "candidates", [b](const SlabState& s) -> const auto& { return s.walls[b].candidates; });
-    sizes(at + "contacts", [b](const SlabState& s) -> const auto& { return s.walls[b].active.bead; });
-    integers(at + "contact_bead", [b](const SlabState& s) -> const auto& { return s.walls[b].active.bead; });
-    integers(at + "contact_feature", [b](const SlabState& s) -> const auto& { return s.walls[b].active.feature; });
+    sizes(
+        at + "beads", [b](const SlabState& s) -> const auto& { return s.walls[b].bead; });
+    integers(
+        at + "bead", [b](const SlabState& s) -> const auto& { return s.walls[b].bead; });
+    sizes(
+        at + "offsets", [b](const SlabState& s) -> const auto& { return s.walls[b].first; });
+    integers(
+        at + "first", [b](const SlabState& s) -> const auto& { return s.walls[b].first; });
+    sizes(
+        at + "candidate_count", [b](const SlabState& s) -> const auto& { return s.walls[b].candidates; });
+    integers(
+        at + "candidates", [b](const SlabState& s) -> const auto& { return s.walls[b].candidates; });
+    sizes(
+        at + "contacts", [b](const SlabState& s) -> const auto& { return s.walls[b].active.bead; });
+    integers(
+        at + "contact_bead", [b](const SlabState& s) -> const auto& { return s.walls[b].active.bead; });
+    integers(
+        at + "contact_feature", [b](const SlabState& s) -> const auto& { return s.walls[b].active.feature; });
     std::vector<double> normals;
     for (const auto& slab : slabs_) {
       for (const auto& normal : slab->walls[b].active.normal) normals.insert(normals.end(), normal.begin(), normal.end());
     }
     put_doubles(at + "contact_normal", normals.data(), normals.size());
     for (std::size_t h = 0; h < slots; ++h) {
-      numbers(fmt::format("{}history_{}", at, h), [b, h](const SlabState& s) -> const auto& { return s.walls[b].active.history[h]; });
+      numbers(
+          fmt::format("{}history_{}", at, h), [ b, h ](const SlabState& s) -> const auto& { return s.walls[b].active.history[h]; });
     }
-    numbers(at + "impact", [b](const SlabState& s) -> const auto& { return s.impact[b]; });
-    numbers(at + "shear", [b](const SlabState& s) -> const auto& { return s.shear[b]; });
+    numbers(
+        at + "impact", [b](const SlabState& s) -> const auto& { return s.impact[b]; });
+    numbers(
+        at + "shear", [b](const SlabState& s) -> const auto& { return s.shear[b]; });
   }
   std::vector<double> book;
   std::vector<std::int64_t> counts;
@@ -145,7 +167,8 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
   const std::size_t slots = static_cast<std::size_t>(layout_.history_count());
   if (counters.size() != 7 || counters[4] != settings_.partitions || counters[5] != static_cast<std::int64_t>(slots) ||
       counters[6] != static_cast<std::int64_t>(physics_.size())) {
-    throw config::UserError("the checkpoint was written with other plugins, materials or run.partitions than the case has now; put them back");
+    throw config::UserError(
+        "the checkpoint was written with other plugins, materials or run.partitions than the case has now; put them back");
   }
   step_ = counters[0];
   Particles& p = particles;
@@ -171,21 +194,32 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
   for (std::size_t q = 0; q < physics_.size(); ++q) {
     const std::string at = fmt::format("pairs/{}/", q);
     const std::vector<std::int64_t> count = get_integers(at + "count");
-    dealt(get_integers(at + "owner"), count, slabs_, [q](SlabState& s) -> auto& { return s.lists[q].owner; });
-    dealt(get_integers(at + "partner"), count, slabs_, [q](SlabState& s) -> auto& { return s.lists[q].partner; });
-    dealt(get_integers(at + "touching"), count, slabs_, [q](SlabState& s) -> auto& { return s.lists[q].touching; });
+    dealt(
+        get_integers(at + "owner"), count, slabs_, [q](SlabState & s) -> auto& { return s.lists[q].owner; });
+    dealt(
+        get_integers(at + "partner"), count, slabs_, [q](SlabState & s) -> auto& { return s.lists[q].partner; });
+    dealt(
+        get_integers(at + "touching"), count, slabs_, [q](SlabState & s) -> auto& { return s.lists[q].touching; });
     for (std::size_t h = 0; h < slots; ++h) {
-      dealt(get_doubles(fmt::format("{}history_{}", at, h)), count, slabs_, [q, h](SlabState& s) -> auto& { return s.lists[q].history[h]; });
+      dealt(
+          get_doubles(fmt::format("{}history_{}", at, h)), count, slabs_,
+          [ q, h ](SlabState & s) -> auto& { return s.lists[q].history[h]; });
     }
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const std::string at = fmt::format("walls/{}/", b);
-    dealt(get_integers(at + "bead"), get_integers(at + "beads"), slabs_, [b](SlabState& s) -> auto& { return s.walls[b].bead; });
-    dealt(get_integers(at + "first"), get_integers(at + "offsets"), slabs_, [b](SlabState& s) -> auto& { return s.walls[b].first; });
-    dealt(get_integers(at + "candidates"), get_integers(at + "candidate_count"), slabs_, [b](SlabState& s) -> auto& { return s.walls[b].candidates; });
+    dealt(
+        get_integers(at + "bead"), get_integers(at + "beads"), slabs_, [b](SlabState & s) -> auto& { return s.walls[b].bead; });
+    dealt(
+        get_integers(at + "first"), get_integers(at + "offsets"), slabs_, [b](SlabState & s) -> auto& { return s.walls[b].first; });
+    dealt(
+        get_integers(at + "candidates"), get_integers(at + "candidate_count"),
+        slabs_, [b](SlabState & s) -> auto& { return s.walls[b].candidates; });
     const std::vector<std::int64_t> contacts = get_integers(at + "contacts");
-    dealt(get_integers(at + "contact_bead"), contacts, slabs_, [b](SlabState& s) -> auto& { return s.walls[b].active.bead; });
-    dealt(get_integers(at + "contact_feature"), contacts, slabs_, [b](SlabState& s) -> auto& { return s.walls[b].active.feature; });
+    dealt(
+        get_integers(at + "contact_bead"), contacts, slabs_, [b](SlabState & s) -> auto& { return s.walls[b].active.bead; });
+    dealt(
+        get_integers(at + "contact_feature"), contacts, slabs_, [b](SlabState & s) -> auto& { return s.walls[b].active.feature; });
     const std::vector<double> normals = get_doubles(at + "contact_normal");
     std::size_t next = 0;
     for (std::size_t k = 0; k < slabs_.size(); ++k) {
@@ -197,11 +231,15 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
       }
     }
     for (std::size_t h = 0; h < slots; ++h) {
-      dealt(get_doubles(fmt::format("{}history_{}", at, h)), contacts, slabs_, [b, h](SlabState& s) -> auto& { return s.walls[b].active.history[h]; });
+      dealt(
+          get_doubles(fmt::format("{}history_{}", at, h)), contacts, slabs_,
+          [ b, h ](SlabState & s) -> auto& { return s.walls[b].active.history[h]; });
     }
     const std::vector<std::int64_t> triangles(slabs_.size(), static_cast<std::int64_t>(slabs_[0]->impact[b].size()));
-    dealt(get_doubles(at + "impact"), triangles, slabs_, [b](SlabState& s) -> auto& { return s.impact[b]; });
-    dealt(get_doubles(at + "shear"), triangles, slabs_, [b](SlabState& s) -> auto& { return s.shear[b]; });
+    dealt(
+        get_doubles(at + "impact"), triangles, slabs_, [b](SlabState & s) -> auto& { return s.impact[b]; });
+    dealt(
+        get_doubles(at + "shear"), triangles, slabs_, [b](SlabState & s) -> auto& { return s.shear[b]; });
   }
   const std::vector<double> book = get_doubles("ledger/numbers");
   const std::vector<std::int64_t> counts = get_integers("ledger/counts");

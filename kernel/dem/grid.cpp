@@ -46,7 +46,8 @@ void System::sort_beads() {
         e.low[a] = std::min(e.low[a], c[a]);
         e.high[a] = std::max(e.high[a], c[a]);
       }
-      const double skin = std::min(settings_.skin_cap * largest_radius, settings_.skin_base * x.radius + settings_.skin_steps * settings_.time_step * speed(p.motion[k]));
+      const double skin = std::min(settings_.skin_cap * largest_radius,
+                                   settings_.skin_base * x.radius + settings_.skin_steps * settings_.time_step * speed(p.motion[k]));
       reaches_[k] = {x.x, x.y, x.z, x.radius + skin + 0.5 * law_reach};
       p.reference[k] = {x.x, x.y, x.z, skin * skin};
       e.reach = std::max(e.reach, reaches_[k].radius);
@@ -95,7 +96,8 @@ void System::sort_beads() {
     }
     return cell;
   };
-  const std::size_t cell_count = static_cast<std::size_t>(grid_.cells[0]) * static_cast<std::size_t>(grid_.cells[1]) * static_cast<std::size_t>(grid_.cells[2]);
+  const std::size_t cell_count =
+      static_cast<std::size_t>(grid_.cells[0]) * static_cast<std::size_t>(grid_.cells[1]) * static_cast<std::size_t>(grid_.cells[2]);
   grid_.start.assign(cell_count + 1, 0);
   new_index_.resize(static_cast<std::size_t>(n));
   workers_->run(settings_.partitions, [&](int slab, int) {
@@ -154,7 +156,7 @@ void System::build_pairs(int slab) {
   const bool p0 = settings_.periodic.length[grid_.axis[0]] > 0, p1 = settings_.periodic.length[grid_.axis[1]] > 0,
              p2 = settings_.periodic.length[grid_.axis[2]] > 0;
   // Distinct neighbours of a coordinate, ascending.
-  const auto around = [](int c, int count, bool periodic, int (&out)[3]) {
+  const auto around = [](int c, int count, bool periodic, int(&out)[3]) {
     int m = 0;
     if (periodic && c == count - 1 && count > 2) out[m++] = 0;
     if (c > 0) out[m++] = c - 1;
@@ -194,7 +196,8 @@ void System::build_pairs(int slab) {
       for (int r = 0; r < range_count; ++r) {
         const std::int64_t from = std::max(ranges[r][0], i + 1), to = ranges[r][1];
         if (from >= to) continue;
-        if (found.size() < count + static_cast<std::size_t>(to - from) + 8) found.resize(2 * (count + static_cast<std::size_t>(to - from)) + 64);
+        if (found.size() < count + static_cast<std::size_t>(to - from) + 8)
+          found.resize(2 * (count + static_cast<std::size_t>(to - from)) + 64);
         count += static_cast<std::size_t>(wide_->near(reaches_.data(), settings_.periodic, i, from, to, found.data() + count));
       }
       if (count == 0) continue;
@@ -202,7 +205,8 @@ void System::build_pairs(int slab) {
       const std::uint32_t owner = static_cast<std::uint32_t>(i);
       const auto append = [&](PairList& list, std::size_t first, std::size_t last) {
         const std::size_t base = list.partner.size(), total = base + last - first;
-        list.partner.insert(list.partner.end(), found.begin() + static_cast<std::ptrdiff_t>(first), found.begin() + static_cast<std::ptrdiff_t>(last));
+        list.partner.insert(list.partner.end(), found.begin() + static_cast<std::ptrdiff_t>(first),
+                            found.begin() + static_cast<std::ptrdiff_t>(last));
         list.owner.insert(list.owner.end(), last - first, owner);
         list.touching.resize(total, 0);
         for (auto& h : list.history) h.resize(total);
@@ -221,7 +225,8 @@ void System::build_pairs(int slab) {
           append(state.lists[static_cast<std::size_t>(pair_index(material, particles.material[found[f]], false))], f, f + 1);
         }
       }
-      last_partner = std::max<std::int64_t>(last_partner, *std::max_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count)));
+      last_partner =
+          std::max<std::int64_t>(last_partner, *std::max_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count)));
     }
   }
   state.halo.assign(static_cast<std::size_t>(std::max<std::int64_t>(0, last_partner + 1 - end)), ForceLine{});
@@ -233,7 +238,8 @@ void System::rebuild() {
   extract_wall_history();
   Particles& p = particles;
   const auto permute = [this](auto& values, auto& spare) {
-    workers_->run(settings_.partitions, [&](int slab, int) { move_items(values, spare, new_index_, slab_begin(slab), slab_begin(slab + 1)); });
+    workers_->run(settings_.partitions,
+                  [&](int slab, int) { move_items(values, spare, new_index_, slab_begin(slab), slab_begin(slab + 1)); });
     values.swap(spare);
   };
   // The forces are zero between steps: their lines serve as the spare half of the accelerations.

@@ -17,11 +17,11 @@ struct ImpactBins {
 
 /// Of one pair of materials.
 struct PairLedger {
-  double elastic = 0;             ///< J, at this instant
-  std::vector<double> dissipated; ///< J since the start, per channel
-  std::int64_t contacts = 0;      ///< at this instant
-  std::int64_t collisions = 0;    ///< first touches since the start
-  double impact_energy = 0;       ///< Σ ½ m* v_n² of them, J
+  double elastic = 0;                ///< J, at this instant
+  std::vector<double> dissipated;    ///< J since the start, per channel
+  std::int64_t contacts = 0;         ///< at this instant
+  std::int64_t collisions = 0;       ///< first touches since the start
+  double impact_energy = 0;          ///< Σ ½ m* v_n² of them, J
   double largest_closing_speed = 0;  ///< m/s since the start
   double largest_overlap = 0;        ///< as a fraction of R*, since the start
   std::array<std::int64_t, ImpactBins::kCount> spectrum{};

@@ -38,7 +38,7 @@ struct PairListView {
   std::int64_t count;
   const std::uint32_t* owner;
   const std::uint32_t* partner;
-  std::uint8_t* touching;   ///< 1 while within reach
+  std::uint8_t* touching;          ///< 1 while within reach
   double* history[kMaxHistories];  ///< per slot
   std::int32_t history_count;
 };
@@ -52,18 +52,18 @@ struct BatchArrays {
   std::uint32_t* partner;
   std::uint32_t* slot;
   std::uint8_t* fresh;
-  double* difference[3];   ///< x_i − x_j
+  double* difference[3];  ///< x_i − x_j
   double* normal[3];
   double* velocity[3];
-  double* spin_sum[3];     ///< weighted (a_i ω_i + a_j ω_j) or plain sum
+  double* spin_sum[3];  ///< weighted (a_i ω_i + a_j ω_j) or plain sum
   double* spin_i[3];
   double* spin_j[3];
   double* overlap;
   double* radius_i;
   double* radius_j;
-  double* radius;          ///< R*
-  double* mass;            ///< m*
-  double* arm_i;           ///< r_i − δ/2
+  double* radius;  ///< R*
+  double* mass;    ///< m*
+  double* arm_i;   ///< r_i − δ/2
   double* arm_j;
   double* force[3];
   double* torque_i[3];

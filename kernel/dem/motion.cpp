@@ -48,7 +48,8 @@ Pose pose_at(const Motion& m, double time) {
   const double moving = time - m.translation_start;
   for (std::size_t i = 0; i < 3; ++i) {
     const double swing = m.oscillation_amplitude[i];
-    const double shift = moving < 0 ? 0 : m.velocity[i] * moving + swing * (std::sin(w * moving + m.oscillation_phase) - std::sin(m.oscillation_phase));
+    const double shift =
+        moving < 0 ? 0 : m.velocity[i] * moving + swing * (std::sin(w * moving + m.oscillation_phase) - std::sin(m.oscillation_phase));
     p.velocity[i] = moving < 0 ? 0 : m.velocity[i] + swing * w * std::cos(w * moving + m.oscillation_phase);
     p.centre[i] = m.point[i] + shift;
     p.omega[i] = omega * a[i];

@@ -12,16 +12,16 @@ struct Motion {
   double speed = 0;  ///< Ω, rad/s, signed about `axis`
   Vector3 axis{0, 0, 1};
   Vector3 point{0, 0, 0};
-  double start = 0;  ///< s, at rest before
-  double ramp = 0;   ///< s, linear from 0 to Ω
-  double ripple_amplitude = 0;  ///< fraction of Ω
-  double ripple_frequency = 0;  ///< Hz
-  double ripple_phase = 0;      ///< rad
-  Vector3 velocity{0, 0, 0};              ///< m/s
-  Vector3 oscillation_amplitude{0, 0, 0}; ///< m
-  double oscillation_frequency = 0;       ///< Hz
-  double oscillation_phase = 0;           ///< rad
-  double translation_start = 0;           ///< s
+  double start = 0;                        ///< s, at rest before
+  double ramp = 0;                         ///< s, linear from 0 to Ω
+  double ripple_amplitude = 0;             ///< fraction of Ω
+  double ripple_frequency = 0;             ///< Hz
+  double ripple_phase = 0;                 ///< rad
+  Vector3 velocity{0, 0, 0};               ///< m/s
+  Vector3 oscillation_amplitude{0, 0, 0};  ///< m
+  double oscillation_frequency = 0;        ///< Hz
+  double oscillation_phase = 0;            ///< rad
+  double translation_start = 0;            ///< s
 };
 
 /// Where the body is and how it moves: x_world = R x_body + offset; v = velocity + Ω × (x − centre).

@@ -10,8 +10,8 @@ namespace millscope::dem {
 
 struct Particles {
   AlignedVector<PositionLine> position;
-  AlignedVector<MotionLine> motion;     ///< predicted, at the time of `position`
-  AlignedVector<MotionLine> half;       ///< half a step earlier; lanes 3 and 7 as in `motion`
+  AlignedVector<MotionLine> motion;  ///< predicted, at the time of `position`
+  AlignedVector<MotionLine> half;    ///< half a step earlier; lanes 3 and 7 as in `motion`
   AlignedVector<ForceLine> force;
   AlignedVector<ForceLine> acceleration;  ///< of the last step: linear (m/s²) and angular (rad/s²)
   AlignedVector<PositionLine> reference;  ///< centre at the last rebuild, `radius`: square of the allowed displacement

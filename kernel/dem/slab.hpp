@@ -24,9 +24,9 @@ struct System::Scratch {
   double* query_position[3];
   double* query_radius;
   std::vector<std::int64_t> query_first;
-  std::vector<std::int32_t> pair;           ///< physics of each wall contact
+  std::vector<std::int32_t> pair;             ///< physics of each wall contact
   std::vector<std::array<double, 3>> normal;  ///< of each wall contact, world frame
-  double* body_arrays[17];  ///< for BodyForceBatch
+  double* body_arrays[17];                    ///< for BodyForceBatch
   std::vector<double> added_mass;
   std::vector<std::uint8_t> fresh;  ///< of each wall contact
 

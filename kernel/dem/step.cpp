@@ -28,8 +28,8 @@ void System::contacts(int slab, int worker) {
     const bool spins = !physics.interactions.empty();
     const bool moments = std::any_of(physics.interactions.begin(), physics.interactions.end(), [](const auto& i) { return !i.pre; });
     const PairListView list = state.lists[p].view();
-    const GatherContext gather{particles.position.data(), particles.motion.data(), settings_.periodic, physics.reach,
-                               equality.equal, spins, equality.radius, 0.5 * equality.mass};
+    const GatherContext gather{particles.position.data(), particles.motion.data(), settings_.periodic, physics.reach, equality.equal, spins,
+                               equality.radius,           0.5 * equality.mass};
     ScatterContext scatter = base;
     scatter.equal = equality.equal;
     PairLedger& ledger = state.ledger.pairs[p];
@@ -52,7 +52,8 @@ void System::find_first_references() {
   for (int slab = 0; slab < settings_.partitions; ++slab) {
     int first = slab;
     for (int earlier = slab - 1; earlier >= 0; --earlier) {
-      const std::int64_t halo_end = slab_begin(earlier + 1) + static_cast<std::int64_t>(slabs_[static_cast<std::size_t>(earlier)]->halo.size());
+      const std::int64_t halo_end =
+          slab_begin(earlier + 1) + static_cast<std::int64_t>(slabs_[static_cast<std::size_t>(earlier)]->halo.size());
       if (halo_end > slab_begin(slab)) first = earlier;
     }
     first_reference_[static_cast<std::size_t>(slab)] = first;
@@ -102,9 +103,18 @@ void System::apply_body_forces(int slab, int worker) {
     for (std::size_t f = 0; f < body_forces.size(); ++f) {
       double uniform[3];
       if (body_forces[f].table->uniform(body_forces[f].self, time(), uniform)) continue;
-      BodyForceBatch batch{count, time(), settings_.time_step, {array[0], array[1], array[2]}, {array[3], array[4], array[5]},
-                           {array[6], array[7], array[8]}, array[9], array[10], {array[11], array[12], array[13]},
-                           {array[14], array[15], array[16]}, scratch.added_mass.data(), 0.0};
+      BodyForceBatch batch{count,
+                           time(),
+                           settings_.time_step,
+                           {array[0], array[1], array[2]},
+                           {array[3], array[4], array[5]},
+                           {array[6], array[7], array[8]},
+                           array[9],
+                           array[10],
+                           {array[11], array[12], array[13]},
+                           {array[14], array[15], array[16]},
+                           scratch.added_mass.data(),
+                           0.0};
       body_forces[f].table->evaluate(body_forces[f].self, &batch);
       state.ledger.body_force_work[f] += batch.power_sum * settings_.time_step;
     }
@@ -133,10 +143,17 @@ void System::finish_slab(int slab, int worker) {
 /// Kick, drift, predict.
 void System::integrate(int slab) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
-  const IntegrateContext context{particles.position.data(), particles.motion.data(), particles.half.data(), particles.force.data(),
+  const IntegrateContext context{particles.position.data(),
+                                 particles.motion.data(),
+                                 particles.half.data(),
+                                 particles.force.data(),
                                  particles.acceleration.data(),
-                                 particles.reference.data(), slab_begin(slab), slab_begin(slab + 1), settings_.time_step,
-                                 {acceleration_[0], acceleration_[1], acceleration_[2]}, largest_step_ * largest_step_};
+                                 particles.reference.data(),
+                                 slab_begin(slab),
+                                 slab_begin(slab + 1),
+                                 settings_.time_step,
+                                 {acceleration_[0], acceleration_[1], acceleration_[2]},
+                                 largest_step_ * largest_step_};
   state.result = wide_->integrate(context);
 }
 
@@ -184,11 +201,12 @@ void System::complain(std::int64_t bead, const char* what) const {
   const PositionLine& x = particles.position[i];
   const MotionLine& m = particles.motion[i];
   char line[700];
-  std::snprintf(line, sizeof line,
-                "at t = %.6g s bead %u %s: centre (%.4g, %.4g, %.4g) m, velocity (%.4g, %.4g, %.4g) m/s. Likely causes, in order: a time step "
-                "too long for the stiffness (lower time.step_fraction), beads that overlapped walls or each other at the start, a liner with "
-                "an open edge (millscope geometry report)",
-                time(), particles.id[i], what, x.x, x.y, x.z, m.v[0], m.v[1], m.v[2]);
+  std::snprintf(
+      line, sizeof line,
+      "at t = %.6g s bead %u %s: centre (%.4g, %.4g, %.4g) m, velocity (%.4g, %.4g, %.4g) m/s. Likely causes, in order: a time step "
+      "too long for the stiffness (lower time.step_fraction), beads that overlapped walls or each other at the start, a liner with "
+      "an open edge (millscope geometry report)",
+      time(), particles.id[i], what, x.x, x.y, x.z, m.v[0], m.v[1], m.v[2]);
   throw config::UserError(line);
 }
 

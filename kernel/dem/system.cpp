@@ -22,8 +22,12 @@ PairListView PairList::view() {
 }
 
 System::System(Settings settings, Layout layout, std::vector<PairPhysics> physics, int material_count)
-    : settings_(std::move(settings)), layout_(std::move(layout)), physics_(std::move(physics)), material_count_(material_count),
-      wide_(&wide_table(settings_.instruction_set.c_str())), workers_(std::make_unique<Workers>(std::min(settings_.threads, settings_.partitions))) {
+    : settings_(std::move(settings)),
+      layout_(std::move(layout)),
+      physics_(std::move(physics)),
+      material_count_(material_count),
+      wide_(&wide_table(settings_.instruction_set.c_str())),
+      workers_(std::make_unique<Workers>(std::min(settings_.threads, settings_.partitions))) {
   pair_of_.assign(static_cast<std::size_t>(material_count * material_count), -1);
   wall_pair_of_ = pair_of_;
   for (std::size_t p = 0; p < physics_.size(); ++p) {
@@ -91,8 +95,9 @@ void System::prepare() {
     const double needed = 4 * (largest * (1 + settings_.skin_cap) + 0.5 * reach), length = settings_.periodic.length[a];
     if (length > 0 && length < needed) {
       char line[200];
-      std::snprintf(line, sizeof line, "the periodic length along %c is %.4g m; beads of this size need at least %.4g m: lengthen the slice",
-                    "xyz"[a], length, needed);
+      std::snprintf(line, sizeof line,
+                    "the periodic length along %c is %.4g m; beads of this size need at least %.4g m: lengthen the slice", "xyz"[a], length,
+                    needed);
       throw config::UserError(line);
     }
   }
@@ -161,7 +166,8 @@ double System::kinetic_energy() const {
     double v[3], w[3];
     velocity_at_step(i, v, w);
     const MotionLine& m = particles.motion[static_cast<std::size_t>(i)];
-    sum += 0.5 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / m.inverse_mass + 0.5 * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) / m.inverse_inertia;
+    sum += 0.5 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / m.inverse_mass +
+           0.5 * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) / m.inverse_inertia;
   }
   return sum;
 }
@@ -302,7 +308,8 @@ std::size_t System::memory_bytes() const {
     for (const PairList& list : slab->lists) bytes += list.owner.capacity() * (9 + 8 * list.history.size());
     bytes += slab->halo.capacity() * sizeof(ForceLine);
     for (const WallSlab& wall : slab->walls) {
-      bytes += wall.bead.capacity() * 12 + wall.candidates.capacity() * 4 + wall.active.bead.capacity() * (32 + 8 * wall.active.history.size()) * 2;
+      bytes += wall.bead.capacity() * 12 + wall.candidates.capacity() * 4 +
+               wall.active.bead.capacity() * (32 + 8 * wall.active.history.size()) * 2;
     }
   }
   return bytes;

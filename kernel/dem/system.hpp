@@ -41,8 +41,8 @@ struct WallContacts {
 
 /// The beads of one slab that are near one body.
 struct WallSlab {
-  std::vector<std::uint32_t> bead;       ///< bead index
-  std::vector<std::int64_t> first;       ///< bead.size() + 1
+  std::vector<std::uint32_t> bead;  ///< bead index
+  std::vector<std::int64_t> first;  ///< bead.size() + 1
   std::vector<std::uint32_t> candidates;
   WallContacts active, next;
 };
@@ -59,15 +59,15 @@ struct Body {
 };
 
 struct Settings {
-  double time_step = 0;     ///< s
-  int partitions = 8;       ///< K
+  double time_step = 0;  ///< s
+  int partitions = 8;    ///< K
   int threads = 1;
   PeriodicBox periodic{};
   double periodic_low[3] = {0, 0, 0};
-  double skin_steps = 30;   ///< a bead's skin lasts this many steps at its present speed …
-  double skin_base = 0.05;  ///< … beyond this fraction of its radius
-  double skin_cap = 0.6;    ///< and no more than this fraction of the largest radius
-  double low[3], high[3];   ///< a bead outside has left the domain, m
+  double skin_steps = 30;       ///< a bead's skin lasts this many steps at its present speed …
+  double skin_base = 0.05;      ///< … beyond this fraction of its radius
+  double skin_cap = 0.6;        ///< and no more than this fraction of the largest radius
+  double low[3], high[3];       ///< a bead outside has left the domain, m
   std::string instruction_set;  ///< "" for the best
 };
 
@@ -103,7 +103,7 @@ class System {
 
   /// Sum of all slabs since the start.
   Ledger ledger() const;
-  double kinetic_energy() const;    ///< J, at the step (translation + rotation), valid inside `observe`
+  double kinetic_energy() const;  ///< J, at the step (translation + rotation), valid inside `observe`
   double rotational_energy() const;
   std::array<double, 3> centre_of_mass() const;
   double total_mass() const;
@@ -143,7 +143,9 @@ class System {
   void apply_body_forces(int slab, int worker);
   void finish_slab(int slab, int worker);  ///< phase B
   void find_first_references();
-  bool follows_at_once(int slab, int worker) const { return first_reference_[static_cast<std::size_t>(slab)] >= workers_->first(worker, settings_.partitions); }
+  bool follows_at_once(int slab, int worker) const {
+    return first_reference_[static_cast<std::size_t>(slab)] >= workers_->first(worker, settings_.partitions);
+  }
   void add_halos(int slab);
   [[noreturn]] void complain(std::int64_t bead, const char* what) const;
   int pair_index(int a, int b, bool wall) const;
@@ -164,12 +166,12 @@ class System {
   std::array<double, 3> acceleration_{};
   std::int64_t step_ = 0, rebuilds_ = 0, last_rebuild_step_ = 0;
   bool rebuild_needed_ = false;
-  double wall_margin_ = 0;     ///< the walls may move this far before a rebuild, m
-  double wall_speed_ = 0;      ///< greatest speed of any wall, m/s
-  double wall_moved_ = 0;      ///< bound on its displacement since the rebuild, m
-  double largest_step_ = 0;    ///< displacement in one step that no sound run reaches, m
+  double wall_margin_ = 0;   ///< the walls may move this far before a rebuild, m
+  double wall_speed_ = 0;    ///< greatest speed of any wall, m/s
+  double wall_moved_ = 0;    ///< bound on its displacement since the rebuild, m
+  double largest_step_ = 0;  ///< displacement in one step that no sound run reaches, m
   bool has_general_body_force_ = false;
-  std::vector<int> first_reference_;  ///< per slab: the earliest slab with a pair that reaches into it
+  std::vector<int> first_reference_;          ///< per slab: the earliest slab with a pair that reaches into it
   std::vector<std::uint8_t> normal_channel_;  ///< per channel: its work counts as impact, not shear
 
   /// All beads of a pair of materials alike: then radius and mass need no gathering.

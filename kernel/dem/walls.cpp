@@ -107,7 +107,8 @@ void System::build_walls() {
         wall_coordinates_[3][k] = reaches_[k].radius + 0.5 * law_reach;
       }
     });
-    const GeometryBeads beads{n, {wall_coordinates_[0].data(), wall_coordinates_[1].data(), wall_coordinates_[2].data()}, wall_coordinates_[3].data()};
+    const GeometryBeads beads{
+        n, {wall_coordinates_[0].data(), wall_coordinates_[1].data(), wall_coordinates_[2].data()}, wall_coordinates_[3].data()};
     near.clear();
     const CandidateSink sink{&near, [](void* host, std::int64_t bead, std::uint32_t feature) {
                                static_cast<decltype(near)*>(host)->emplace_back(static_cast<std::uint32_t>(bead), feature);
@@ -182,8 +183,11 @@ void System::walls(int slab, int worker, std::size_t body_index) {
       scratch.query_first[static_cast<std::size_t>(k)] = wall.first[static_cast<std::size_t>(begin + k)];
     }
     scratch.query_first[static_cast<std::size_t>(count)] = wall.first[static_cast<std::size_t>(begin + count)];
-    const GeometryQuery query{{count, {scratch.query_position[0], scratch.query_position[1], scratch.query_position[2]}, scratch.query_radius},
-                              scratch.query_first.data(), wall.candidates.data(), reach};
+    const GeometryQuery query{
+        {count, {scratch.query_position[0], scratch.query_position[1], scratch.query_position[2]}, scratch.query_radius},
+        scratch.query_first.data(),
+        wall.candidates.data(),
+        reach};
     GeometryContacts& found = scratch.wall;
     found.count = 0;
     body.table->contacts(body.self, &query, &found);
@@ -204,7 +208,8 @@ void System::walls(int slab, int worker, std::size_t body_index) {
       wall.next.normal[base + k] = normal;
       const std::ptrdiff_t match = scratch.pair[k] < 0 ? -1 : take_match(wall.active, cursor, local, found.feature[c], normal);
       b.fresh[c] = match < 0;
-      for (std::size_t h = 0; h < slots; ++h) wall.next.history[h][base + k] = match < 0 ? 0.0 : wall.active.history[h][static_cast<std::size_t>(match)];
+      for (std::size_t h = 0; h < slots; ++h)
+        wall.next.history[h][base + k] = match < 0 ? 0.0 : wall.active.history[h][static_cast<std::size_t>(match)];
     }
     std::vector<std::uint8_t>& fresh = scratch.fresh;
     fresh.assign(b.fresh, b.fresh + found.count);
@@ -221,7 +226,8 @@ void System::walls(int slab, int worker, std::size_t body_index) {
         const double radius = particles.position[bead].radius;
         const Row& n = scratch.normal[k];
         const double arm = radius - 0.5 * found.overlap[c];
-        const Row contact{position[0] - arm * n[0] - pose.centre[0], position[1] - arm * n[1] - pose.centre[1], position[2] - arm * n[2] - pose.centre[2]};
+        const Row contact{position[0] - arm * n[0] - pose.centre[0], position[1] - arm * n[1] - pose.centre[1],
+                          position[2] - arm * n[2] - pose.centre[2]};
         const Row turning = cross(pose.omega, contact);
         const Row surface = cross({motion.w[0], motion.w[1], motion.w[2]}, n);
         b.slot[m] = static_cast<std::uint32_t>(c);

@@ -10,18 +10,18 @@ struct GatherContext {
   const PositionLine* position;
   const MotionLine* motion;
   PeriodicBox box;
-  double reach;       ///< gap up to which a pair counts, m
-  bool equal;         ///< all beads of this pair of materials have the same radius and mass
-  bool spins;         ///< also fill spin_i, spin_j (interactions need them)
-  double radius;      ///< when equal
-  double mass;        ///< m*, when equal
+  double reach;   ///< gap up to which a pair counts, m
+  bool equal;     ///< all beads of this pair of materials have the same radius and mass
+  bool spins;     ///< also fill spin_i, spin_j (interactions need them)
+  double radius;  ///< when equal
+  double mass;    ///< m*, when equal
 };
 
 struct ScatterContext {
-  ForceLine* force;       ///< of all beads; the slab writes its own only
-  ForceLine* halo;        ///< of beads from `slab_end` on
+  ForceLine* force;  ///< of all beads; the slab writes its own only
+  ForceLine* halo;   ///< of beads from `slab_end` on
   std::int64_t slab_end;
-  bool equal;             ///< torque_i serves both
+  bool equal;  ///< torque_i serves both
 };
 
 struct IntegrateContext {
@@ -29,7 +29,7 @@ struct IntegrateContext {
   MotionLine* motion;
   MotionLine* half;
   ForceLine* force;
-  ForceLine* last;  ///< accelerations of the last step, replaced
+  ForceLine* last;                ///< accelerations of the last step, replaced
   const PositionLine* reference;  ///< centre at the last rebuild; `radius` holds the square of the allowed displacement
   std::int64_t begin, end;
   double time_step;
@@ -39,8 +39,8 @@ struct IntegrateContext {
 
 /// What a step found out about a slab.
 struct IntegrateResult {
-  bool rebuild;           ///< some bead used up its skin (or is not finite)
-  std::int64_t runaway;   ///< index of a bead that moved too far in this one step, or −1
+  bool rebuild;          ///< some bead used up its skin (or is not finite)
+  std::int64_t runaway;  ///< index of a bead that moved too far in this one step, or −1
 };
 
 struct WideTable {

@@ -113,7 +113,8 @@ PairContext context_of(const Assembly& a, int first, int second, bool wall) {
   p.first = material(first);
   p.second = material(second);
   const auto shear = [](const Material& m) { return m.young / (2 * (1 + m.poisson)); };
-  p.effective_young = 1 / ((1 - p.first.poisson * p.first.poisson) / p.first.young + (1 - p.second.poisson * p.second.poisson) / p.second.young);
+  p.effective_young =
+      1 / ((1 - p.first.poisson * p.first.poisson) / p.first.young + (1 - p.second.poisson * p.second.poisson) / p.second.young);
   p.effective_shear = 1 / ((2 - p.first.poisson) / shear(p.first) + (2 - p.second.poisson) / shear(p.second));
   const BeadRange i = range_of(a.c, p.first.name), j = range_of(a.c, p.second.name);
   const auto reduced = [wall](double x, double y) { return wall ? x : x * y / (x + y); };
@@ -189,14 +190,16 @@ void check_time_step(const Assembly& a) {
   const std::string where = a.c.time.where.text();
   if (a.c.run.allow_unstable) return;
   if (fraction > 0.6) {
-    throw UserError(a.c.time.where, fmt::format("the time step {:.4g} s is {:.0f} % of the Rayleigh time {:.4g} s; above 60 % explicit integration is "
-                                                "unstable; lower time.step_s or time.step_fraction (20 % is usual), or set run.allow_unstable: true",
-                                                a.time_step, 100 * fraction, a.rayleigh_time));
+    throw UserError(a.c.time.where,
+                    fmt::format("the time step {:.4g} s is {:.0f} % of the Rayleigh time {:.4g} s; above 60 % explicit integration is "
+                                "unstable; lower time.step_s or time.step_fraction (20 % is usual), or set run.allow_unstable: true",
+                                a.time_step, 100 * fraction, a.rayleigh_time));
   }
   if (a.hertz_contact_time > 0 && a.time_step > a.hertz_contact_time / 10) {
-    throw UserError(a.c.time.where, fmt::format("the time step {:.4g} s resolves a contact of {:.4g} s at {:.3g} m/s with fewer than 10 steps; lower "
-                                                "time.step_fraction, or set run.allow_unstable: true",
-                                                a.time_step, a.hertz_contact_time, a.typical_speed));
+    throw UserError(a.c.time.where,
+                    fmt::format("the time step {:.4g} s resolves a contact of {:.4g} s at {:.3g} m/s with fewer than 10 steps; lower "
+                                "time.step_fraction, or set run.allow_unstable: true",
+                                a.time_step, a.hertz_contact_time, a.typical_speed));
   }
 }
 
@@ -300,7 +303,8 @@ Assembly assemble(config::Case c, const host::Registry& registry, const Assembly
   std::vector<bool> is_bead(a.materials.size()), is_wall(a.materials.size());
   for (const config::BeadCase& b : a.c.beads) is_bead[static_cast<std::size_t>(index_of(a.materials, b.material))] = true;
   for (std::size_t g = 0; g < a.geometries.size(); ++g) {
-    for (const std::string& slot : a.geometries[g].slots) is_wall[static_cast<std::size_t>(index_of(a.materials, a.c.geometry[g].material_of(slot)))] = true;
+    for (const std::string& slot : a.geometries[g].slots)
+      is_wall[static_cast<std::size_t>(index_of(a.materials, a.c.geometry[g].material_of(slot)))] = true;
   }
   std::vector<dem::PairPhysics> pairs;
   for (int i = 0; i < materials; ++i) {
@@ -324,13 +328,17 @@ Assembly assemble(config::Case c, const host::Registry& registry, const Assembly
   for (const dem::PairParameterReference& p : pairs.front().pair_parameters) layout.add("", p.table->info);
 
   if (layout.signs.size() > static_cast<std::size_t>(dem::kMaxHistories)) {
-    throw UserError(a.c.contact.law.where, fmt::format("law, interactions and pair parameters keep {} numbers per contact together; at most {} are possible: "
-                                                       "leave one of them out", layout.signs.size(), dem::kMaxHistories));
+    throw UserError(a.c.contact.law.where,
+                    fmt::format("law, interactions and pair parameters keep {} numbers per contact together; at most {} are possible: "
+                                "leave one of them out",
+                                layout.signs.size(), dem::kMaxHistories));
   }
   dem::Settings s;
   s.time_step = a.time_step;
   s.partitions = a.c.run.partitions;
-  s.threads = options.threads > 0 ? options.threads : a.c.run.threads > 0 ? a.c.run.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  s.threads = options.threads > 0   ? options.threads
+              : a.c.run.threads > 0 ? a.c.run.threads
+                                    : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   s.instruction_set = options.instruction_set.empty() ? host::text(registry.instruction_set()) : options.instruction_set;
   // run.skin scales how long a list may last: 0.2 d is the reference.
   s.skin_steps *= a.c.run.skin / 0.2;
@@ -342,7 +350,8 @@ Assembly assemble(config::Case c, const host::Registry& registry, const Assembly
     body_use.table = &a.geometries[g].object.table();
     body_use.self = a.geometries[g].object.self();
     body_use.motion = motion_of(a.c.geometry[g].motion);
-    for (const std::string& slot : a.geometries[g].slots) body_use.material_of_slot.push_back(index_of(a.materials, a.c.geometry[g].material_of(slot)));
+    for (const std::string& slot : a.geometries[g].slots)
+      body_use.material_of_slot.push_back(index_of(a.materials, a.c.geometry[g].material_of(slot)));
     body_use.greatest_distance = greatest_distance(a.geometries[g].surface, body_use.motion);
     body_use.triangle_count = a.geometries[g].surface.triangle_count;
     body_use.per_triangle = a.c.output.vtk.has_value();

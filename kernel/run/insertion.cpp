@@ -53,8 +53,9 @@ Region region_of(const Assembly& a) {
       r.box.high[axis] = a.c.domain.box.high[axis];
     }
     if (!(r.box.high[axis] - r.box.low[axis] < 1e6)) {
-      throw UserError(a.c.fill.where, fmt::format("nothing bounds the space to fill along {}; give fill.region: {{low: [x, y, z], high: [x, y, z]}}",
-                                                  "xyz"[axis]));
+      throw UserError(
+          a.c.fill.where,
+          fmt::format("nothing bounds the space to fill along {}; give fill.region: {{low: [x, y, z], high: [x, y, z]}}", "xyz"[axis]));
     }
   }
   return r;
@@ -106,9 +107,10 @@ void mark_touching(const GeometryUse& g, const std::vector<Point>& sites, double
     z[i] = sites[i][2];
   }
   std::vector<std::vector<std::uint32_t>> near(n);
-  const CandidateSink sink{&near, [](void* host, std::int64_t bead, std::uint32_t feature) {
-                             (*static_cast<std::vector<std::vector<std::uint32_t>>*>(host))[static_cast<std::size_t>(bead)].push_back(feature);
-                           }};
+  const CandidateSink sink{
+      &near, [](void* host, std::int64_t bead, std::uint32_t feature) {
+        (*static_cast<std::vector<std::vector<std::uint32_t>>*>(host))[static_cast<std::size_t>(bead)].push_back(feature);
+      }};
   const GeometryBeads all{static_cast<std::int64_t>(n), {x.data(), y.data(), z.data()}, r.data()};
   Failure failure{};
   g.object.check(g.object.table().candidates(g.object.self(), &all, 0.0, &sink, &failure), failure);
@@ -129,7 +131,9 @@ void mark_touching(const GeometryUse& g, const std::vector<Point>& sites, double
 /// Whether the segment p–q crosses the triangle (Möller & Trumbore 1997).
 bool crosses(const Point& p, const Point& q, const double* a, const double* b, const double* c) {
   const auto minus = [](const double* u, const double* v) { return Point{u[0] - v[0], u[1] - v[1], u[2] - v[2]}; };
-  const auto cross = [](const Point& u, const Point& v) { return Point{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]}; };
+  const auto cross = [](const Point& u, const Point& v) {
+    return Point{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  };
   const auto dot = [](const Point& u, const Point& v) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; };
   const Point d = minus(q.data(), p.data()), e1 = minus(b, a), e2 = minus(c, a);
   const Point h = cross(d, e2);
@@ -167,14 +171,18 @@ void mark_hidden(const GeometryUse& g, const std::vector<Point>& sites, std::vec
     }
     // A face across the axis (an end wall) may be met from anywhere; it is found by the touching test and the box.
     if (high - low > 2.5) continue;
-    for (std::ptrdiff_t s = sector(low); s <= sector(high); ++s) bins[static_cast<std::size_t>((s + 2 * static_cast<std::ptrdiff_t>(kSectors)) % static_cast<std::ptrdiff_t>(kSectors))].push_back(t);
+    for (std::ptrdiff_t s = sector(low); s <= sector(high); ++s)
+      bins[static_cast<std::size_t>((s + 2 * static_cast<std::ptrdiff_t>(kSectors)) % static_cast<std::ptrdiff_t>(kSectors))].push_back(t);
   }
   for (std::size_t i = 0; i < sites.size(); ++i) {
     if (bad[i]) continue;
-    const std::size_t s = static_cast<std::size_t>((sector(angle(sites[i].data())) + static_cast<std::ptrdiff_t>(kSectors)) % static_cast<std::ptrdiff_t>(kSectors));
+    const std::size_t s = static_cast<std::size_t>((sector(angle(sites[i].data())) + static_cast<std::ptrdiff_t>(kSectors)) %
+                                                   static_cast<std::ptrdiff_t>(kSectors));
     const Point target{axis[0], axis[1], sites[i][2]};
     for (const std::uint64_t t : bins[s]) {
-      const auto vertex = [&](std::uint64_t k) { return g.surface.vertices + 3 * static_cast<std::uint64_t>(g.surface.triangles[3 * t + k]); };
+      const auto vertex = [&](std::uint64_t k) {
+        return g.surface.vertices + 3 * static_cast<std::uint64_t>(g.surface.triangles[3 * t + k]);
+      };
       if (crosses(sites[i], target, vertex(0), vertex(1), vertex(2))) {
         bad[i] = 1;
         break;
@@ -236,8 +244,10 @@ void insert_beads(Assembly& a) {
   }
   sites.resize(kept);
   if (sites.size() < a.bead_count) {
-    throw UserError(a.c.fill.where, fmt::format("{} beads are asked for but only {} fit without touching; lower the filling, or check that the liner is in "
-                                                "the right unit (millscope geometry report)", a.bead_count, sites.size()));
+    throw UserError(a.c.fill.where,
+                    fmt::format("{} beads are asked for but only {} fit without touching; lower the filling, or check that the liner is in "
+                                "the right unit (millscope geometry report)",
+                                a.bead_count, sites.size()));
   }
   // Lowest first, against gravity; ties by position so that the choice is the same everywhere.
   const auto height = [&a](const Point& p) { return -(p[0] * a.gravity[0] + p[1] * a.gravity[1] + p[2] * a.gravity[2]); };

@@ -24,10 +24,11 @@ std::string cut_to_terminal(std::string line) {
 
 }  // namespace
 
-Progress::Progress(const Assembly& a, bool quiet, bool terminal) : a_(a), quiet_(quiet), terminal_(terminal), start_(std::chrono::steady_clock::now()) {
+Progress::Progress(const Assembly& a, bool quiet, bool terminal)
+    : a_(a), quiet_(quiet), terminal_(terminal), start_(std::chrono::steady_clock::now()) {
   if (quiet_) return;
-  fmt::print(stderr, "{}: {} beads, dt {:.3g} s ({:.0f} % of Rayleigh), {} threads, stiffness factor {:g}\n", a.c.name, a.bead_count, a.time_step,
-             100 * a.time_step / a.rayleigh_time, a.system->settings().threads, a.c.stiffness_factor);
+  fmt::print(stderr, "{}: {} beads, dt {:.3g} s ({:.0f} % of Rayleigh), {} threads, stiffness factor {:g}\n", a.c.name, a.bead_count,
+             a.time_step, 100 * a.time_step / a.rayleigh_time, a.system->settings().threads, a.c.stiffness_factor);
 }
 
 double Progress::elapsed() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
@@ -36,8 +37,9 @@ std::string Progress::line(std::int64_t step, std::int64_t first_step) const {
   const double wall = elapsed(), done = static_cast<double>(step - first_step), left = static_cast<double>(a_.end_step - step);
   const double rate = done / wall;
   const double time = static_cast<double>(step) * a_.time_step;
-  return fmt::format("{} {:.3f} of {:.3f} s, {:.1f} M particle-steps/s, {:.1f} s per simulated s, ETA {}", time < 0 ? "settling" : "running", time,
-                     a_.c.time.end, rate * static_cast<double>(a_.bead_count) * 1e-6, 1 / (rate * a_.time_step), duration(left / rate));
+  return fmt::format("{} {:.3f} of {:.3f} s, {:.1f} M particle-steps/s, {:.1f} s per simulated s, ETA {}",
+                     time < 0 ? "settling" : "running", time, a_.c.time.end, rate * static_cast<double>(a_.bead_count) * 1e-6,
+                     1 / (rate * a_.time_step), duration(left / rate));
 }
 
 void Progress::update(std::int64_t step, std::int64_t first_step) {

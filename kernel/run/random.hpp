@@ -17,7 +17,7 @@ class Random {
     return z ^ (z >> 31);
   }
   double uniform() { return static_cast<double>(next() >> 11) * 0x1.0p-53; }  ///< [0, 1)
-  std::uint64_t below(std::uint64_t n) { return next() % n; }                  ///< bias < n/2^64
+  std::uint64_t below(std::uint64_t n) { return next() % n; }                 ///< bias < n/2^64
 
  private:
   std::uint64_t state_;

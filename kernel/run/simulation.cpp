@@ -38,7 +38,7 @@ struct Session {
   RunOptions options;
   std::int64_t case_fingerprint = 0;
   std::optional<double> checkpoint_time{};  ///< s, of the newest checkpoint
-  double wall_before = 0;  ///< s of stepping in earlier sessions
+  double wall_before = 0;                   ///< s of stepping in earlier sessions
   std::int64_t first_step = 0;
   Clock::time_point started = Clock::now();
 
@@ -107,13 +107,17 @@ std::int64_t fingerprint(const Assembly& a, const host::Registry& registry) {
 void write_checkpoint(Session& s) {
   s.recorder->flush();
   output::ArchiveWriter archive(output::checkpoint_path(s.directory));
-  s.assembly.system->save([&archive](const std::string& name, const double* v, std::size_t n) { archive.write("system/" + name, std::span<const double>(v, n)); },
-                          [&archive](const std::string& name, const std::int64_t* v, std::size_t n) { archive.write("system/" + name, std::span<const std::int64_t>(v, n)); });
+  s.assembly.system->save([&archive](const std::string& name, const double* v,
+                                     std::size_t n) { archive.write("system/" + name, std::span<const double>(v, n)); },
+                          [&archive](const std::string& name, const std::int64_t* v, std::size_t n) {
+                            archive.write("system/" + name, std::span<const std::int64_t>(v, n));
+                          });
   archive.write_value("wall_s", s.wall());
   archive.write_value("case", s.case_fingerprint);
   archive.write_value<std::int64_t>("analyze_step", s.assembly.analyze_step);
   const std::vector<Sample>& samples = s.recorder->samples();
-  archive.write("window/samples", std::span<const double>(reinterpret_cast<const double*>(samples.data()), samples.size() * sizeof(Sample) / sizeof(double)));
+  archive.write("window/samples",
+                std::span<const double>(reinterpret_cast<const double*>(samples.data()), samples.size() * sizeof(Sample) / sizeof(double)));
   archive.write_value<std::int64_t>("window/started", s.recorder->window_start() ? 1 : 0);
   if (s.recorder->window_start()) save_ledger(archive, *s.recorder->window_start());
   archive.seal();  // all that a full disk can spoil, before the older checkpoint goes
@@ -153,7 +157,9 @@ Json summary_of(Session& s) {
   if (fastest > 0 && a.hertz_contact_time > 0) {
     // Hertz: t ∝ v^(−1/5).
     shortest = a.hertz_contact_time * std::pow(a.typical_speed / fastest, 0.2);
-    j["contact"] = {{"largest_closing_speed_m_per_s", fastest}, {"shortest_contact_s", shortest}, {"steps_per_shortest_contact", shortest / a.time_step}};
+    j["contact"] = {{"largest_closing_speed_m_per_s", fastest},
+                    {"shortest_contact_s", shortest},
+                    {"steps_per_shortest_contact", shortest / a.time_step}};
     if (shortest < 10 * a.time_step) j["contact"]["warning"] = "fewer than 10 steps in the shortest contact: lower time.step_fraction";
   }
   if (s.recorder->window_start() && !s.recorder->samples().empty()) {
@@ -177,8 +183,9 @@ void advance(Session& s) {
     s.assembly.system->advance();
   } catch (const UserError& e) {
     if (e.exit_code() != config::kExitBadInput) throw;
-    const std::string kept = s.checkpoint_time ? fmt::format("the checkpoint at {:.6g} s is kept in {}", *s.checkpoint_time, s.directory.string())
-                                               : fmt::format("no checkpoint had been written to {}", s.directory.string());
+    const std::string kept = s.checkpoint_time
+                                 ? fmt::format("the checkpoint at {:.6g} s is kept in {}", *s.checkpoint_time, s.directory.string())
+                                 : fmt::format("no checkpoint had been written to {}", s.directory.string());
     throw UserError(fmt::format("{}; {}", e.what(), kept));
   }
 }
@@ -252,7 +259,8 @@ std::unique_ptr<output::ArchiveReader> open_checkpoint(const std::filesystem::pa
       if (!quiet) fmt::print(stderr, "{} is damaged; continuing from the one before it\n", newest.string());
       return older;
     } catch (const UserError&) {
-      throw UserError(fmt::format("{}: neither this checkpoint nor the one before it can be read; start the run again with another -o", newest.string()));
+      throw UserError(fmt::format("{}: neither this checkpoint nor the one before it can be read; start the run again with another -o",
+                                  newest.string()));
     }
   }
 }
@@ -262,10 +270,12 @@ std::unique_ptr<output::ArchiveReader> open_checkpoint(const std::filesystem::pa
 void request_stop() { stop_requested.store(true, std::memory_order_relaxed); }
 
 Outcome run_case(const std::string& case_file, const host::Registry& registry, const RunOptions& options) {
-  Session s{assemble(config::read_case(case_file, options.overrides), registry, {options.threads, options.instruction_set}), options.output, nullptr, options};
+  Session s{assemble(config::read_case(case_file, options.overrides), registry, {options.threads, options.instruction_set}), options.output,
+            nullptr, options};
   Recorder::check(s.assembly);
   insert_beads(s.assembly);
-  output::OutputDirectory directory(options.output, options.force ? output::Mode::overwrite : output::Mode::fresh, disk_estimate(s.assembly));
+  output::OutputDirectory directory(options.output, options.force ? output::Mode::overwrite : output::Mode::fresh,
+                                    disk_estimate(s.assembly));
   begin(s.assembly);
   s.case_fingerprint = fingerprint(s.assembly, registry);
   directory.start();
@@ -285,7 +295,8 @@ Outcome resume_run(const host::Registry& registry, const RunOptions& options) {
   for (const std::string& o : options.overrides) {
     const std::string key = o.substr(0, o.find('='));
     if (key != "time.end_s" && key != "time.analyze_from_s" && key != "run.threads") {
-      throw UserError("resume: --set " + key + " would change the run that is continued; only time.end_s, time.analyze_from_s and run.threads may "
+      throw UserError("resume: --set " + key +
+                      " would change the run that is continued; only time.end_s, time.analyze_from_s and run.threads may "
                       "change; start a new run for the rest");
     }
   }
@@ -293,12 +304,15 @@ Outcome resume_run(const host::Registry& registry, const RunOptions& options) {
   bool damaged = false;
   const auto opened = open_checkpoint(options.output, options.quiet, damaged);
   const output::ArchiveReader& archive = *opened;
-  Session s{assemble(config::read_case((options.output / kResolvedCase).string(), options.overrides), registry, {options.threads, options.instruction_set}),
+  Session s{assemble(config::read_case((options.output / kResolvedCase).string(), options.overrides), registry,
+                     {options.threads, options.instruction_set}),
             options.output, nullptr, options};
   s.case_fingerprint = fingerprint(s.assembly, registry);
   if (archive.read_value<std::int64_t>("case") != s.case_fingerprint) {
-    throw UserError(fmt::format("{}: it or a mesh that it names is no longer what the checkpoint was written with; put it back, or start a new run with "
-                                "another -o", (options.output / kResolvedCase).string()));
+    throw UserError(fmt::format(
+        "{}: it or a mesh that it names is no longer what the checkpoint was written with; put it back, or start a new run with "
+        "another -o",
+        (options.output / kResolvedCase).string()));
   }
   dem::System& system = *s.assembly.system;
   system.restore([&archive](const std::string& name) { return archive.read<double>("system/" + name); },
@@ -306,12 +320,15 @@ Outcome resume_run(const host::Registry& registry, const RunOptions& options) {
   // A run that ended before it could write its summary is brought to its end.
   const std::filesystem::path summary = options.output / kSummary;
   if (system.step() > s.assembly.end_step || (system.step() == s.assembly.end_step && std::filesystem::exists(summary))) {
-    throw UserError(fmt::format("{}: the run has reached its end at {:.6g} s already; to go on, give a later one: millscope resume {} --set time.end_s={:.4g}",
-                                options.output.string(), system.time(), options.output.string(), 2 * system.time()));
+    throw UserError(fmt::format(
+        "{}: the run has reached its end at {:.6g} s already; to go on, give a later one: millscope resume {} --set time.end_s={:.4g}",
+        options.output.string(), system.time(), options.output.string(), 2 * system.time()));
   }
   if (s.assembly.analyze_step < system.step() && archive.read_value<std::int64_t>("analyze_step") != s.assembly.analyze_step) {
-    throw UserError(fmt::format("--set time.analyze_from_s: the new window begins at {:.6g} s, before the checkpoint at {:.6g} s, whose samples are gone; "
-                                "give a later time or start a new run", static_cast<double>(s.assembly.analyze_step) * s.assembly.time_step, system.time()));
+    throw UserError(fmt::format(
+        "--set time.analyze_from_s: the new window begins at {:.6g} s, before the checkpoint at {:.6g} s, whose samples are gone; "
+        "give a later time or start a new run",
+        static_cast<double>(s.assembly.analyze_step) * s.assembly.time_step, system.time()));
   }
   directory.start();
   // A damaged newest checkpoint must not become the previous one, which is now the only one.

@@ -17,7 +17,7 @@ Mean correlated_mean(std::span<const double> series);
 
 struct Steadiness {
   bool steady = false;
-  double drift = 0;         ///< second half − first half, in the series' unit
+  double drift = 0;            ///< second half − first half, in the series' unit
   double standard_errors = 0;  ///< |drift| over its standard error
 };
 

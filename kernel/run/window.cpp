@@ -19,10 +19,10 @@ double power_of_centre(const Assembly& a, const Sample& s) {
   const dem::Motion& m = a.system->bodies[static_cast<std::size_t>(body)].motion;
   const std::array<double, 3>& g = a.gravity;
   const std::array<double, 3> r{s.centre[0] - m.point[0], s.centre[1] - m.point[1], s.centre[2] - m.point[2]};
-  const double moment = m.axis[0] * (g[1] * r[2] - g[2] * r[1]) + m.axis[1] * (g[2] * r[0] - g[0] * r[2]) + m.axis[2] * (g[0] * r[1] - g[1] * r[0]);
+  const double moment =
+      m.axis[0] * (g[1] * r[2] - g[2] * r[1]) + m.axis[1] * (g[2] * r[0] - g[0] * r[2]) + m.axis[2] * (g[0] * r[1] - g[1] * r[0]);
   return a.system->total_mass() * m.speed * moment;
 }
-
 
 }  // namespace
 
@@ -76,10 +76,12 @@ Json window_summary(const Assembly& a, const std::vector<Sample>& samples) {
   j["window_s"] = {first.time, last.time};
   const Steadiness by_torque = steadiness(torque, kSteadyTolerance), by_centre = steadiness(centre, kSteadyTolerance);
   j["steady"] = by_torque.steady && by_centre.steady;
-  j["steadiness"] = {{"torque_power_drift_W", by_torque.drift}, {"torque_power_drift_standard_errors", by_torque.standard_errors},
-                     {"com_power_drift_W", by_centre.drift},    {"com_power_drift_standard_errors", by_centre.standard_errors}};
-  j["power_W"] = {{"torque", pt.value}, {"torque_sem", pt.standard_error},           {"com", pc.value}, {"com_sem", pc.standard_error},
-                  {"dissipation", pd.value}, {"dissipation_sem", pd.standard_error}};
+  j["steadiness"] = {{"torque_power_drift_W", by_torque.drift},
+                     {"torque_power_drift_standard_errors", by_torque.standard_errors},
+                     {"com_power_drift_W", by_centre.drift},
+                     {"com_power_drift_standard_errors", by_centre.standard_errors}};
+  j["power_W"] = {{"torque", pt.value},           {"torque_sem", pt.standard_error}, {"com", pc.value},
+                  {"com_sem", pc.standard_error}, {"dissipation", pd.value},         {"dissipation_sem", pd.standard_error}};
   Json com = Json::array(), com_sem = Json::array();
   for (const auto& c : x) {
     const Mean m = correlated_mean(c);
@@ -92,22 +94,37 @@ Json window_summary(const Assembly& a, const std::vector<Sample>& samples) {
   j["kinetic_energy_J_sem"] = ke.standard_error;
   const auto stored = [](const Sample& s) { return s.translational + s.rotational + s.elastic + s.potential; };
   const double input = last.wall_work - first.wall_work, lost = last.dissipated - first.dissipated, kept = stored(last) - stored(first);
-  j["energy"] = {{"wall_work_J", input}, {"dissipated_J", lost}, {"stored_change_J", kept},
+  j["energy"] = {{"wall_work_J", input},
+                 {"dissipated_J", lost},
+                 {"stored_change_J", kept},
                  {"imbalance_J", input - lost - kept},
                  {"imbalance_fraction", std::abs(input) > 0 ? (input - lost - kept) / std::abs(input) : 0.0},
-                 {"elastic_J", last.elastic}, {"mean_power_span_s", span}};
+                 {"elastic_J", last.elastic},
+                 {"mean_power_span_s", span}};
   return j;
 }
 
 std::vector<std::string> series_columns(const Assembly& a) {
   (void)a;
-  return {"time_s", "translational_energy_J", "rotational_energy_J", "elastic_energy_J", "potential_energy_J", "wall_work_J", "dissipated_J",
-          "torque_N_m", "power_torque_W", "power_com_W", "com_x_m", "com_y_m", "com_z_m", "contacts"};
+  return {"time_s",
+          "translational_energy_J",
+          "rotational_energy_J",
+          "elastic_energy_J",
+          "potential_energy_J",
+          "wall_work_J",
+          "dissipated_J",
+          "torque_N_m",
+          "power_torque_W",
+          "power_com_W",
+          "com_x_m",
+          "com_y_m",
+          "com_z_m",
+          "contacts"};
 }
 
 std::vector<double> series_row(const Sample& s, const Assembly& a, double power) {
-  return {s.time, s.translational, s.rotational, s.elastic, s.potential, s.wall_work, s.dissipated, s.torque, power, power_of_centre(a, s),
-          s.centre[0], s.centre[1], s.centre[2], static_cast<double>(s.contacts)};
+  return {s.time,   s.translational, s.rotational,          s.elastic,   s.potential, s.wall_work, s.dissipated,
+          s.torque, power,           power_of_centre(a, s), s.centre[0], s.centre[1], s.centre[2], static_cast<double>(s.contacts)};
 }
 
 Json collision_summary(const Assembly& a, const dem::Ledger& now, const dem::Ledger& before, double seconds) {

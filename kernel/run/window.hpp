@@ -13,11 +13,11 @@ namespace millscope::run {
 struct Sample {
   double time = 0;
   double translational = 0, rotational = 0, elastic = 0, potential = 0;  ///< J
-  std::array<double, 3> centre{};                                       ///< m
-  double wall_work = 0;   ///< of all bodies since the start, J
-  double torque_work = 0; ///< of the turning bodies since the start, J
-  double dissipated = 0;  ///< all channels and drag since the start, J
-  double torque = 0;      ///< on the turning bodies about z at this instant, N m
+  std::array<double, 3> centre{};                                        ///< m
+  double wall_work = 0;                                                  ///< of all bodies since the start, J
+  double torque_work = 0;                                                ///< of the turning bodies since the start, J
+  double dissipated = 0;                                                 ///< all channels and drag since the start, J
+  double torque = 0;                                                     ///< on the turning bodies about z at this instant, N m
   std::int64_t contacts = 0;
 };
 

@@ -13,9 +13,9 @@
 //   S_t = 8 G* a,   |S_t δ_t| ≤ μ (F_n + 2 · 3/2 π w R*)   (Thornton 1991)
 //
 // The surfaces jump into contact at δ_n = 0, y = 1, and part at y³ = ¼, D = −0.4725, a gap: history remembers whether they touch. What
-// both jumps take, 0.3 and 0.0315 of E* c³ R* s, is the channel `adhesion`; U is counted from separation. The damping is Hertz's at stiffness 2 E* a, so e is
-// reached where adhesion does not count.
-// Ferrari: y = ½ (√(2m) + √(√(2/m) − 2m)) with m the positive root of m³ + D m − ⅛ = 0, polished by three Newton steps.
+// both jumps take, 0.3 and 0.0315 of E* c³ R* s, is the channel `adhesion`; U is counted from separation. The damping is Hertz's at
+// stiffness 2 E* a, so e is reached where adhesion does not count. Ferrari: y = ½ (√(2m) + √(√(2/m) − 2m)) with m the positive root of m³ +
+// D m − ⅛ = 0, polished by three Newton steps.
 #include "options.hpp"
 #include "tangential_spring.hpp"
 

@@ -23,7 +23,7 @@ struct GeometryBeads {
 
 struct GeometryQuery {
   GeometryBeads beads;
-  const std::int64_t* first;       ///< count + 1 offsets into `candidates`
+  const std::int64_t* first;  ///< count + 1 offsets into `candidates`
   const std::uint32_t* candidates;
   double reach;  ///< also report gaps up to this, m
 };
@@ -31,10 +31,10 @@ struct GeometryQuery {
 /// Contacts found, at most `capacity` of them, ordered by bead.
 struct GeometryContacts {
   std::int64_t capacity;
-  std::int64_t count;    ///< out
-  std::int32_t* bead;    ///< out: index into the query's beads
-  double* overlap;       ///< out: δ, m; negative: a gap
-  double* normal[3];     ///< out: unit, from the wall to the bead's centre, in the geometry's frame
+  std::int64_t count;       ///< out
+  std::int32_t* bead;       ///< out: index into the query's beads
+  double* overlap;          ///< out: δ, m; negative: a gap
+  double* normal[3];        ///< out: unit, from the wall to the bead's centre, in the geometry's frame
   std::uint32_t* feature;   ///< out: names the smooth patch; stays the same while a bead slides over it
   std::uint32_t* triangle;  ///< out: index into the surface's triangles (for per-triangle work), or UINT32_MAX
   std::uint32_t* material;  ///< out: index into the geometry's material slots
@@ -55,7 +55,7 @@ struct Interior {
   std::uint32_t is_bounded;   ///< 0: nothing known (a plane)
   double axis_point[3];
   double axis[3];
-  double radius;  ///< of the bare shell, m
+  double radius;           ///< of the bare shell, m
   double low[3], high[3];  ///< bounds in the geometry's frame; for a cylinder low[2], high[2] hold the range along the axis
 };
 

@@ -1,0 +1,63 @@
+// Four doubles side by side, for the files that are built once per instruction set: g++'s vector types, no intrinsics. Internal linkage
+// on purpose: each build has its own.
+#pragma once
+
+#include <cstdint>
+
+#include "kernel/dem/lines.hpp"
+
+namespace millscope::dem {
+namespace {
+
+typedef double Four __attribute__((vector_size(32)));
+typedef double FourAlias __attribute__((vector_size(32), may_alias));
+typedef std::int64_t FourBits __attribute__((vector_size(32)));
+
+inline Four four(double a) { return Four{a, a, a, a}; }
+inline Four load4(const void* p) { return *static_cast<const FourAlias*>(p); }
+inline void store4(void* p, Four v) { *static_cast<FourAlias*>(p) = v; }
+inline void store4_unaligned(double* p, Four v) { __builtin_memcpy(p, &v, sizeof v); }
+
+/// Rounds to the nearest integer (|a| < 2^51) with additions alone: exact and the same everywhere.
+inline Four nearest(Four a) {
+  const Four magic = four(6755399441055744.0);  // 1.5 · 2^52
+  return (a + magic) - magic;
+}
+
+struct Box4 {
+  Four length, inverse;
+  bool any;
+};
+
+Box4 box4(const PeriodicBox& b) {
+  Box4 r{};
+  for (int a = 0; a < 3; ++a) {
+    r.length[a] = b.length[a];
+    r.inverse[a] = b.length[a] > 0 ? 1.0 / b.length[a] : 0.0;
+    r.any = r.any || b.length[a] > 0;
+  }
+  return r;
+}
+
+inline Four minimum_image(Four d, const Box4& b) { return d - b.length * nearest(d * b.inverse); }
+
+/// 4 × 4 transpose.
+inline void transpose(Four& a, Four& b, Four& c, Four& d) {
+  const Four ab_lo = __builtin_shuffle(a, b, FourBits{0, 4, 2, 6});
+  const Four ab_hi = __builtin_shuffle(a, b, FourBits{1, 5, 3, 7});
+  const Four cd_lo = __builtin_shuffle(c, d, FourBits{0, 4, 2, 6});
+  const Four cd_hi = __builtin_shuffle(c, d, FourBits{1, 5, 3, 7});
+  a = __builtin_shuffle(ab_lo, cd_lo, FourBits{0, 1, 4, 5});
+  b = __builtin_shuffle(ab_hi, cd_hi, FourBits{0, 1, 4, 5});
+  c = __builtin_shuffle(ab_lo, cd_lo, FourBits{2, 3, 6, 7});
+  d = __builtin_shuffle(ab_hi, cd_hi, FourBits{2, 3, 6, 7});
+}
+
+/// Turns (x, y, z, r) of j into (−x, −y, −z, r), so that one addition gives the difference of the first three and the sum of the last.
+inline Four negate3(Four a) {
+  const FourBits sign = {INT64_MIN, INT64_MIN, INT64_MIN, 0};
+  return (Four)((FourBits)a ^ sign);
+}
+
+}  // namespace
+}  // namespace millscope::dem
