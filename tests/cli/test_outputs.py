@@ -17,12 +17,9 @@ class Outputs(CliTest):
     @classmethod
     def setUpClass(cls):
         cls.kept = cls("make")
+        cls.addClassCleanup(cls.kept.doCleanups)
         CliTest.setUp(cls.kept)
         cls.kept.run_case("out")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.kept.doCleanups()
 
     def make(self):
         """Not a test: makes the object whose folder all tests of this class read."""

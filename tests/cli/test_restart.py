@@ -18,13 +18,10 @@ class Restart(CliTest):
     @classmethod
     def setUpClass(cls):
         cls.kept = cls("make")
+        cls.addClassCleanup(cls.kept.doCleanups)
         CliTest.setUp(cls.kept)
         cls.kept.write_case(*LONG)
         cls.kept.run_case("whole")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.kept.doCleanups()
 
     def make(self):
         """Not a test: makes the object whose folder all tests of this class share."""
