@@ -8,13 +8,6 @@ namespace {
 
 constexpr std::size_t kDoubleArrays = 80;
 
-bool has_post(const PairPhysics& p) {
-  return std::any_of(p.interactions.begin(), p.interactions.end(), [](const InteractionReference& i) { return !i.pre; });
-}
-bool has_pre(const PairPhysics& p) {
-  return std::any_of(p.interactions.begin(), p.interactions.end(), [](const InteractionReference& i) { return i.pre; });
-}
-
 void fill(double* array, std::int64_t count, double value) { std::fill(array, array + count, value); }
 
 InteractionBatch interaction_batch(const BatchRun& run, bool pre, std::int64_t padded, BatchArrays& b) {
@@ -109,7 +102,7 @@ void evaluate(const BatchRun& run, BatchArrays& b, PairLedger& ledger) {
   const std::int64_t padded = (run.count + 7) / 8 * 8;
   ContactBatch contacts = contact_batch(run, padded, b);
   if (!run.physics->pair_parameters.empty()) run_pair_parameters(run, padded, b, contacts);
-  const bool pre = has_pre(*run.physics), post = has_post(*run.physics);
+  const bool pre = run.physics->has_pre(), post = run.physics->has_post();
   if (pre) {
     fill(b.added_force, padded, 0.0);
     fill(b.added_cap, padded, 0.0);

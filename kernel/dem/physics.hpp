@@ -1,6 +1,7 @@
 // What acts on the beads, as the core sees it: tables and objects of loaded plugins, one set per pair of materials.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,13 @@ struct PairPhysics {
   std::vector<InteractionReference> interactions;
   std::vector<PairParameterReference> pair_parameters;
   double reach = 0;  ///< m
+
+  bool has_pre() const {
+    return std::any_of(interactions.begin(), interactions.end(), [](const InteractionReference& i) { return i.pre; });
+  }
+  bool has_post() const {
+    return std::any_of(interactions.begin(), interactions.end(), [](const InteractionReference& i) { return !i.pre; });
+  }
 };
 
 struct BodyForceReference {

@@ -26,7 +26,7 @@ void System::contacts(int slab, int worker) {
       batch.radius_i = batch.radius_j = equality.arrays[2]->data();
     }
     const bool spins = !physics.interactions.empty();
-    const bool moments = std::any_of(physics.interactions.begin(), physics.interactions.end(), [](const auto& i) { return !i.pre; });
+    const bool moments = physics.has_post();
     const PairListView list = state.lists[p].view();
     const GatherContext gather{particles.position.data(), particles.motion.data(), settings_.periodic, physics.reach, equality.equal, spins,
                                equality.radius,           0.5 * equality.mass};

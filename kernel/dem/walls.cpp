@@ -264,7 +264,7 @@ void System::walls(int slab, int worker, std::size_t body_index) {
       if (step_ % 16 == 0) note_overlap(m, b, ledger);
       ledger.contacts += m;
       evaluate({&physics_[p], dt, m, body.per_triangle}, b, ledger);
-      const bool post = std::any_of(physics_[p].interactions.begin(), physics_[p].interactions.end(), [](const auto& i) { return !i.pre; });
+      const bool post = physics_[p].has_post();
       for (std::int64_t k = 0; k < m; ++k) {
         const Row f{b.force[0][k], b.force[1][k], b.force[2][k]};
         const Row n{b.normal[0][k], b.normal[1][k], b.normal[2][k]};
