@@ -19,15 +19,22 @@ enum FrameField : std::uint64_t {
   kHasPhase = 8,
   kHasWallWork = 16,
   kHasDissipation = 32,
-  kHasAllBeads = 64,  ///< every bead of the charge is in every frame; a recording has its tracer only
+  kHasAllBeads = 64,   ///< every bead of the charge is in every frame; a recording has its tracer only
+  kHasLocations = 128, ///< the measured points behind the samples
+  kHasImpacts = 256,   ///< counts of collisions by energy
 };
 
 /// One block. Frame f holds the samples first[f] … first[f+1]−1. Arrays of fields that are not in `has` are nullptr.
+///
+/// A block of a simulation is a span of time with all beads in every frame. A block of a recording, or of a simulated bead that is
+/// followed, is a span of one bead's trajectory at even times, with one sample per frame; where the camera lost the bead the frames
+/// lack, and `piece` changes.
 struct FrameBlock {
   std::uint64_t has;  ///< bits of FrameField
-  double duration;    ///< s that the block stands for
+  double duration;    ///< s that the block stands for: the sum of the weights of one bead's samples
   std::int64_t frame_count;
   const double* time;               ///< per frame, s
+  const std::int32_t* piece;        ///< per frame: equal numbers belong to one unbroken stretch of time
   const double* omega;              ///< per frame: Ω of the shell about z, rad/s
   const double* phase;              ///< per frame: angle of the shell, rad
   const double* wall_work;          ///< per frame: work done by the walls on the charge since the run's start, J
@@ -42,6 +49,20 @@ struct FrameBlock {
   const double* spin[3];            ///< rad/s
   const double* radius;             ///< m
   const double* mass;               ///< kg
+  /// Per sample: variance that the measurement leaves in each component (mean of the three); nullptr: exact.
+  const double* position_variance;  ///< m²
+  const double* velocity_variance;  ///< (m/s)²
+  /// The measured points in the span of the block, before any spline; in time order for each bead.
+  std::int64_t location_count;
+  const double* location_time;         ///< s
+  const double* location_position[3];  ///< m
+  const double* location_variance;     ///< per point: of each component, m²; nullptr: exact
+  const std::int64_t* location_id;
+  /// Collisions that ended since the run's start: per frame × pair × bin.
+  const double* impacts;
+  std::int64_t impact_pair_count, impact_bin_count;
+  const char* const* impact_pair;    ///< "glass~liner"
+  const double* impact_energy_edge;  ///< bins + 1, J
 };
 
 /// What is the same for all blocks; 0 where unknown.
@@ -53,6 +74,9 @@ struct AnalyzerContext {
   double charge_mass;          ///< of all beads, kg
   double charge_count;         ///< number of all beads
   double bead_radius;          ///< mean, m
+  double bead_density;         ///< mean, kg/m³
+  double start, end;           ///< span that is analysed, s
+  std::int64_t largest_id;     ///< ids are 0 … largest_id
   std::uint64_t has;           ///< fields that every block carries
   std::uint32_t is_recording;  ///< 1: one tracer of a real mill
   std::uint32_t is_periodic;   ///< 1: periodic along z
@@ -76,6 +100,9 @@ struct Result {
   std::uint32_t reserved;
   std::uint64_t shape[kMaxRank];
   const double* values;  ///< row-major; NaN where undefined
+  /// For each dimension the name of the result of this analyzer that holds its edges (one number more than the dimension) or its
+  /// centres; nullptr: a mere count. Pictures, tables and comparisons find their axes here.
+  const char* axis[kMaxRank];
 };
 
 /// Receives results; everything is copied before `add` returns.
@@ -97,7 +124,7 @@ struct AnalyzerTable {
 };
 
 inline constexpr std::uint64_t kAnalyzerLayout =
-    hash_numbers({7, sizeof(FrameBlock), sizeof(AnalyzerContext), sizeof(ArrayInfo), sizeof(Result), sizeof(AnalyzerTable), sizeof(Value),
-                  sizeof(Parameter), offsetof(FrameBlock, position), offsetof(AnalyzerContext, has), kMaxRank});
+    hash_numbers({8, sizeof(FrameBlock), sizeof(AnalyzerContext), sizeof(ArrayInfo), sizeof(Result), sizeof(AnalyzerTable), sizeof(Value),
+                  sizeof(Parameter), offsetof(FrameBlock, position), offsetof(FrameBlock, location_count), offsetof(Result, axis), offsetof(AnalyzerContext, has), kMaxRank});
 
 }  // namespace millscope

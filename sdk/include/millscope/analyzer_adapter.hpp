@@ -10,6 +10,7 @@
 //   constexpr AnalyzerTable table = make_analyzer_table<MyAnalyzer>();
 #pragma once
 
+#include <algorithm>
 #include <initializer_list>
 #include <vector>
 
@@ -41,10 +42,12 @@ class Results {
 
   /// One number.
   void add(const char* name, const char* unit, double value, const char* doc) { add(name, unit, &value, {}, doc); }
-  /// An array, row-major.
-  void add(const char* name, const char* unit, const double* values, std::initializer_list<std::uint64_t> shape, const char* doc) {
+  /// An array, row-major; `axes` names the results that hold the edges or centres of its dimensions.
+  void add(const char* name, const char* unit, const double* values, std::initializer_list<std::uint64_t> shape, const char* doc,
+           std::initializer_list<const char*> axes = {}) {
     const ArrayInfo info = additive(name, unit, shape);
-    const Result result{name, unit, doc, info.rank, 0, {info.shape[0], info.shape[1], info.shape[2]}, values};
+    Result result{name, unit, doc, info.rank, 0, {info.shape[0], info.shape[1], info.shape[2]}, values, {}};
+    std::copy_n(axes.begin(), std::min<std::size_t>(axes.size(), kMaxRank), result.axis);
     sink_.add(sink_.host, &result);
   }
 

@@ -1,0 +1,85 @@
+// A recording: the measured points of one radioactive bead, from one or several files, with what is known of the mill.
+//
+//   const Recording r = read_recording("recording.yaml");     // or a bare .a, .csv, .tsv, .txt file, .gz of one, or tracks.h5
+//
+// Everything that is not used is counted, with the rule that set it aside (RunReport): nothing is silently dropped.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace millscope::studies {
+
+struct TracerBead {
+  std::optional<double> diameter;  ///< m
+  std::optional<double> density;   ///< kg/m³
+};
+
+struct MeasuredPower {
+  double value;  ///< W
+  double sem;    ///< W
+};
+
+/// What the user says of the mill; what is absent is unknown and is never guessed.
+struct Condition {
+  std::optional<double> angular_velocity;   ///< Ω about z, rad/s; the sign is the turning sense
+  std::optional<double> critical_fraction;  ///< of the critical speed, where the speed was given so
+  std::optional<double> filling;            ///< J on the bare shell's volume
+  std::optional<double> porosity;
+  std::optional<double> bead_diameter;  ///< m
+  std::optional<double> bead_density;   ///< kg/m³
+  TracerBead tracer;
+  std::optional<double> mill_diameter;  ///< of the bare shell, m
+  std::optional<double> mill_length;    ///< inner, m
+  std::optional<MeasuredPower> power;
+  std::filesystem::path geometry;  ///< case file with the mill's geometry; empty: none
+};
+
+/// How one file's rows were dealt with.
+struct RunReport {
+  std::uint64_t rows = 0;          ///< lines that hold data
+  std::uint64_t used = 0;          ///< points in Run
+  std::uint64_t unreadable = 0;    ///< too few columns, or not numbers; a cut last line among them
+  std::uint64_t not_finite = 0;
+  std::uint64_t backwards = 0;     ///< rows whose time lies before that of the row above; sorted in when unique
+  std::uint64_t duplicates = 0;    ///< the same time as another row: the one with the smaller spread is kept
+  std::uint64_t outliers = 0;      ///< farther from the neighbours than any bead can travel
+  std::uint64_t outside = 0;       ///< farther from the axis or along it than the mill can be
+  double gap_time = 0;             ///< s in gaps longer than the limit
+  std::uint64_t gaps = 0;
+};
+
+/// The points of one tracer run in time order, in the frame of the file: after axis swaps and signs, before any shift to the mill's axis.
+struct Run {
+  std::string name;    ///< of the file, without folder and ending
+  std::string source;  ///< the file
+  std::vector<double> time;                     ///< s, strictly increasing
+  std::array<std::vector<double>, 3> position;  ///< m
+  std::vector<double> spread;                   ///< the tracker's own u, m; empty where the file has none. Not a standard error
+  std::vector<std::int64_t> events;             ///< of each point; empty where the file has none
+  RunReport report;
+  std::size_t size() const { return time.size(); }
+};
+
+/// Where the mill stands in the frame of the file. `read_recording` leaves what recording.yaml gives; `inspect` estimates the rest.
+struct MillFrame {
+  std::array<double, 2> axis{0, 0};  ///< x, y of the mill's axis, m
+  double low = 0, high = 0;          ///< inner end faces along z, m; equal: unknown
+};
+
+struct Recording {
+  std::filesystem::path file;
+  std::vector<Run> runs;  ///< at least one, each with at least one point
+  Condition condition;
+  std::optional<MillFrame> frame;
+  double gap_limit = 0;  ///< s: a longer pause between two points is a gap (`gap_limit:` of recording.yaml, else from the data)
+};
+
+/// Reads and cleans. Throws config::UserError with file:line, value, reason and remedy; a file without a usable point is one.
+Recording read_recording(const std::filesystem::path& file);
+
+}  // namespace millscope::studies

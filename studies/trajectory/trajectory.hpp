@@ -1,0 +1,65 @@
+// From measured points to positions and velocities at even times, with what the noise leaves uncertain; never across a gap.
+//
+// Two ways: `cubic`, an interpolating cubic spline per coordinate (Chagas 2015), and `smoothing`, a cubic smoothing spline whose strength
+// follows the noise. A simulated bead that a camera has seen goes through the same code.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "studies/recording/recording.hpp"
+
+namespace millscope::studies {
+
+enum class SplineKind { cubic, smoothing };
+
+struct TrajectoryOptions {
+  SplineKind kind = SplineKind::smoothing;
+  double step = 1e-3;       ///< s between the even times
+  double gap_limit = 0.05;  ///< s: a longer pause between two points ends a piece
+  int least_points = 6;     ///< shorter pieces are left out and counted
+  /// Standard deviation of each component of a point, m; 0: estimated from the run itself.
+  std::array<double, 3> noise{0, 0, 0};
+  std::array<double, 2> axis{0, 0};  ///< subtracted from x and y, m
+  double low = 0, high = 0;          ///< only samples with low ≤ z ≤ high are kept (end-face trimming); equal: all
+};
+
+/// One unbroken stretch at even times.
+struct Piece {
+  double start = 0;  ///< s, of the first sample
+  double step = 0;   ///< s
+  std::array<std::vector<double>, 3> position;      ///< m, in the mill's frame
+  std::array<std::vector<double>, 3> velocity;      ///< m/s
+  std::array<std::vector<double>, 3> acceleration;  ///< m/s²
+  std::vector<double> position_variance;            ///< per sample, mean of the components, m²
+  std::vector<double> velocity_variance;            ///< (m/s)²
+  std::vector<double> acceleration_variance;        ///< (m/s²)²
+  std::vector<double> weight;                       ///< s: dwell time of each sample; 0 where trimmed
+  std::size_t size() const { return position[0].size(); }
+};
+
+struct Trajectory {
+  std::string name;
+  std::int64_t id = 0;  ///< of the bead; the number of the run in a recording
+  double diameter = 0;  ///< m, 0: unknown
+  double density = 0;   ///< kg/m³, 0: unknown
+  std::vector<Piece> pieces;
+  /// The points behind it, in the mill's frame.
+  std::vector<double> location_time;
+  std::array<std::vector<double>, 3> location_position;
+  std::array<double, 3> noise{0, 0, 0};  ///< standard deviation that was used, m
+  double covered = 0;                    ///< s in pieces
+  double span = 0;                       ///< s from the first to the last point
+  std::uint64_t points_left_out = 0;     ///< in pieces that are too short
+  std::uint64_t samples_trimmed = 0;
+};
+
+/// Noise of each component from the points themselves (differences that a smooth motion cancels), robust against impacts; m.
+std::array<double, 3> estimate_noise(const Run& run, double gap_limit);
+
+/// Throws config::UserError when nothing is left, with the reason.
+Trajectory fit_trajectory(const Run& run, const TrajectoryOptions& options);
+
+}  // namespace millscope::studies
