@@ -19,9 +19,9 @@ enum FrameField : std::uint64_t {
   kHasPhase = 8,
   kHasWallWork = 16,
   kHasDissipation = 32,
-  kHasAllBeads = 64,   ///< every bead of the charge is in every frame; a recording has its tracer only
-  kHasLocations = 128, ///< the measured points behind the samples
-  kHasImpacts = 256,   ///< counts of collisions by energy
+  kHasAllBeads = 64,    ///< every bead of the charge is in every frame; a recording has its tracer only
+  kHasLocations = 128,  ///< the measured points behind the samples
+  kHasImpacts = 256,    ///< counts of collisions by energy
 };
 
 /// One block. Frame f holds the samples first[f] … first[f+1]−1. Arrays of fields that are not in `has` are nullptr.
@@ -29,6 +29,10 @@ enum FrameField : std::uint64_t {
 /// A block of a simulation is a span of time with all beads in every frame. A block of a recording, or of a simulated bead that is
 /// followed, is a span of one bead's trajectory at even times, with one sample per frame; where the camera lost the bead the frames
 /// lack, and `piece` changes.
+///
+/// Blocks of one stretch join without loss: the first frame of a block may be the last one of the block before it, with weight 0 (its time
+/// counted there). Sums over samples do not feel it; differences between neighbouring frames (work, dissipation, collisions, entries
+/// into a cell) then add up to those of the whole.
 struct FrameBlock {
   std::uint64_t has;  ///< bits of FrameField
   double duration;    ///< s that the block stands for: the sum of the weights of one bead's samples
@@ -80,6 +84,14 @@ struct AnalyzerContext {
   std::uint64_t has;           ///< fields that every block carries
   std::uint32_t is_recording;  ///< 1: one tracer of a real mill
   std::uint32_t is_periodic;   ///< 1: periodic along z
+  double filling;              ///< J on the bare shell's volume
+  double porosity;             ///< of the bed at rest, that goes with the filling
+  /// As in every block; 0 and nullptr where the blocks have none. They live as long as the analyzer.
+  std::int64_t channel_count;
+  const char* const* channel_name;
+  std::int64_t impact_pair_count, impact_bin_count;
+  const char* const* impact_pair;
+  const double* impact_energy_edge;  ///< bins + 1, J
 };
 
 /// One additive array.
@@ -124,7 +136,8 @@ struct AnalyzerTable {
 };
 
 inline constexpr std::uint64_t kAnalyzerLayout =
-    hash_numbers({8, sizeof(FrameBlock), sizeof(AnalyzerContext), sizeof(ArrayInfo), sizeof(Result), sizeof(AnalyzerTable), sizeof(Value),
-                  sizeof(Parameter), offsetof(FrameBlock, position), offsetof(FrameBlock, location_count), offsetof(Result, axis), offsetof(AnalyzerContext, has), kMaxRank});
+    hash_numbers({9, sizeof(FrameBlock), sizeof(AnalyzerContext), sizeof(ArrayInfo), sizeof(Result), sizeof(AnalyzerTable), sizeof(Value),
+                  sizeof(Parameter), offsetof(FrameBlock, position), offsetof(FrameBlock, location_count), offsetof(Result, axis),
+                  offsetof(AnalyzerContext, has), offsetof(AnalyzerContext, impact_energy_edge), kMaxRank});
 
 }  // namespace millscope
