@@ -1,0 +1,67 @@
+// Equal bins along one coordinate, and the means that they hold.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace millscope::analyzers {
+
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// `count` equal bins from `low` to `high`; the last one includes `high`.
+struct Bins {
+  double low = 0, high = 1;
+  std::int64_t count = 1;
+  double per_unit = 1;  ///< bins per unit of the coordinate
+
+  Bins() = default;
+  Bins(double from, double to, std::int64_t bins) : low(from), high(to), count(bins), per_unit(static_cast<double>(bins) / (to - from)) {}
+
+  /// Number of the bin that holds `value`; −1 outside and for NaN.
+  std::int64_t at(double value) const {
+    const double place = (value - low) * per_unit;
+    if (!(place >= 0 && place <= static_cast<double>(count))) return -1;
+    const auto bin = static_cast<std::int64_t>(place);
+    return bin - (bin == count ? 1 : 0);
+  }
+  /// 0: below; 1 … count: bin + 1; count + 1: above (and NaN).
+  std::int64_t slot(double value) const {
+    const double place = (value - low) * per_unit;
+    if (place < 0) return 0;
+    if (!(place <= static_cast<double>(count))) return count + 1;
+    const auto bin = static_cast<std::int64_t>(place);
+    return bin + (bin == count ? 0 : 1);
+  }
+  double width() const { return (high - low) / static_cast<double>(count); }
+  double edge(std::int64_t i) const { return i == count ? high : low + static_cast<double>(i) * width(); }
+  double centre(std::int64_t i) const { return low + (static_cast<double>(i) + 0.5) * width(); }
+  /// count + 1 numbers, each multiplied by `factor` (for another unit).
+  std::vector<double> edges(double factor = 1) const {
+    std::vector<double> all(static_cast<std::size_t>(count) + 1);
+    for (std::int64_t i = 0; i <= count; ++i) all[static_cast<std::size_t>(i)] = factor * edge(i);
+    return all;
+  }
+};
+
+/// sum/weight; NaN where nothing was seen.
+inline double ratio(double sum, double weight) { return weight > 0 ? sum / weight : kNaN; }
+
+/// Area of a rectangle that lies inside the circle of that radius about the origin, m².
+inline double area_in_circle(double x0, double x1, double y0, double y1, double radius) {
+  const auto farthest = [](double a, double b) { return std::fmax(std::fabs(a), std::fabs(b)); };
+  if (std::hypot(farthest(x0, x1), farthest(y0, y1)) <= radius) return (x1 - x0) * (y1 - y0);
+  constexpr int kStrips = 512;  // 1e-5 of a cell
+  const double width = (x1 - x0) / kStrips;
+  double area = 0;
+  for (int strip = 0; strip < kStrips; ++strip) {
+    const double x = x0 + (strip + 0.5) * width, square = radius * radius - x * x;
+    if (square <= 0) continue;
+    const double half = std::sqrt(square);
+    area += std::fmax(0.0, std::fmin(y1, half) - std::fmax(y0, -half)) * width;
+  }
+  return area;
+}
+
+}  // namespace millscope::analyzers
