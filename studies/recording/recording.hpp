@@ -41,22 +41,23 @@ struct Condition {
 
 /// How one file's rows were dealt with.
 struct RunReport {
-  std::uint64_t rows = 0;          ///< lines that hold data
-  std::uint64_t used = 0;          ///< points in Run
-  std::uint64_t unreadable = 0;    ///< too few columns, or not numbers; a cut last line among them
+  std::uint64_t rows = 0;        ///< lines that hold data
+  std::uint64_t used = 0;        ///< points in Run
+  std::uint64_t unreadable = 0;  ///< too few columns, or not numbers; a cut last line among them
   std::uint64_t not_finite = 0;
-  std::uint64_t backwards = 0;     ///< rows whose time lies before that of the row above; sorted in when unique
-  std::uint64_t duplicates = 0;    ///< the same time as another row: the one with the smaller spread is kept
-  std::uint64_t outliers = 0;      ///< farther from the neighbours than any bead can travel
-  std::uint64_t outside = 0;       ///< farther from the axis or along it than the mill can be
-  double gap_time = 0;             ///< s in gaps longer than the limit
+  std::uint64_t false_times = 0;  ///< a single row more than a second away from both neighbours, which agree
+  std::uint64_t backwards = 0;    ///< rows whose time lies before that of the row above; sorted in when unique
+  std::uint64_t duplicates = 0;   ///< the same time as another row: the one with the smaller spread is kept
+  std::uint64_t outliers = 0;     ///< farther from the neighbours than any bead can travel
+  std::uint64_t outside = 0;      ///< farther from the axis or along it than the mill can be
+  double gap_time = 0;            ///< s in gaps longer than the limit
   std::uint64_t gaps = 0;
 };
 
 /// The points of one tracer run in time order, in the frame of the file: after axis swaps and signs, before any shift to the mill's axis.
 struct Run {
-  std::string name;    ///< of the file, without folder and ending
-  std::string source;  ///< the file
+  std::string name;                             ///< of the file, without folder and ending
+  std::string source;                           ///< the file
   std::vector<double> time;                     ///< s, strictly increasing
   std::array<std::vector<double>, 3> position;  ///< m
   std::vector<double> spread;                   ///< the tracker's own u, m; empty where the file has none. Not a standard error

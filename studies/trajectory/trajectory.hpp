@@ -28,8 +28,8 @@ struct TrajectoryOptions {
 
 /// One unbroken stretch at even times.
 struct Piece {
-  double start = 0;  ///< s, of the first sample
-  double step = 0;   ///< s
+  double start = 0;                                 ///< s, of the first sample
+  double step = 0;                                  ///< s
   std::array<std::vector<double>, 3> position;      ///< m, in the mill's frame
   std::array<std::vector<double>, 3> velocity;      ///< m/s
   std::array<std::vector<double>, 3> acceleration;  ///< m/s²

@@ -1,0 +1,34 @@
+#include "studies/recording/noise.hpp"
+
+#include <cmath>
+
+#include "studies/recording/select.hpp"
+
+namespace millscope::studies {
+
+std::array<double, 3> difference_noise(const Run& run, double gap_limit) {
+  constexpr double kMedianOfNormal = 0.6744897501960817;  // median of |z| for a standard normal z
+  std::array<std::vector<double>, 3> contrasts;
+  for (std::size_t i = 0; i + 3 < run.size(); ++i) {
+    const double* t = run.time.data() + i;
+    if (t[1] - t[0] > gap_limit || t[2] - t[1] > gap_limit || t[3] - t[2] > gap_limit) continue;
+    std::array<double, 4> weight{};
+    double norm = 0;
+    for (std::size_t j = 0; j < 4; ++j) {
+      double product = 1;
+      for (std::size_t k = 0; k < 4; ++k) product *= j == k ? 1 : t[j] - t[k];
+      weight[j] = 1 / product;
+      norm += weight[j] * weight[j];
+    }
+    norm = std::sqrt(norm);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double* x = run.position[axis].data() + i;
+      contrasts[axis].push_back(std::fabs(weight[0] * x[0] + weight[1] * x[1] + weight[2] * x[2] + weight[3] * x[3]) / norm);
+    }
+  }
+  std::array<double, 3> noise{};
+  for (std::size_t axis = 0; axis < 3; ++axis) noise[axis] = contrasts[axis].empty() ? 0 : quantile(contrasts[axis], 0.5) / kMedianOfNormal;
+  return noise;
+}
+
+}  // namespace millscope::studies

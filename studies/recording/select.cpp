@@ -1,0 +1,49 @@
+#include "studies/recording/select.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace millscope::studies {
+namespace {
+
+template <class Change>
+void for_each_array(Run& run, Change change) {
+  change(run.time);
+  for (auto& component : run.position) change(component);
+  change(run.spread);
+  change(run.events);
+}
+
+}  // namespace
+
+double quantile(std::vector<double>& values, double fraction) {
+  const auto rank = static_cast<std::ptrdiff_t>(std::llround(fraction * static_cast<double>(values.size() - 1)));
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[static_cast<std::size_t>(rank)];
+}
+
+std::uint64_t keep_only(Run& run, const std::vector<char>& keep) {
+  const auto gone = static_cast<std::uint64_t>(std::count(keep.begin(), keep.end(), 0));
+  run.report.used = keep.size() - gone;
+  if (gone == 0) return 0;
+  for_each_array(run, [&](auto& values) {
+    if (values.empty()) return;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+      if (keep[i] != 0) values[kept++] = values[i];
+    }
+    values.resize(kept);
+  });
+  return gone;
+}
+
+void reorder(Run& run, const std::vector<std::size_t>& order) {
+  for_each_array(run, [&](auto& values) {
+    if (values.empty()) return;
+    auto old = values;
+    values.resize(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) values[i] = old[order[i]];
+  });
+}
+
+}  // namespace millscope::studies

@@ -1,0 +1,51 @@
+// From the lines of a text file to numbers in SI. For the files of this room.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/recording/recording.hpp"
+
+namespace millscope::studies {
+
+enum Quantity { kTime, kX, kY, kZ, kError, kEvents, kQuantities };
+
+/// Which column holds what. Column numbers count from 0; −1: the file has none.
+struct Layout {
+  std::array<int, kQuantities> column{-1, -1, -1, -1, -1, -1};
+  /// SI value = number · multiplier / divisor; a divisor of 1000 keeps 0.1 ms exact where a factor of 0.001 would not.
+  std::array<double, kQuantities> multiplier{1, 1, 1, 1, 1, 1};
+  std::array<double, kQuantities> divisor{1, 1, 1, 1, 1, 1};
+  char separator = ' ';          ///< ' ': any run of blanks and tabs
+  std::size_t header_lines = 0;  ///< lines at the top that are no rows unless they read as one
+  int least_columns = 0;         ///< a row with fewer is unreadable
+};
+
+/// The layout of a tracker's `.a` file: t (ms), x, y, z (mm), u (mm), 0, 0, n.
+Layout ctrack_layout();
+
+/// What a file holds, row by row in the order of the file.
+struct Rows {
+  std::vector<double> time;
+  std::array<std::vector<double>, 3> position;
+  std::vector<double> spread;        ///< empty where there is no such column
+  std::vector<std::int64_t> events;  ///< empty where there is no such column
+  std::vector<std::uint32_t> line;   ///< from 1
+  std::size_t size() const { return time.size(); }
+};
+
+/// The first line that was set aside, for messages.
+struct FirstFault {
+  std::size_t line = 0;  ///< 0: none
+  std::string text;
+  std::string why;
+};
+
+/// Reads every row; counts rows, unreadable and not_finite in `report`.
+Rows read_rows(std::string_view text, const Layout& layout, RunReport& report, FirstFault& fault);
+
+}  // namespace millscope::studies
