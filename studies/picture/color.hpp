@@ -1,0 +1,22 @@
+// Colours: perceptually even, legible without colour vision and in grey print.
+#pragma once
+
+#include <cstddef>
+
+namespace millscope::studies {
+
+/// sRGB, each 0…1.
+struct Color {
+  double red = 0, green = 0, blue = 0, alpha = 1;
+};
+
+/// viridis (Smith, van der Walt and Firing 2015): fraction 0 dark, 1 bright; outside it is held at the end.
+Color sequential_color(double fraction);
+
+/// Cool to warm through light grey (Moreland, Diverging Color Maps for Scientific Visualization, 2009): 0 blue, ½ neutral, 1 red.
+Color diverging_color(double fraction);
+
+/// Unlike colours for curves (Okabe and Ito 2008), without their yellow, which is lost on white; repeats after seven.
+Color distinct_color(std::size_t index);
+
+}  // namespace millscope::studies
