@@ -1,0 +1,120 @@
+// results.h5: what the analyzers found, with uncertainty and the joint covariance of everything (docs/format.md).
+//
+//   const ResultSet r = read_results("OUT/results.h5");
+//   const ResultArray* map = r.find("pept_grid", "occupancy");           // value, sem, low, high, row-major
+//   const ResultArray* x = r.axis(*map, 0);                              // edges (one number more than the dimension) or centres
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "millscope/analyzer.hpp"
+
+namespace millscope::studies {
+
+inline constexpr std::uint32_t kResultsSchema = 1;
+
+/// What the resampling says of one value. Bits of ResultArray::flags.
+enum ResultFlag : std::uint8_t {
+  kFewBlocks = 1,       ///< fewer than 10 effective blocks: its interval cannot be relied on
+  kCorrelated = 2,      ///< the blocks are correlated in this value: sem and interval are widened for it
+  kOftenUndefined = 4,  ///< undefined (NaN) in more than a tenth of the resamples
+  kNoUncertainty = 8,   ///< too few blocks to resample at all: sem, low and high are NaN
+};
+
+/// One result of one analyzer.
+struct ResultArray {
+  std::string analyzer;  ///< name of the instance
+  std::string name, unit, doc;
+  std::vector<std::size_t> shape;  ///< empty: one number
+  /// For each dimension the name of the result of the same analyzer that holds its edges or centres; "": a mere count.
+  std::vector<std::string> axes;
+  bool is_axis = false;                  ///< serves another result as an axis: exact, so that all arrays below but `value` are empty
+  std::vector<double> value;             ///< row-major; NaN where undefined
+  std::vector<double> sem;               ///< standard error, over the resampled blocks
+  std::vector<double> low, high;         ///< 90 % interval
+  std::vector<double> effective_blocks;  ///< independent blocks that the uncertainty rests on
+  std::vector<std::uint8_t> flags;       ///< bits of ResultFlag
+  /// Resamples, draw-major [draws, size]: draw − value. Draw b of every array comes from the same resampled blocks, so any joint
+  /// distribution can be read off. Scaled so that their standard deviation is `sem`; NaN where undefined. Empty for arrays with more
+  /// than kMostDrawnValues values.
+  std::vector<float> draws;
+
+  std::size_t size() const { return value.size(); }
+};
+
+inline constexpr std::size_t kMostDrawnValues = 50000;
+
+/// One input or plugin file, for the provenance.
+struct ResultFile {
+  std::string file;
+  std::string hash;  ///< FNV-1a of its bytes, hexadecimal
+};
+
+/// Autocorrelation of one basic observable (x, y, radius, z, speed; of the centre of mass or the tracer).
+struct ObservableTime {
+  std::string name;
+  double time;          ///< s, integrated autocorrelation time
+  double effective;     ///< independent values in the span: span / (2 time)
+  bool sets_the_block;  ///< transverse: blocks are at least three of its times
+};
+
+/// One block: the unit of resampling.
+struct ResultBlock {
+  double start, end;      ///< s
+  double duration;        ///< s that it stands for
+  std::uint32_t stretch;  ///< run or bead
+};
+
+struct ResultMeta {
+  std::string source;       ///< "simulation", "tracks" or "recording"
+  std::string description;  ///< file, beads, seconds
+  std::string name;         ///< of the case or recording
+  std::string case_file;    ///< case with the mill's geometry (to draw the shell); empty: unknown
+  AnalyzerContext context{};
+  std::uint64_t seed = 1;
+  std::uint32_t draws = 0;
+  double confidence = 0.9;
+  double block_duration = 0;  ///< s, mean
+  std::vector<ResultBlock> blocks;
+  std::vector<ObservableTime> times;
+  std::vector<ResultFile> inputs;
+  nlohmann::ordered_json provenance;  ///< version, command line, plugins, options of every analyzer
+  std::vector<std::string> left_out;  ///< "analyzer: why" for those whose needs the data do not meet
+  std::vector<std::string> notes;     ///< what a reader of the results must know, one sentence each
+};
+
+/// Which value a row of the covariance belongs to.
+struct CovarianceEntry {
+  std::uint32_t array;    ///< index into ResultSet::arrays
+  std::uint32_t element;  ///< index into its values
+};
+
+struct ResultSet {
+  ResultMeta meta;
+  std::vector<ResultArray> arrays;  ///< in the order of the analyzers and of their results
+  /// Of all single numbers and of rows of at most 64 values that are no axes, defined in every resample.
+  std::vector<CovarianceEntry> covariance_entries;
+  std::vector<double> covariance;     ///< [entries, entries], in the product of the units
+  std::uint32_t covariance_rank = 0;  ///< at most blocks − 1, and draws − 1
+
+  /// nullptr when absent.
+  const ResultArray* find(const std::string& analyzer, const std::string& name) const;
+  /// The axis of one dimension; nullptr: a mere count.
+  const ResultArray* axis(const ResultArray& array, std::size_t dimension) const;
+};
+
+/// "pept_grid.occupancy", or "distributions.x_share[12]".
+std::string entry_name(const ResultSet& results, const CovarianceEntry& entry);
+
+/// Writes aside and renames. Throws config::UserError when the file exists (unless `overwrite`) or cannot be written.
+void write_results(const std::filesystem::path& file, const ResultSet& results, bool overwrite = false);
+
+/// Reads a results.h5, or that of an output directory. Throws config::UserError.
+ResultSet read_results(const std::filesystem::path& file_or_directory);
+
+}  // namespace millscope::studies
