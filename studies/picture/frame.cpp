@@ -38,7 +38,7 @@ Frame::Frame(Words words, const Axis& x, const Axis& y, const Room& room) : x_(x
   legend_top_ = kEdge + kTitleLine * static_cast<double>(title_.size()) + kSubtitleLine * static_cast<double>(subtitle_.size()) + 4;
   plot_ = {left, std::ceil(legend_top_ + room.legend + 4), room.width, room.height};
   y_label_ = left - kTick - 3 - labels - 7;
-  height_ = std::ceil(plot_.bottom() + 34 + kNoteLine * static_cast<double>(notes_.size()) + (notes_.empty() ? 0 : 4));
+  height_ = std::ceil(plot_.bottom() + 34 + kNoteLine * static_cast<double>(notes_.size()) + (notes_.empty() ? 0 : 7));
 }
 
 void Frame::draw_words(Canvas& canvas) const {
