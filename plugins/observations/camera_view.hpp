@@ -1,0 +1,45 @@
+// What several observations share: where the camera sees best, and how fast a bead goes.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "millscope/observation_adapter.hpp"
+
+namespace millscope::observations {
+
+constexpr Parameter kMiddleParameter =
+    optional(vector_parameter("middle", "m", kRequired, "Where the camera sees best; default: the middle of the mill's axis."));
+
+/// A vector whose components may not be negative; default zero.
+constexpr Parameter magnitudes_parameter(const char* name, const char* unit, const char* doc, const char* citation = "") {
+  return {name, unit, doc, citation, "", nullptr, 0.0, 0.0, kUnbounded, ValueType::vector, Scope::instance, 0, 0};
+}
+
+/// Distance from the rig's middle.
+class Middle {
+ public:
+  explicit Middle(const Parameters& values) : given_(values.given("middle")) {
+    if (given_) std::copy_n(values.vector("middle"), 3, middle_.begin());
+  }
+
+  double distance(const double* position, const TrackContext& context) const {
+    const double along = given_ ? middle_[2] : 0.5 * (context.mill_low + context.mill_high);
+    return std::hypot(position[0] - middle_[0], position[1] - middle_[1], position[2] - along);
+  }
+
+ private:
+  bool given_;
+  std::array<double, 3> middle_{};
+};
+
+/// Track as it came in.
+inline Track copy_of(const TrackView& view) {
+  Track track;
+  track.reserve(static_cast<std::size_t>(view.count));
+  for (std::int64_t i = 0; i < view.count; ++i) track.push_back(sample_at(view, i));
+  return track;
+}
+
+}  // namespace millscope::observations

@@ -1,0 +1,106 @@
+// The tracker's own spread u of a location grows with the distance from the rig's middle and with the bead's speed; locations above a
+// cut are thrown away, so fast and far beads are under-represented.
+//
+// symbol   here            meaning
+// u        u               the tracker's spread of a location, m; no standard error
+// u₀       spread_         of a bead at rest in the middle, m
+// a, b     per_distance_, per_speed_   growth with distance d and speed v, m/m and s
+// s        scatter_        standard deviation of u at given d and v, m
+// u_max    cut_            m
+//
+//   u = u₀ + a d + b v + s n,   n of variance 1;   kept where u ≤ u_max, with probability Φ((u_max − u₀ − a d − b v)/s)
+//
+// v is the slope of a straight line through the samples within the speed window. The confidence of a location becomes 1 mm/u, at most 1;
+// u_max = 0 leaves the track as it is.
+#include <optional>
+
+#include "camera_view.hpp"
+
+namespace millscope::observations {
+namespace {
+
+constexpr double kSpreadOfFullConfidence = 1e-3;  // m
+
+constexpr Parameter kParameters[] = {
+    number_parameter("cut", "m", 0.0, 0.0, 10.0, "Largest spread that is kept; 0: everything is kept."),
+    number_parameter("spread", "m", 0.0, 0.0, 10.0, "The tracker's spread of a bead at rest in the rig's middle."),
+    number_parameter("per_distance", "1", 0.0, 0.0, 100.0, "Growth of the spread with the distance from the rig's middle, m per m."),
+    number_parameter("per_speed", "s", 0.0, 0.0, 100.0, "Growth of the spread with the bead's speed, m per m/s."),
+    number_parameter("scatter", "m", 0.0, 0.0, 10.0, "Standard deviation of the spread at given distance and speed."),
+    number_parameter("speed_window", "s", 0.02, 0.0, 1.0, "Span of time in which the speed is taken."),
+    kMiddleParameter,
+};
+
+constexpr Hypothesis kHypotheses[] = {
+    {"fast_beads_lost", "The camera loses fast beads.", "u = spread + per_distance d + per_speed v + scatter n <= cut", "", "per_speed",
+     0.0, 0.0, 0.05, 0, 1, "", ""},
+};
+
+/// Slope of a straight line through the samples within half the window of sample i; nothing where there are fewer than two.
+std::optional<double> speed_at(const TrackView& view, std::int64_t i, double window) {
+  std::int64_t low = i, high = i;
+  while (low > 0 && view.time[i] - view.time[low - 1] <= 0.5 * window) --low;
+  while (high + 1 < view.count && view.time[high + 1] - view.time[i] <= 0.5 * window) ++high;
+  const double n = static_cast<double>(high - low + 1);
+  double mean = 0, square = 0, slope[3] = {0, 0, 0};
+  for (std::int64_t k = low; k <= high; ++k) mean += (view.time[k] - view.time[i]) / n;
+  for (std::int64_t k = low; k <= high; ++k) {
+    const double t = view.time[k] - view.time[i] - mean;
+    square += t * t;
+    for (int axis = 0; axis < 3; ++axis) slope[axis] += t * view.position[axis][k];
+  }
+  if (!(square > 0.0)) return std::nullopt;
+  return std::hypot(slope[0], slope[1], slope[2]) / square;
+}
+
+class ErrorCut {
+ public:
+  explicit ErrorCut(const Parameters& values)
+      : middle_(values),
+        cut_(values.number("cut")),
+        spread_(values.number("spread")),
+        per_distance_(values.number("per_distance")),
+        per_speed_(values.number("per_speed")),
+        scatter_(values.number("scatter")),
+        window_(values.number("speed_window")) {}
+
+  Track observe(const TrackView& view, const TrackContext& context) const {
+    Track track = copy_of(view);
+    if (cut_ == 0.0) return track;
+    Random random(context.seed);
+    double speed = 0;  // of the location before, where this one stands alone
+    for (std::int64_t i = 0; i < view.count; ++i) {
+      TrackSample& s = track[static_cast<std::size_t>(i)];
+      if (per_speed_ > 0.0) speed = speed_at(view, i, window_).value_or(speed);
+      const double usual = spread_ + per_distance_ * middle_.distance(s.position, context) + per_speed_ * speed;
+      const double u = std::max(usual + scatter_ * random.normal(), 0.1 * usual);
+      s.visible = s.visible && u <= cut_;
+      if (u > kSpreadOfFullConfidence) s.weight *= kSpreadOfFullConfidence / u;
+    }
+    return track;
+  }
+
+ private:
+  Middle middle_;
+  double cut_, spread_, per_distance_, per_speed_, scatter_, window_;
+};
+
+constexpr ObservationTable kTable = make_observation_table<ErrorCut>();
+
+constexpr Descriptor kDescriptor = [] {
+  Descriptor d = make_descriptor(Kind::observation, kObservationLayout, &kTable, sizeof kTable);
+  d.name = "error_cut";
+  d.version = "1.0";
+  d.doc = "Loses fast and far beads: a cut on the tracker's spread, which grows with distance and speed; before noise.";
+  d.equation = "u = spread + per_distance d + per_speed v + scatter n, kept where u <= cut";
+  d.parameters = kParameters;
+  d.parameter_count = sizeof kParameters / sizeof kParameters[0];
+  d.hypotheses = kHypotheses;
+  d.hypothesis_count = 1;
+  return d;
+}();
+
+}  // namespace
+}  // namespace millscope::observations
+
+MILLSCOPE_PLUGINS(&millscope::observations::kDescriptor)

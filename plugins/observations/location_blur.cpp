@@ -1,0 +1,104 @@
+// A location is made of events from a span of time, in which the bead moves on.
+//
+// symbol   here      meaning
+// T        window_   the span, s
+//
+//   x'(t) = (1/T) ∫ x(t + s) ds,   s from −T/2 to T/2
+//
+// The path between samples is straight, and its integral exact. Near the ends of the track the window shrinks
+// evenly on both sides. T = 0 leaves the track as it is. On a turning circle the radius shrinks by the factor sin(ωT/2)/(ωT/2).
+#include <algorithm>
+#include <vector>
+
+#include "camera_view.hpp"
+
+namespace millscope::observations {
+namespace {
+
+constexpr const char* kCitation = "Parker et al. 1993, Nucl. Instrum. Methods A 326, 592";
+
+constexpr Parameter kParameters[] = {
+    number_parameter("window", "s", 0.0, 0.0, 1.0, "Span of time from which the events of one location come; 0: none.", kCitation),
+};
+
+constexpr Hypothesis kHypotheses[] = {
+    {"location_blur", "The camera's location window smears the path.", "x'(t) = (1/T) int x(t+s) ds", kCitation, "window", 0.0, 0.0, 0.02,
+     0, 1, "", ""},
+};
+
+/// The path and its integral from the first sample on, by straight lines.
+class Path {
+ public:
+  explicit Path(const TrackView& view) : view_(view) {
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<double>& sum = integral_[axis];
+      sum.assign(static_cast<std::size_t>(view.count), 0.0);
+      const double* x = view.position[axis];
+      for (std::int64_t i = 1; i < view.count; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        // Relative to the first point: a long track must not lose digits.
+        sum[at] = sum[at - 1] + (view.time[i] - view.time[i - 1]) * (0.5 * (x[i] + x[i - 1]) - x[0]);
+      }
+    }
+  }
+
+  double mean(int axis, double from, double to) const {
+    return view_.position[axis][0] + (integral(axis, to) - integral(axis, from)) / (to - from);
+  }
+
+ private:
+  double integral(int axis, double t) const {
+    const std::int64_t i =
+        std::clamp<std::int64_t>(std::upper_bound(view_.time, view_.time + view_.count, t) - view_.time - 1, 0, view_.count - 2);
+    const double* x = view_.position[axis];
+    const double s = t - view_.time[i], slope = (x[i + 1] - x[i]) / (view_.time[i + 1] - view_.time[i]);
+    return integral_[axis][static_cast<std::size_t>(i)] + s * (x[i] - x[0] + 0.5 * slope * s);
+  }
+
+  TrackView view_;
+  std::vector<double> integral_[3];
+};
+
+class LocationBlur {
+ public:
+  explicit LocationBlur(const Parameters& values) : window_(values.number("window")) {}
+
+  Track observe(const TrackView& view, const TrackContext&) const {
+    Track out = copy_of(view);
+    if (window_ == 0.0 || view.count < 2) return out;
+    if ((view.time[view.count - 1] - view.time[0]) / static_cast<double>(view.count - 1) > window_) {
+      throw Refusal("the samples lie farther apart than the window; put location_blur before sampling, and record tracks more often");
+    }
+    const Path path(view);
+    for (TrackSample& s : out) {
+      const double half = std::min({0.5 * window_, s.time - view.time[0], view.time[view.count - 1] - s.time});
+      if (half <= 0.0) continue;
+      for (int axis = 0; axis < 3; ++axis) s.position[axis] = path.mean(axis, s.time - half, s.time + half);
+    }
+    return out;
+  }
+
+ private:
+  double window_;
+};
+
+constexpr ObservationTable kTable = make_observation_table<LocationBlur>();
+
+constexpr Descriptor kDescriptor = [] {
+  Descriptor d = make_descriptor(Kind::observation, kObservationLayout, &kTable, sizeof kTable);
+  d.name = "location_blur";
+  d.version = "1.0";
+  d.doc = "Moving average of the path over the location window; before sampling.";
+  d.equation = "x'(t) = (1/T) int x(t+s) ds, s from -T/2 to T/2";
+  d.citation = kCitation;
+  d.parameters = kParameters;
+  d.parameter_count = sizeof kParameters / sizeof kParameters[0];
+  d.hypotheses = kHypotheses;
+  d.hypothesis_count = 1;
+  return d;
+}();
+
+}  // namespace
+}  // namespace millscope::observations
+
+MILLSCOPE_PLUGINS(&millscope::observations::kDescriptor)
