@@ -57,7 +57,7 @@ int plugin(const Arguments& arguments) {
                   "Writes a plugin project of its own (CMake, source, test, README) that builds against the installed SDK.",
                   "millscope plugin new contact_law my_law");
   options.positional("ACTION", "new");
-  options.positional("KIND", "contact_law, interaction, body_force, analyzer");
+  options.positional("KIND", "contact_law, interaction, body_force, observation, analyzer");
   options.positional("NAME", "lower_case_words");
   options.add()("directory", po::value<std::string>()->value_name("DIR")->default_value("."), "where to put it");
   if (!options.parse(arguments)) return kDone;

@@ -77,7 +77,7 @@ void copy_folder(const fs::path& source, const fs::path& target, Kind kind, std:
 }  // namespace
 
 const std::vector<Kind>& scaffold_kinds() {
-  static const std::vector<Kind> kinds = {Kind::contact_law, Kind::interaction, Kind::body_force, Kind::analyzer};
+  static const std::vector<Kind> kinds = {Kind::contact_law, Kind::interaction, Kind::body_force, Kind::observation, Kind::analyzer};
   return kinds;
 }
 
