@@ -3,54 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "studies/recording/select.hpp"
 
 namespace millscope::studies {
-namespace {
-
-std::vector<double> pooled(const std::vector<Run>& runs, std::size_t axis) {
-  std::vector<double> all;
-  for (const Run& run : runs) all.insert(all.end(), run.position[axis].begin(), run.position[axis].end());
-  return all;
-}
-
-bool consistent(const Run& run, std::size_t i, std::size_t j, double speed, double allowance) {
-  double squared = 0;
-  for (const auto& component : run.position) squared += (component[j] - component[i]) * (component[j] - component[i]);
-  const double reach = speed * (run.time[j] - run.time[i]) + allowance;
-  return squared <= reach * reach;
-}
-
-}  // namespace
-
-double Extent::largest() const { return std::max({width[0], width[1], width[2]}); }
-double Extent::across() const { return std::max(width[0], width[1]); }
-
-Extent measure_extent(const std::vector<Run>& runs) {
-  Extent extent;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::vector<double> values = pooled(runs, axis);
-    const double low = quantile(values, 0.005), high = quantile(values, 0.995);
-    extent.middle[axis] = quantile(values, 0.5);
-    extent.width[axis] = high - low;
-  }
-  return extent;
-}
-
-double fast_speed(const std::vector<Run>& runs) {
-  constexpr std::size_t kSpan = 5;
-  std::vector<double> speeds;
-  for (const Run& run : runs) {
-    for (std::size_t i = 0; i + kSpan < run.size(); ++i) {
-      const double dx = run.position[0][i + kSpan] - run.position[0][i], dy = run.position[1][i + kSpan] - run.position[1][i],
-                   dz = run.position[2][i + kSpan] - run.position[2][i];
-      speeds.push_back(std::sqrt(dx * dx + dy * dy + dz * dz) / (run.time[i + kSpan] - run.time[i]));
-    }
-  }
-  return speeds.empty() ? 0 : quantile(speeds, 0.99);
-}
 
 void drop_outside(Run& run, const Extent& extent, double reach) {
   std::vector<char> keep(run.size());
@@ -63,13 +19,12 @@ void drop_outside(Run& run, const Extent& extent, double reach) {
 }
 
 // The chain with the most points in which each can be reached from the one before; a jump within the chain costs as much as ten points, so
-// it is taken only where both sides of it are long.
-void drop_outliers(Run& run, double speed, double noise) {
+// it is taken only where both sides of it are long. Groups of up to nine outliers are passed over.
+void drop_outliers(Run& run, const Travel& travel) {
   constexpr std::size_t kBack = 10;
   constexpr int kJump = 10;
-  constexpr double kNoises = 7;  // between two points with noise in three components
-  const std::size_t n = run.size();
   constexpr auto kNone = std::numeric_limits<std::size_t>::max();
+  const std::size_t n = run.size();
   std::vector<int> score(n);
   std::vector<std::size_t> from(n, kNone);
   int best = 0;
@@ -78,11 +33,10 @@ void drop_outliers(Run& run, double speed, double noise) {
     score[i] = 1 + std::max(0, best - kJump);
     from[i] = best > kJump ? best_at : kNone;
     for (std::size_t j = i; j-- > 0 && i - j <= kBack;) {
-      if (score[j] + 1 > score[i] && consistent(run, j, i, speed, kNoises * noise)) {
-        score[i] = score[j] + 1;
-        from[i] = j;
-        if (score[j] == best) break;
-      }
+      if (score[j] + 1 <= score[i] || !travel.possible(run, j, i)) continue;
+      score[i] = score[j] + 1;
+      from[i] = j;
+      if (score[j] == best) break;
     }
     if (score[i] > best) {
       best = score[i];

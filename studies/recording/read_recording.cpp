@@ -36,13 +36,11 @@ std::vector<Run> read_file(const std::filesystem::path& file) {
 
 void clean(Recording& recording) {
   const Extent extent = measure_extent(recording.runs);
-  const double fall = std::sqrt(2 * 9.81 * extent.across());
-  const double speed = 1.5 * std::max(fall, fast_speed(recording.runs));
   recording.gap_limit = default_gap_limit(recording.runs);
+  const Travel travel = measure_travel(recording.runs, recording.gap_limit);
   for (Run& run : recording.runs) {
     drop_outside(run, extent, 2 * extent.largest());
-    const auto noise = difference_noise(run, recording.gap_limit);
-    drop_outliers(run, speed, std::max({noise[0], noise[1], noise[2]}));
+    drop_outliers(run, travel);
     count_gaps(run, recording.gap_limit);
   }
 }

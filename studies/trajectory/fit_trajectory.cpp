@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/config/error.hpp"
-#include "studies/recording/noise.hpp"
+#include "studies/recording/travel.hpp"
 #include "studies/trajectory/pieces.hpp"
+#include "studies/trajectory/sample.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
 namespace millscope::studies {
@@ -12,82 +14,12 @@ namespace {
 
 using config::UserError;
 
-/// The variance of c·s for the states s = (x0, v0, x1, v1) at both ends of an interval.
-double quadratic(const std::array<double, 4>& c, const StateVariance& p, const StateVariance& r, const CrossVariance& m) {
-  return c[0] * (c[0] * p.position + 2 * c[1] * p.mixed) + c[1] * c[1] * p.velocity + c[2] * (c[2] * r.position + 2 * c[3] * r.mixed) +
-         c[3] * c[3] * r.velocity +
-         2 * (c[0] * (c[2] * m.position_position + c[3] * m.position_velocity) +
-              c[1] * (c[2] * m.velocity_position + c[3] * m.velocity_velocity));
-}
-
-double apply(const std::array<double, 4>& c, const AxisSpline& s, std::size_t i) {
-  return c[0] * s.position[i] + c[1] * s.velocity[i] + c[2] * s.position[i + 1] + c[3] * s.velocity[i + 1];
-}
-
-/// Hermite's weights of (x0, v0, x1, v1) at u within an interval of length h, and those of the derivatives.
-struct Hermite {
-  std::array<double, 4> value, slope, bend;
-  Hermite(double u, double h) {
-    const double s = u / h, r = 1 - s;
-    value = {(1 + 2 * s) * r * r, u * r * r, s * s * (3 - 2 * s), -s * s * r * h};
-    slope = {-6 * s * r / h, r * (1 - 3 * s), 6 * s * r / h, s * (3 * s - 2)};
-    bend = {(12 * s - 6) / (h * h), (6 * s - 4) / h, (6 - 12 * s) / (h * h), (6 * s - 2) / h};
-  }
-};
-
-/// Samples at even times of one unbroken stretch.
-void sample(const Run& run, const Span& span, const std::array<AxisSpline, 3>& splines, Piece& piece) {
-  const auto count = piece.size();
-  std::size_t i = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double t = piece.start + static_cast<double>(k) * piece.step;
-    while (i + 2 < span.size() && run.time[span.first + i + 1] <= t) ++i;
-    const double h = run.time[span.first + i + 1] - run.time[span.first + i], u = std::min(std::max(t - run.time[span.first + i], 0.0), h),
-                 w = h - u;
-    const Hermite hermite(u, h);
-    double position = 0, velocity = 0, acceleration = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const AxisSpline& s = splines[axis];
-      piece.position[axis][k] = apply(hermite.value, s, i);
-      piece.velocity[axis][k] = apply(hermite.slope, s, i);
-      piece.acceleration[axis][k] = apply(hermite.bend, s, i);
-      // What the random motion does between two known ends (covariance of a clamped beam).
-      position += quadratic(hermite.value, s.variance[i], s.variance[i + 1], s.cross[i]) + s.roughness * std::pow(u * w / h, 3) / 3;
-      velocity += quadratic(hermite.slope, s.variance[i], s.variance[i + 1], s.cross[i]) +
-                  s.roughness * u * w * (u * u - u * w + w * w) / (h * h * h);
-      acceleration += quadratic(hermite.bend, s.variance[i], s.variance[i + 1], s.cross[i]);
-    }
-    piece.position_variance[k] = position / 3;
-    piece.velocity_variance[k] = velocity / 3;
-    piece.acceleration_variance[k] = acceleration / 3;
-  }
-}
-
-/// Even times are whole multiples of the step, so that they do not depend on where a piece begins.
-Piece empty_piece(double first, double last, double step) {
-  Piece piece;
-  const double begin = std::ceil(first / step - 1e-9), end = std::floor(last / step + 1e-9);
-  const auto count = end >= begin ? static_cast<std::size_t>(end - begin) + 1 : 0;
-  piece.start = begin * step;
-  piece.step = step;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    piece.position[axis].resize(count);
-    piece.velocity[axis].resize(count);
-    piece.acceleration[axis].resize(count);
-  }
-  piece.position_variance.resize(count);
-  piece.velocity_variance.resize(count);
-  piece.acceleration_variance.resize(count);
-  piece.weight.assign(count, step);
-  return piece;
-}
-
 /// Dwell times: a step for each sample; the ends stand for what the piece covers of theirs; none outside low … high.
 void weigh(Piece& piece, double first, double last, const TrajectoryOptions& options, Trajectory& trajectory) {
   const std::size_t n = piece.size();
-  const double half = piece.step / 2;
-  piece.weight[0] -= half - std::min(half, piece.start - first);
-  piece.weight[n - 1] -= half - std::min(half, last - (piece.start + static_cast<double>(n - 1) * piece.step));
+  const double half = piece.step / 2, end = piece.start + static_cast<double>(n - 1) * piece.step;
+  piece.weight[0] += std::clamp(piece.start - first, 0.0, half) - half;
+  piece.weight[n - 1] += std::clamp(last - end, 0.0, half) - half;
   if (!(options.high > options.low)) return;
   for (std::size_t k = 0; k < n; ++k) {
     const double z = piece.position[2][k];
@@ -97,50 +29,101 @@ void weigh(Piece& piece, double first, double last, const TrajectoryOptions& opt
   }
 }
 
-Run in_mill_frame(const Run& run, const TrajectoryOptions& options) {
-  Run moved = run;
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    for (double& value : moved.position[axis]) value -= options.axis[axis];
+void move_to_axis(Run& run, const std::array<double, 2>& axis) {
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (double& value : run.position[k]) value -= axis[k];
   }
-  return moved;
+}
+
+void set_noise(const Run& run, const TrajectoryOptions& options, Trajectory& trajectory) {
+  constexpr double kLeast = 1e-9;  // m; a simulated bead has none, a smoothing spline needs some
+  NoiseEstimate noise{options.noise, options.noise_correlation};
+  const bool given = std::all_of(options.noise.begin(), options.noise.end(), [](double value) { return value > 0; });
+  if (!given) {
+    noise = estimate_noise_model(run, options.gap_limit);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (options.noise[axis] > 0) noise.standard_deviation[axis] = options.noise[axis];
+    }
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) trajectory.noise[axis] = std::max(noise.standard_deviation[axis], kLeast);
+  trajectory.noise_correlation = noise.correlation;
+}
+
+/// Fits the splines of one span after another.
+class Fitter {
+ public:
+  Fitter(const Run& run, const std::vector<Span>& spans, SplineKind kind, const Trajectory& trajectory) : run_(run), kind_(kind) {
+    // To a spline that is wider than a few points, noise with a correlation of φ looks like white noise (1 + φ)/(1 − φ) times as strong.
+    const double phi = trajectory.noise_correlation;
+    const double inflation = kind == SplineKind::smoothing ? std::sqrt((1 + phi) / (1 - phi)) : 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      noise_[axis] = trajectory.noise[axis] * inflation;
+      if (kind == SplineKind::smoothing) roughness_[axis] = likely_roughness(run, axis, spans, noise_[axis]);
+    }
+  }
+
+  const std::array<AxisSpline, 3>& fit(const Span& span) {
+    if (kind_ == SplineKind::smoothing) {
+      smooth_adaptively(run_, span, noise_, roughness_, splines_);
+      return splines_;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      interpolate(run_.time.data() + span.first, run_.position[axis].data() + span.first, span.size(), noise_[axis], splines_[axis]);
+    }
+    return splines_;
+  }
+
+ private:
+  const Run& run_;
+  SplineKind kind_;
+  std::array<double, 3> noise_{}, roughness_{};
+  std::array<AxisSpline, 3> splines_;
+};
+
+[[noreturn]] void fail_empty(const Run& run, const TrajectoryOptions& options, const Trajectory& trajectory) {
+  throw UserError(fmt::format(
+      "{}: no trajectory: none of its {} points lies in a stretch of {} or more without a pause above {:.4g} s ({:.4g} s from first "
+      "to last point); raise 'gap_limit', or the recording is too sparse",
+      run.source, run.size(), options.least_points, options.gap_limit, trajectory.span));
+}
+
+void check(const TrajectoryOptions& options) {
+  if (!(options.step > 0))
+    throw UserError(fmt::format("the step between even times is {} s; it must be positive, e.g. 0.001 s", options.step));
+  if (!(options.gap_limit > 0)) throw UserError(fmt::format("the gap limit is {} s; it must be positive, e.g. 0.05 s", options.gap_limit));
+  if (!(options.noise_correlation >= 0 && options.noise_correlation < 1)) {
+    throw UserError(fmt::format("the correlation of the noise is {}; it must be at least 0 and below 1", options.noise_correlation));
+  }
 }
 
 }  // namespace
 
 std::vector<Span> unbroken(const Run& run, double gap_limit) {
+  Travel travel = measure_travel({&run, 1}, gap_limit);
+  travel.speed *= 2;  // outliers are gone; what is left over this is a jump, e.g. across a periodic boundary
   std::vector<Span> spans;
   for (std::size_t i = 0; i < run.size(); ++i) {
-    if (i == 0 || run.time[i] - run.time[i - 1] > gap_limit) spans.push_back({i, i});
+    if (i == 0 || run.time[i] - run.time[i - 1] > gap_limit || !travel.possible(run, i - 1, i)) spans.push_back({i, i});
     spans.back().last = i + 1;
   }
   return spans;
 }
 
-std::array<double, 3> estimate_noise(const Run& run, double gap_limit) { return difference_noise(run, gap_limit); }
-
 Trajectory fit_trajectory(const Run& run, const TrajectoryOptions& options) {
-  const Run moved = in_mill_frame(run, options);
+  check(options);
+  Run moved = run;
+  move_to_axis(moved, options.axis);
   Trajectory trajectory;
   trajectory.name = run.name;
-  trajectory.location_time = moved.time;
-  trajectory.location_position = moved.position;
   trajectory.span = run.size() > 0 ? run.time.back() - run.time.front() : 0;
-  const auto estimated = estimate_noise(run, options.gap_limit);
+  set_noise(moved, options, trajectory);
   std::vector<Span> spans;
-  for (const Span& span : unbroken(run, options.gap_limit)) {
-    if (span.size() >= static_cast<std::size_t>(std::max(options.least_points, 2))) {
-      spans.push_back(span);
-    } else {
-      trajectory.points_left_out += span.size();
-    }
+  for (const Span& span : unbroken(moved, options.gap_limit)) {
+    const bool enough = span.size() >= static_cast<std::size_t>(std::max(options.least_points, 3));
+    if (enough) spans.push_back(span);
+    if (!enough) trajectory.points_left_out += span.size();
   }
-  std::array<double, 3> roughness{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    trajectory.noise[axis] = options.noise[axis] > 0 ? options.noise[axis] : estimated[axis];
-    trajectory.noise[axis] = std::max(trajectory.noise[axis], 1e-9);
-    if (options.kind == SplineKind::smoothing) roughness[axis] = likely_roughness(moved, axis, spans, trajectory.noise[axis]);
-  }
-  std::array<AxisSpline, 3> splines;
+  Fitter fitter(moved, spans, options.kind, trajectory);
   for (const Span& span : spans) {
     const double first = moved.time[span.first], last = moved.time[span.last - 1];
     Piece piece = empty_piece(first, last, options.step);
@@ -148,26 +131,14 @@ Trajectory fit_trajectory(const Run& run, const TrajectoryOptions& options) {
       trajectory.points_left_out += span.size();
       continue;
     }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double* time = moved.time.data() + span.first;
-      const double* value = moved.position[axis].data() + span.first;
-      if (options.kind == SplineKind::cubic) {
-        interpolate(time, value, span.size(), trajectory.noise[axis], splines[axis]);
-      } else {
-        smooth(time, value, span.size(), trajectory.noise[axis], roughness[axis], splines[axis]);
-      }
-    }
-    sample(moved, span, splines, piece);
+    sample(moved.time.data() + span.first, fitter.fit(span), piece);
     weigh(piece, first, last, options, trajectory);
     trajectory.covered += last - first;
     trajectory.pieces.push_back(std::move(piece));
   }
-  if (trajectory.pieces.empty()) {
-    throw UserError(
-        fmt::format("{}: no stretch of {} points without a pause longer than {} s; the recording is too sparse for a trajectory, "
-                    "or raise gap_limit",
-                    run.source, options.least_points, options.gap_limit));
-  }
+  if (trajectory.pieces.empty()) fail_empty(run, options, trajectory);
+  trajectory.location_time = std::move(moved.time);
+  trajectory.location_position = std::move(moved.position);
   return trajectory;
 }
 

@@ -100,7 +100,7 @@ void interpolate(const double* time, const double* value, std::size_t count, dou
   spline.velocity = slopes.solve(value);
   spline.variance.resize(count);
   spline.cross.resize(count - 1);
-  spline.roughness = 0;
+  spline.roughness.clear();
   const double squared = noise * noise;
   Row here = row_of(slopes, 0);
   for (std::size_t i = 0; i < count; ++i) {

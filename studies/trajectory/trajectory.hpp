@@ -1,7 +1,7 @@
 // From measured points to positions and velocities at even times, with what the noise leaves uncertain; never across a gap.
 //
 // Two ways: `cubic`, an interpolating cubic spline per coordinate (Chagas 2015), and `smoothing`, a cubic smoothing spline whose strength
-// follows the noise. A simulated bead that a camera has seen goes through the same code.
+// follows the noise and, along the way, the motion. A simulated bead that a camera has seen goes through the same code.
 #pragma once
 
 #include <array>
@@ -22,6 +22,8 @@ struct TrajectoryOptions {
   int least_points = 6;     ///< shorter pieces are left out and counted
   /// Standard deviation of each component of a point, m; 0: estimated from the run itself.
   std::array<double, 3> noise{0, 0, 0};
+  /// Correlation of the noise from one point to the next, 0 … 0.9; used where `noise` is given, else estimated too.
+  double noise_correlation = 0;
   std::array<double, 2> axis{0, 0};  ///< subtracted from x and y, m
   double low = 0, high = 0;          ///< only samples with low ≤ z ≤ high are kept (end-face trimming); equal: all
 };
@@ -49,14 +51,22 @@ struct Trajectory {
   /// The points behind it, in the mill's frame.
   std::vector<double> location_time;
   std::array<std::vector<double>, 3> location_position;
-  std::array<double, 3> noise{0, 0, 0};  ///< standard deviation that was used, m
+  std::array<double, 3> noise{0, 0, 0};  ///< standard deviation of a point that was used, m
+  double noise_correlation = 0;          ///< from one point to the next
   double covered = 0;                    ///< s in pieces
   double span = 0;                       ///< s from the first to the last point
   std::uint64_t points_left_out = 0;     ///< in pieces that are too short
   std::uint64_t samples_trimmed = 0;
 };
 
-/// Noise of each component from the points themselves (differences that a smooth motion cancels), robust against impacts; m.
+/// Noise of the points apart from the motion, from the points themselves; robust against impacts, outliers and gaps.
+struct NoiseEstimate {
+  std::array<double, 3> standard_deviation{0, 0, 0};  ///< of each component, m
+  double correlation = 0;                             ///< from one point to the next, 0 … 0.9
+};
+NoiseEstimate estimate_noise_model(const Run& run, double gap_limit);
+
+/// The standard deviations alone; m.
 std::array<double, 3> estimate_noise(const Run& run, double gap_limit);
 
 /// Throws config::UserError when nothing is left, with the reason.

@@ -1,0 +1,111 @@
+// How strongly to smooth: one roughness q per coordinate that makes the whole run most likely, times a factor per interval.
+//
+// The factor m of an interval makes the points around it most likely: where the data put more into the random accelerations than m lets
+// expect (Evidence), m grows. Summed over a window of some intervals and over the three coordinates, with a prior worth one degree of
+// freedom that m is 1:
+//   m ← (1 + Σ m·found) / (1 + Σ expected)
+// Three rounds leave less than 1 % of the change to come.
+#include <algorithm>
+#include <cmath>
+
+#include "studies/recording/select.hpp"
+#include "studies/trajectory/pieces.hpp"
+
+namespace millscope::studies {
+namespace {
+
+constexpr int kRounds = 3;
+constexpr double kPrior = 1;     // degrees of freedom
+constexpr double kWindow = 3.3;  // median intervals: e-folding time of the window
+constexpr double kLeastFactor = 1e-4;
+
+/// Some stretches spread evenly over the run.
+std::vector<Span> sample_of(const std::vector<Span>& spans) {
+  constexpr std::size_t kLongest = 500, kPoints = 10000;
+  std::vector<Span> cut;
+  std::size_t total = 0;
+  for (const Span& span : spans) {
+    for (std::size_t first = span.first; first + 6 <= span.last; first += kLongest) {
+      cut.push_back({first, std::min(first + kLongest, span.last)});
+      total += cut.back().size();
+    }
+  }
+  const std::size_t stride = total / kPoints + 1;
+  std::vector<Span> chosen;
+  for (std::size_t k = 0; k < cut.size(); k += stride) chosen.push_back(cut[k]);
+  return chosen;
+}
+
+double median_interval(const double* time, std::size_t intervals) {
+  std::vector<double> some;
+  const std::size_t stride = intervals / 1000 + 1;
+  for (std::size_t i = 0; i < intervals; i += stride) some.push_back(time[i + 1] - time[i]);
+  return quantile(some, 0.5);
+}
+
+/// Two-sided exponential window over the intervals: decay[i] lies between the middles of intervals i − 1 and i.
+void spread(const std::vector<double>& decay, std::vector<double>& values) {
+  const std::size_t n = values.size();
+  double sum = 0;
+  std::vector<double> backward(n);
+  for (std::size_t i = n; i-- > 0;) {
+    backward[i] = sum = values[i] + (i + 1 < n ? sum * decay[i + 1] : 0);
+  }
+  sum = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double before = i > 0 ? sum * decay[i] : 0;
+    sum = before + values[i];
+    values[i] = before + backward[i];
+  }
+}
+
+}  // namespace
+
+double likely_roughness(const Run& run, std::size_t axis, const std::vector<Span>& spans, double noise) {
+  const std::vector<Span> sample = sample_of(spans);
+  const auto cost = [&](double log_q) {
+    double sum = 0;
+    for (const Span& s : sample)
+      sum += misfit(run.time.data() + s.first, run.position[axis].data() + s.first, s.size(), noise, std::exp(log_q));
+    return sum;
+  };
+  // Golden section over log q, from a bead at rest to one that is thrown about at 10 m/s every millisecond.
+  double low = std::log(1e-8), high = std::log(1e5);
+  constexpr double kGolden = 0.6180339887498949;
+  double a = high - kGolden * (high - low), b = low + kGolden * (high - low), cost_a = cost(a), cost_b = cost(b);
+  while (high - low > 0.05) {
+    if (cost_a < cost_b) {
+      high = b, b = a, cost_b = cost_a;
+      a = high - kGolden * (high - low), cost_a = cost(a);
+    } else {
+      low = a, a = b, cost_a = cost_b;
+      b = low + kGolden * (high - low), cost_b = cost(b);
+    }
+  }
+  return std::exp((low + high) / 2);
+}
+
+void smooth_adaptively(const Run& run, const Span& span, const std::array<double, 3>& noise, const std::array<double, 3>& roughness,
+                       std::array<AxisSpline, 3>& splines) {
+  const std::size_t n = span.size() - 1;
+  const double* time = run.time.data() + span.first;
+  const double window = kWindow * median_interval(time, n);
+  std::vector<double> decay(n), factor(n, 1.0), rough(n), found(n), expected(n);
+  for (std::size_t i = 1; i < n; ++i) decay[i] = std::exp(-(time[i + 1] - time[i - 1]) / (2 * window));
+  std::vector<Evidence> evidence;
+  for (int round = 0; round <= kRounds; ++round) {
+    std::fill(found.begin(), found.end(), 0.0);
+    std::fill(expected.begin(), expected.end(), 0.0);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t i = 0; i < n; ++i) rough[i] = roughness[axis] * factor[i];
+      smooth(time, run.position[axis].data() + span.first, noise[axis], rough, splines[axis], evidence);
+      for (std::size_t i = 0; i < n; ++i) found[i] += factor[i] * evidence[i].found, expected[i] += evidence[i].expected;
+    }
+    if (round == kRounds) break;
+    spread(decay, found);
+    spread(decay, expected);
+    for (std::size_t i = 0; i < n; ++i) factor[i] = std::max(kLeastFactor, (kPrior + found[i]) / (kPrior + expected[i]));
+  }
+}
+
+}  // namespace millscope::studies

@@ -1,0 +1,102 @@
+#include "studies/trajectory/sample.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace millscope::studies {
+namespace {
+
+using Weights = std::array<double, 4>;  // of position and velocity at the knot before and at the knot behind
+
+/// The cubic of one coordinate between two knots, in powers of the time since the first.
+struct Cubic {
+  double c0, c1, c2, c3;
+  Cubic(const AxisSpline& s, std::size_t i, double h) : c0(s.position[i]), c1(s.velocity[i]) {
+    const double mean = (s.position[i + 1] - s.position[i]) / h, v0 = s.velocity[i], v1 = s.velocity[i + 1];
+    c2 = (3 * mean - 2 * v0 - v1) / h;
+    c3 = (v0 + v1 - 2 * mean) / (h * h);
+  }
+};
+
+/// Covariance of the states at both ends of an interval, summed over the coordinates.
+struct Ends {
+  std::array<std::array<double, 4>, 4> c{};
+  double roughness = 0;
+
+  void add(const AxisSpline& s, std::size_t i) {
+    const StateVariance &p = s.variance[i], &r = s.variance[i + 1];
+    const CrossVariance& m = s.cross[i];
+    c[0][0] += p.position, c[0][1] += p.mixed, c[1][1] += p.velocity;
+    c[2][2] += r.position, c[2][3] += r.mixed, c[3][3] += r.velocity;
+    c[0][2] += m.position_position, c[0][3] += m.position_velocity, c[1][2] += m.velocity_position, c[1][3] += m.velocity_velocity;
+    if (!s.roughness.empty()) roughness += s.roughness[i];
+  }
+  double of(const Weights& w) const {
+    const double diagonal = c[0][0] * w[0] * w[0] + c[1][1] * w[1] * w[1] + c[2][2] * w[2] * w[2] + c[3][3] * w[3] * w[3];
+    const double beside =
+        w[0] * (c[0][1] * w[1] + c[0][2] * w[2] + c[0][3] * w[3]) + w[1] * (c[1][2] * w[2] + c[1][3] * w[3]) + c[2][3] * w[2] * w[3];
+    return diagonal + 2 * beside;
+  }
+};
+
+struct Interval {
+  double start, h;
+  std::array<Cubic, 3> cubic;
+  Ends ends;
+
+  Interval(const double* time, const std::array<AxisSpline, 3>& s, std::size_t i)
+      : start(time[i]), h(time[i + 1] - time[i]), cubic{Cubic(s[0], i, h), Cubic(s[1], i, h), Cubic(s[2], i, h)} {
+    for (const AxisSpline& spline : s) ends.add(spline, i);
+  }
+};
+
+// With s = u/h, r = 1 − s: Hermite's weights, those of the derivatives, and what the random motion does between two known ends:
+//   position q u³w³/(3h³), velocity q u w (u² − u w + w²)/h³ with w = h − u (covariance of a clamped beam).
+void fill(const Interval& in, double t, std::size_t k, Piece& piece) {
+  const double u = std::clamp(t - in.start, 0.0, in.h), h = in.h, w = h - u, s = u / h, r = 1 - s;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Cubic& c = in.cubic[axis];
+    piece.position[axis][k] = c.c0 + u * (c.c1 + u * (c.c2 + u * c.c3));
+    piece.velocity[axis][k] = c.c1 + u * (2 * c.c2 + 3 * u * c.c3);
+    piece.acceleration[axis][k] = 2 * c.c2 + 6 * u * c.c3;
+  }
+  const Weights value{(1 + 2 * s) * r * r, u * r * r, s * s * (3 - 2 * s), -s * u * r};
+  const Weights slope{-6 * s * r / h, r * (1 - 3 * s), 6 * s * r / h, s * (3 * s - 2)};
+  const Weights bend{(12 * s - 6) / (h * h), (6 * s - 4) / h, (6 - 12 * s) / (h * h), (6 * s - 2) / h};
+  const double q = in.ends.roughness, uw = u * w / h;
+  piece.position_variance[k] = (in.ends.of(value) + q * uw * uw * uw / 3) / 3;
+  piece.velocity_variance[k] = (in.ends.of(slope) + q * uw * (u * u - u * w + w * w) / (h * h)) / 3;
+  piece.acceleration_variance[k] = in.ends.of(bend) / 3;
+}
+
+}  // namespace
+
+Piece empty_piece(double first, double last, double step) {
+  constexpr double kSlack = 1e-9;  // of a step: a point on an even time belongs to it whatever the rounding
+  Piece piece;
+  const double begin = std::ceil(first / step - kSlack), end = std::floor(last / step + kSlack);
+  const auto count = end >= begin ? static_cast<std::size_t>(end - begin) + 1 : 0;
+  piece.start = begin * step;
+  piece.step = step;
+  for (auto* vectors : {&piece.position, &piece.velocity, &piece.acceleration}) {
+    for (auto& component : *vectors) component.resize(count);
+  }
+  piece.position_variance.resize(count);
+  piece.velocity_variance.resize(count);
+  piece.acceleration_variance.resize(count);
+  piece.weight.assign(count, step);
+  return piece;
+}
+
+void sample(const double* time, const std::array<AxisSpline, 3>& splines, Piece& piece) {
+  const std::size_t intervals = splines[0].cross.size();
+  const auto at = [&](std::size_t k) { return piece.start + static_cast<double>(k) * piece.step; };
+  for (std::size_t i = 0, k = 0; k < piece.size(); ++i) {
+    const bool last = i + 1 == intervals;
+    if (!last && at(k) >= time[i + 1]) continue;
+    const Interval interval(time, splines, i);
+    for (; k < piece.size() && (last || at(k) < time[i + 1]); ++k) fill(interval, at(k), k, piece);
+  }
+}
+
+}  // namespace millscope::studies
