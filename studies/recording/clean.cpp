@@ -8,12 +8,13 @@
 
 namespace millscope::studies {
 
-void drop_outside(Run& run, const Extent& extent, double reach) {
-  std::vector<char> keep(run.size());
-  for (std::size_t i = 0; i < run.size(); ++i) {
-    bool inside = true;
-    for (std::size_t axis = 0; axis < 3; ++axis) inside = inside && std::fabs(run.position[axis][i] - extent.middle[axis]) <= reach;
-    keep[i] = inside;
+void drop_outside(Run& run, const std::array<std::array<double, 2>, 3>& range) {
+  std::vector<char> keep(run.size(), 1);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < run.size(); ++i) {
+      const double value = run.position[axis][i];
+      keep[i] = static_cast<char>(keep[i] & (value >= range[axis][0]) & (value <= range[axis][1]));
+    }
   }
   run.report.outside += keep_only(run, keep);
 }
@@ -48,13 +49,19 @@ void drop_outliers(Run& run, const Travel& travel) {
   run.report.outliers += keep_only(run, keep);
 }
 
-double default_gap_limit(const std::vector<Run>& runs) {
+double median_interval(const std::vector<Run>& runs) {
+  std::size_t total = 0;
+  for (const Run& run : runs) total += run.size();
+  const std::size_t stride = total / 50000 + 1;
   std::vector<double> intervals;
   for (const Run& run : runs) {
-    for (std::size_t i = 1; i < run.size(); ++i) intervals.push_back(run.time[i] - run.time[i - 1]);
+    for (std::size_t i = 1; i < run.size(); i += stride) intervals.push_back(run.time[i] - run.time[i - 1]);
   }
-  if (intervals.empty()) return 0.1;
-  const double median = quantile(intervals, 0.5);
+  return intervals.empty() ? 0 : quantile(intervals, 0.5);
+}
+
+double default_gap_limit(const std::vector<Run>& runs) {
+  const double median = median_interval(runs);
   return std::max(3 * median, std::clamp(10 * median, 0.01, 0.1));
 }
 

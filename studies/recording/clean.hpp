@@ -13,11 +13,14 @@ namespace millscope::studies {
 /// duplicates. `report` is that of the rows.
 std::vector<Run> order_rows(Rows rows, const RunReport& report);
 
-/// Sets aside points farther than `reach` in x, y or z from the middle.
-void drop_outside(Run& run, const Extent& extent, double reach);
+/// Sets aside points outside the ranges of x, y and z, m.
+void drop_outside(Run& run, const std::array<std::array<double, 2>, 3>& range);
 
 /// Sets aside points that the bead cannot reach from their neighbours and leave again.
 void drop_outliers(Run& run, const Travel& travel);
+
+/// Between consecutive points, s; 0 where there are none.
+double median_interval(const std::vector<Run>& runs);
 
 /// Ten median intervals between points, at least 10 ms and at most 0.1 s, but never less than three median intervals; s.
 double default_gap_limit(const std::vector<Run>& runs);

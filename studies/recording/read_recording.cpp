@@ -1,56 +1,169 @@
+// The order of things: description, rows, time order, units, points that cannot be, gaps.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "kernel/config/error.hpp"
+#include "kernel/output/track_reader.hpp"
 #include "studies/recording/clean.hpp"
-#include "studies/recording/noise.hpp"
+#include "studies/recording/layout.hpp"
+#include "studies/recording/plausible.hpp"
 #include "studies/recording/recording.hpp"
-#include "studies/recording/table.hpp"
+#include "studies/recording/select.hpp"
 #include "studies/recording/text_file.hpp"
 
 namespace millscope::studies {
 namespace {
 
+namespace fs = std::filesystem;
 using config::UserError;
 
-std::string plain_name(std::filesystem::path file) {
+constexpr const char* kTracks = "tracks.h5: t s, position m";
+
+/// What reading leaves beside the runs.
+struct Units {
+  std::string time, length;
+};
+
+std::string plain_name(fs::path file) {
   if (file.extension() == ".gz") file = file.stem();
   return file.stem().string();
 }
 
-std::vector<Run> read_file(const std::filesystem::path& file) {
-  const std::string text = read_text_file(file);
+[[noreturn]] void fail_unusable(const fs::path& file, const RunReport& report, const FirstFault& fault, const std::string& layout) {
+  if (report.rows == 0)
+    throw UserError(fmt::format("{}: holds no usable point: it has no row of numbers (read as {})", file.string(), layout));
+  throw UserError(
+      config::Location{file.string(), static_cast<int>(fault.line)},
+      fmt::format("'{}' {}; {} of {} rows are unreadable and {} not finite, so the file is of no use as it is read ({}); say what its "
+                  "columns are in a recording.yaml",
+                  fault.text, fault.why, report.unreadable, report.rows, report.not_finite, layout));
+}
+
+std::vector<Run> read_table(const RecordingFile& file, const Description& description, Units& units) {
+  const TextFile text(file.path);
+  const KnownLayout known = layout_of(text.text(), file.path, description);
   RunReport report;
   FirstFault fault;
-  Rows rows = read_rows(text, ctrack_layout(), report, fault);
-  if (rows.size() == 0) throw UserError(fmt::format("{}: holds no usable point", file.string()));
+  Rows rows = read_rows(text.text(), known.layout, report, fault);
+  if (rows.size() == 0 || report.unreadable + report.not_finite > report.rows / 2) fail_unusable(file.path, report, fault, known.words);
+  units = {known.time_unit, known.length_unit};
   std::vector<Run> runs = order_rows(std::move(rows), report);
-  for (std::size_t part = 0; part < runs.size(); ++part) {
-    runs[part].name = plain_name(file) + (part == 0 ? "" : fmt::format("_{}", part + 1));
-    runs[part].source = file.string();
-  }
+  for (Run& run : runs) run.format = known.words;
   return runs;
+}
+
+std::vector<Run> read_tracks(const RecordingFile& file, Recording& recording) {
+  const output::TrackReader reader(file.path);
+  std::vector<Run> runs;
+  for (std::size_t k = 0; k < reader.tracks().size(); ++k) {
+    const output::TrackInfo& info = reader.tracks()[k];
+    output::TrackSamples samples = reader.read(k);
+    Run run;
+    run.name = info.name;
+    run.time = std::move(samples.time);
+    run.position = std::move(samples.position);
+    run.format = kTracks;
+    run.report.rows = run.report.used = run.size();
+    TracerBead& tracer = recording.condition.tracer;
+    if (info.diameter > 0 && !tracer.diameter) tracer.diameter = info.diameter;
+    if (info.density > 0 && !tracer.density) tracer.density = info.density;
+    if (run.size() > 0) runs.push_back(std::move(run));
+  }
+  if (runs.empty()) throw UserError(fmt::format("{}: holds no usable point: its tracks are empty", file.path.string()));
+  return runs;
+}
+
+void turn_axes(Run& run, const std::array<AxisSource, 3>& axes) {
+  std::array<std::vector<double>, 3> turned;
+  for (std::size_t k = 0; k < 3; ++k) {
+    turned[k] = std::move(run.position[axes[k].axis]);
+    if (axes[k].sign > 0) continue;
+    for (double& value : turned[k]) value = -value;
+  }
+  run.position = std::move(turned);
+}
+
+/// Names are groups of a tracks.h5, so none stands twice.
+void name_run(Run& run, std::size_t part, const RecordingFile& file, const std::vector<Run>& others) {
+  run.source = file.path.string();
+  if (run.name.empty()) run.name = plain_name(file.path) + (part == 0 ? "" : fmt::format("_{}", part + 1));
+  const std::string plain = run.name;
+  const auto taken = [&] { return std::any_of(others.begin(), others.end(), [&](const Run& other) { return other.name == run.name; }); };
+  for (int count = 2; taken(); ++count) run.name = fmt::format("{}_{}", plain, count);
+}
+
+void read_file(const RecordingFile& file, const Description& description, Recording& recording, Units& units) {
+  const bool tracks = description.format == Format::tracks || (description.format == Format::automatic && output::is_track_file(file.path));
+  std::vector<Run> runs = tracks ? read_tracks(file, recording) : read_table(file, description, units);
+  for (std::size_t part = 0; part < runs.size(); ++part) {
+    turn_axes(runs[part], description.axes);
+    name_run(runs[part], part, file, recording.runs);
+    recording.runs.push_back(std::move(runs[part]));
+  }
+}
+
+/// How far from the middle of all points, or from the mill where it is known, a point may lie along an axis: lowest and highest value.
+std::array<double, 2> reach_of(std::size_t axis, const Extent& extent, const Recording& recording) {
+  constexpr double kSlack = 0.01;  // m, beside 5 % of the mill
+  const Condition& condition = recording.condition;
+  const std::optional<MillFrame>& frame = recording.frame;
+  const auto& size = axis < 2 ? condition.mill_diameter : condition.mill_length;
+  double reach = 2 * extent.largest();
+  if (size) reach = std::min(reach, 1.05 * *size + kSlack);
+  std::array<double, 2> range{extent.middle[axis] - reach, extent.middle[axis] + reach};
+  const auto narrow = [&](double low, double high) { range = {std::max(range[0], low), std::min(range[1], high)}; };
+  if (frame && axis < 2 && size) narrow(frame->axis[axis] - 0.525 * *size - kSlack, frame->axis[axis] + 0.525 * *size + kSlack);
+  if (frame && axis == 2 && frame->high > frame->low) {
+    const double slack = 0.05 * (frame->high - frame->low) + kSlack;
+    narrow(frame->low - slack, frame->high + slack);
+  }
+  return range;
 }
 
 void clean(Recording& recording) {
   const Extent extent = measure_extent(recording.runs);
-  recording.gap_limit = default_gap_limit(recording.runs);
   const Travel travel = measure_travel(recording.runs, recording.gap_limit);
+  std::array<std::array<double, 2>, 3> range{};
+  for (std::size_t axis = 0; axis < 3; ++axis) range[axis] = reach_of(axis, extent, recording);
   for (Run& run : recording.runs) {
-    drop_outside(run, extent, 2 * extent.largest());
-    drop_outliers(run, travel);
+    if (run.format != kTracks) {  // those of a tracks.h5 are simulated, or were judged when they were read first
+      drop_outside(run, range);
+      drop_outliers(run, travel);
+    }
     count_gaps(run, recording.gap_limit);
   }
+  const auto empty = std::find_if(recording.runs.begin(), recording.runs.end(), [](const Run& run) { return run.size() == 0; });
+  if (empty == recording.runs.end()) return;
+  throw UserError(
+      fmt::format("{}: holds no usable point: all {} of {} lie outside the mill that 'condition' and 'frame' state, or far from the "
+                  "other runs; correct these, or leave the file out",
+                  empty->source, empty->report.outside, empty->report.rows));
+}
+
+Description description_of(const fs::path& file) {
+  const std::string ending = file.extension().string();
+  if (ending == ".yaml" || ending == ".yml") return read_description(file);
+  Description description;
+  description.files.push_back({file, {}});
+  return description;
 }
 
 }  // namespace
 
-Recording read_recording(const std::filesystem::path& file) {
+Recording read_recording(const fs::path& file) {
+  const Description description = description_of(file);
   Recording recording;
   recording.file = file;
-  recording.runs = read_file(file);
+  recording.condition = description.condition;
+  recording.frame = description.frame;
+  Units units{"s", "m"};
+  for (const RecordingFile& one : description.files) read_file(one, description, recording, units);
+  config::Location where{file.string(), 0};
+  if (description.columns) where = description.columns_place;
+  check_units(recording.runs, recording.condition, where, units.time, units.length);
+  recording.gap_limit = description.gap_limit.value_or(default_gap_limit(recording.runs));
   clean(recording);
   return recording;
 }

@@ -26,7 +26,8 @@ struct MeasuredPower {
 
 /// What the user says of the mill; what is absent is unknown and is never guessed.
 struct Condition {
-  std::optional<double> angular_velocity;   ///< Ω about z, rad/s; the sign is the turning sense
+  std::optional<double> angular_velocity;   ///< Ω about z, rad/s; the sign is the turning sense. Absent where the sense was not said
+  std::optional<double> speed;              ///< |Ω|, rad/s
   std::optional<double> critical_fraction;  ///< of the critical speed, where the speed was given so
   std::optional<double> filling;            ///< J on the bare shell's volume
   std::optional<double> porosity;
@@ -58,6 +59,7 @@ struct RunReport {
 struct Run {
   std::string name;                             ///< of the file, without folder and ending
   std::string source;                           ///< the file
+  std::string format;                           ///< how it was read, e.g. "ctrack: t ms, x mm, y mm, z mm, error mm, n"
   std::vector<double> time;                     ///< s, strictly increasing
   std::array<std::vector<double>, 3> position;  ///< m
   std::vector<double> spread;                   ///< the tracker's own u, m; empty where the file has none. Not a standard error
@@ -80,7 +82,12 @@ struct Recording {
   double gap_limit = 0;  ///< s: a longer pause between two points is a gap (`gap_limit:` of recording.yaml, else from the data)
 };
 
-/// Reads and cleans. Throws config::UserError with file:line, value, reason and remedy; a file without a usable point is one.
+/// Reads and cleans (docs/recordings.md says by which rules). Throws config::UserError with file:line, value, reason and remedy; a file
+/// without a usable point is one, and so are units that cannot be meant.
 Recording read_recording(const std::filesystem::path& file);
+
+/// Writes the points in the layout of tracks.h5 (docs/format.md), one track per run; whole or not at all. What that layout has no place for
+/// is left: spreads, events, the condition. `read_recording` reads it back. Throws config::UserError.
+void write_tracks(const Recording& recording, const std::filesystem::path& file);
 
 }  // namespace millscope::studies

@@ -159,7 +159,7 @@ Rows read_rows(std::string_view text, const Layout& layout, RunReport& report, F
     if (!whole) stop = end;
     p = whole ? stop + 1 : end;
     const char* const first = skip_blanks(begin, stop);
-    if (first == stop || is_comment(first, stop)) continue;
+    if (number <= layout.skip_lines || first == stop || is_comment(first, stop)) continue;
     const std::string_view line(begin, static_cast<std::size_t>(stop - begin));
     const char* why = reader.read(first, stop, values);
     if (why != nullptr && rows.size() == 0 && (number <= layout.header_lines || !begins_with_number(first, stop))) continue;

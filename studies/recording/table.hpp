@@ -22,6 +22,7 @@ struct Layout {
   std::array<double, kQuantities> divisor{1, 1, 1, 1, 1, 1};
   char separator = ' ';          ///< ' ': any run of blanks and tabs
   std::size_t header_lines = 0;  ///< lines at the top that are no rows unless they read as one
+  std::size_t skip_lines = 0;    ///< lines at the top that are no rows whatever they hold
   int least_columns = 0;         ///< a row with fewer is unreadable
 };
 

@@ -32,29 +32,32 @@ class Descriptor {
   int value_;
 };
 
-std::string read_bytes(const std::filesystem::path& file) {
+/// Reads a whole file into `bytes`, which is not cleared before; returns its size.
+std::size_t read_bytes(const std::filesystem::path& file, std::unique_ptr<char[]>& bytes) {
   const Descriptor descriptor(file);
   if (descriptor < 0) throw UserError(fmt::format("{}: cannot be opened: {}", file.string(), std::strerror(errno)));
   struct stat status {};
   if (::fstat(descriptor, &status) != 0 || S_ISDIR(status.st_mode)) {
     throw UserError(fmt::format("{}: is a folder; name a file of points or a recording.yaml", file.string()));
   }
-  std::string bytes(static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)), '\0');
-  std::size_t filled = 0;
-  for (;;) {  // a pipe says no size, a file may grow
-    if (filled == bytes.size()) bytes.resize(bytes.size() + 65536);
-    const ssize_t got = ::read(descriptor, bytes.data() + filled, bytes.size() - filled);
+  std::size_t room = static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)) + 1, filled = 0;
+  bytes = std::make_unique_for_overwrite<char[]>(room);
+  for (;;) {
+    const ssize_t got = ::read(descriptor, bytes.get() + filled, room - filled);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) throw UserError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
-    if (got == 0) break;
+    if (got == 0) return filled;
     filled += static_cast<std::size_t>(got);
+    if (filled < room) continue;
+    room = 2 * room + 65536;  // a pipe says no size, a file may grow
+    auto larger = std::make_unique_for_overwrite<char[]>(room);
+    std::memcpy(larger.get(), bytes.get(), filled);
+    bytes = std::move(larger);
   }
-  bytes.resize(filled);
-  return bytes;
 }
 
 /// Inflates all members of a gzip file (RFC 1952: members may follow one another).
-std::string inflate_gzip(const std::string& packed, const std::filesystem::path& file) {
+std::string inflate_gzip(std::string_view packed, const std::filesystem::path& file) {
   constexpr int kGzipOnly = 15 + 16;  // largest window; 16: with a gzip head
   z_stream stream{};
   if (inflateInit2(&stream, kGzipOnly) != Z_OK) throw std::bad_alloc();
@@ -91,10 +94,13 @@ std::string inflate_gzip(const std::string& packed, const std::filesystem::path&
 
 }  // namespace
 
-std::string read_text_file(const std::filesystem::path& file) {
-  std::string bytes = read_bytes(file);
-  const bool gzip = bytes.size() > 2 && bytes[0] == '\x1f' && bytes[1] == '\x8b';
-  return gzip ? inflate_gzip(bytes, file) : bytes;
+TextFile::TextFile(const std::filesystem::path& file) {
+  const std::size_t size = read_bytes(file, bytes_);
+  text_ = {bytes_.get(), size};
+  if (size <= 2 || text_[0] != '\x1f' || text_[1] != '\x8b') return;
+  inflated_ = inflate_gzip(text_, file);
+  text_ = inflated_;
+  bytes_.reset();
 }
 
 }  // namespace millscope::studies

@@ -2,12 +2,24 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <string_view>
 
 namespace millscope::studies {
 
-/// The file's bytes; a gzip file (known by its first bytes, whatever its name) is inflated. Throws config::UserError when it cannot be
-/// opened, is no file, or is a damaged or cut gzip file.
-std::string read_text_file(const std::filesystem::path& file);
+/// The bytes of a file and the view of them.
+class TextFile {
+ public:
+  /// A gzip file (known by its first bytes, whatever its name) is inflated. Throws config::UserError when the file cannot be opened, is no
+  /// file, or is a damaged or cut gzip file.
+  explicit TextFile(const std::filesystem::path& file);
+  std::string_view text() const { return text_; }
+
+ private:
+  std::unique_ptr<char[]> bytes_;
+  std::string inflated_;
+  std::string_view text_;
+};
 
 }  // namespace millscope::studies

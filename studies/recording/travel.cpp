@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "studies/recording/noise.hpp"
 #include "studies/recording/select.hpp"
@@ -41,13 +42,16 @@ Extent measure_extent(std::span<const Run> runs) {
 
 double fast_speed(std::span<const Run> runs) {
   constexpr std::size_t kSteps = 5;
+  constexpr double kNoises = 5;  // taken off the way, lest a bead at rest looks fast to a quick camera
   const std::size_t stride = stride_of(runs);
   std::vector<double> speeds;
   for (const Run& run : runs) {
+    const auto components = difference_noise(run, std::numeric_limits<double>::infinity());
+    const double noise = std::max({components[0], components[1], components[2]});
     for (std::size_t i = 0; i + kSteps < run.size(); i += stride) {
       double squared = 0;
       for (const auto& component : run.position) squared += std::pow(component[i + kSteps] - component[i], 2);
-      speeds.push_back(std::sqrt(squared) / (run.time[i + kSteps] - run.time[i]));
+      speeds.push_back(std::max(0.0, std::sqrt(squared) - kNoises * noise) / (run.time[i + kSteps] - run.time[i]));
     }
   }
   return speeds.empty() ? 0 : quantile(speeds, 0.99);

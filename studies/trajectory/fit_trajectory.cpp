@@ -36,7 +36,7 @@ void move_to_axis(Run& run, const std::array<double, 2>& axis) {
 }
 
 void set_noise(const Run& run, const TrajectoryOptions& options, Trajectory& trajectory) {
-  constexpr double kLeast = 1e-9;  // m; a simulated bead has none, a smoothing spline needs some
+  constexpr double kLeast = 1e-7;  // m; a simulated bead has none, a smoothing spline needs some
   NoiseEstimate noise{options.noise, options.noise_correlation};
   const bool given = std::all_of(options.noise.begin(), options.noise.end(), [](double value) { return value > 0; });
   if (!given) {
@@ -62,22 +62,18 @@ class Fitter {
     }
   }
 
-  const std::array<AxisSpline, 3>& fit(const Span& span) {
-    if (kind_ == SplineKind::smoothing) {
-      smooth_adaptively(run_, span, noise_, roughness_, splines_);
-      return splines_;
-    }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      interpolate(run_.time.data() + span.first, run_.position[axis].data() + span.first, span.size(), noise_[axis], splines_[axis]);
-    }
-    return splines_;
+  const Spline& fit(const Span& span) {
+    const Points points = points_of(run_, span);
+    if (kind_ == SplineKind::smoothing) smooth_adaptively(points, noise_, roughness_, spline_);
+    if (kind_ == SplineKind::cubic) interpolate(points, noise_, spline_);
+    return spline_;
   }
 
  private:
   const Run& run_;
   SplineKind kind_;
-  std::array<double, 3> noise_{}, roughness_{};
-  std::array<AxisSpline, 3> splines_;
+  Lanes noise_{}, roughness_{};
+  Spline spline_;
 };
 
 [[noreturn]] void fail_empty(const Run& run, const TrajectoryOptions& options, const Trajectory& trajectory) {
@@ -97,6 +93,11 @@ void check(const TrajectoryOptions& options) {
 }
 
 }  // namespace
+
+Points points_of(const Run& run, const Span& span) {
+  const auto first = [&](const std::vector<double>& values) { return values.data() + span.first; };
+  return {first(run.time), {first(run.position[0]), first(run.position[1]), first(run.position[2])}, span.size()};
+}
 
 std::vector<Span> unbroken(const Run& run, double gap_limit) {
   Travel travel = measure_travel({&run, 1}, gap_limit);

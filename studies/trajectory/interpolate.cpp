@@ -10,7 +10,7 @@
 namespace millscope::studies {
 namespace {
 
-constexpr std::size_t kReach = 12;  // knots on either side; beyond them a point has no weight to speak of (4^-12)
+constexpr std::size_t kReach = 8;  // knots on either side; beyond them a point has no weight to speak of (4^-8 where they are even)
 
 struct Slopes {
   std::vector<double> inverse_step;       // 1/h, per interval
@@ -19,7 +19,7 @@ struct Slopes {
   std::size_t count() const { return diagonal.size(); }
 
   explicit Slopes(const double* time, std::size_t count);
-  std::vector<double> solve(const double* value) const;
+  void solve(const double* value, std::size_t axis, std::vector<Knot>& knots) const;
   double right_side(const double* value, std::size_t i) const;
   /// T⁻¹ at (i, i).
   double inverse(std::size_t i) const { return 1 / (forward[i] + backward[i] - diagonal[i]); }
@@ -41,13 +41,13 @@ double Slopes::right_side(const double* value, std::size_t i) const {
   return 3 * sum;
 }
 
-std::vector<double> Slopes::solve(const double* value) const {
-  std::vector<double> v(count());
+void Slopes::solve(const double* value, std::size_t axis, std::vector<Knot>& knots) const {
+  double v = 0;
   for (std::size_t i = 0; i < count(); ++i) {
-    v[i] = (right_side(value, i) - (i > 0 ? inverse_step[i - 1] * v[i - 1] : 0)) / forward[i];
+    v = (right_side(value, i) - (i > 0 ? inverse_step[i - 1] * v : 0)) / forward[i];
+    knots[i].v[axis] = v;
   }
-  for (std::size_t i = count() - 1; i-- > 0;) v[i] -= inverse_step[i] / forward[i] * v[i + 1];
-  return v;
+  for (std::size_t i = count() - 1; i-- > 0;) knots[i].v[axis] = v = knots[i].v[axis] - inverse_step[i] / forward[i] * v;
 }
 
 /// The weights of the points around knot i in its slope: row i of T⁻¹ C, points first … first + size − 1.
@@ -94,20 +94,28 @@ double product(const Row& a, const Row& b) {
 
 }  // namespace
 
-void interpolate(const double* time, const double* value, std::size_t count, double noise, AxisSpline& spline) {
-  const Slopes slopes(time, count);
-  spline.position.assign(value, value + count);
-  spline.velocity = slopes.solve(value);
-  spline.variance.resize(count);
-  spline.cross.resize(count - 1);
-  spline.roughness.clear();
-  const double squared = noise * noise;
+void interpolate(const Points& points, const Lanes& noise, Spline& spline) {
+  const std::size_t count = points.count;
+  const Slopes slopes(points.time, count);
+  spline.knots.assign(count, {});
+  spline.between.assign(count - 1, {});
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < count; ++i) spline.knots[i].x[axis] = points.position[axis][i];
+    slopes.solve(points.position[axis], axis, spline.knots);
+  }
+  const double sum = noise[0] * noise[0] + noise[1] * noise[1] + noise[2] * noise[2];
   Row here = row_of(slopes, 0);
   for (std::size_t i = 0; i < count; ++i) {
-    spline.variance[i] = {squared, squared * here.at(i), squared * product(here, here)};
+    const double mixed = here.at(i), velocity = product(here, here);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double squared = noise[axis] * noise[axis];
+      spline.knots[i].xx[axis] = squared;
+      spline.knots[i].xv[axis] = squared * mixed;
+      spline.knots[i].vv[axis] = squared * velocity;
+    }
     if (i + 1 == count) break;
     const Row next = row_of(slopes, i + 1);
-    spline.cross[i] = {0, squared * next.at(i), squared * here.at(i + 1), squared * product(here, next)};
+    spline.between[i] = {0, sum * next.at(i), sum * here.at(i + 1), sum * product(here, next), 0};
     here = next;
   }
 }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kWindow = 60, kShortest = 20, kWindows = 30;
 constexpr double kLargestCorrelation = 0.9;
-constexpr double kLeastNoise = 1e-9;  // m
+constexpr double kLeastNoise = 1e-7;  // m
 
 struct Guess {
   double log_noise, correlation, log_roughness;  // the noise as log σ²

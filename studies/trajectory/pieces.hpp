@@ -18,48 +18,55 @@ struct Span {
 /// Every point is in exactly one span.
 std::vector<Span> unbroken(const Run& run, double gap_limit);
 
-/// Covariance of position and velocity at a knot.
-struct StateVariance {
-  double position = 0;  ///< m²
-  double mixed = 0;     ///< m²/s
-  double velocity = 0;  ///< (m/s)²
+/// The points of one span: x, y, z at `count` times.
+struct Points {
+  const double* time;
+  std::array<const double*, 3> position;
+  std::size_t count;
+};
+Points points_of(const Run& run, const Span& span);
+
+/// One number for each coordinate.
+using Lanes = std::array<double, 3>;
+
+/// Position and velocity at a knot, and their variances and covariance: m, m/s, m², m²/s, (m/s)².
+struct Knot {
+  Lanes x{}, v{}, xx{}, xv{}, vv{};
 };
 
-/// Covariance of a knot's position and velocity with those of the next knot.
-struct CrossVariance {
-  double position_position = 0, position_velocity = 0, velocity_position = 0, velocity_velocity = 0;
+/// Between a knot and the next, summed over the coordinates: covariances of their positions and velocities ("xv": position here, velocity
+/// there), and the spectral density of the random acceleration, m²/s³.
+struct Between {
+  double xx = 0, xv = 0, vx = 0, vv = 0, roughness = 0;
 };
 
-/// A cubic spline of one coordinate in Hermite form: position and velocity at each knot, and what is uncertain of them.
-struct AxisSpline {
-  std::vector<double> position, velocity;
-  std::vector<StateVariance> variance;  ///< per knot
-  std::vector<CrossVariance> cross;     ///< per interval, between its two knots
-  std::vector<double> roughness;        ///< per interval: spectral density of the random acceleration, m²/s³; 0: none
+/// Cubic splines of the three coordinates in Hermite form.
+struct Spline {
+  std::vector<Knot> knots;
+  std::vector<Between> between;  ///< one less
 };
 
-/// The natural cubic spline through the points; variances are what noise of standard deviation `noise` (m) does to it.
-void interpolate(const double* time, const double* value, std::size_t count, double noise, AxisSpline& spline);
+/// Natural cubic splines through the points; variances are what noise of standard deviation `noise` (m) does to them.
+void interpolate(const Points& points, const Lanes& noise, Spline& spline);
 
 /// How rough an interval turned out: the sum of squares that the data put there, and what its roughness lets expect.
 struct Evidence {
   double found = 0, expected = 0;
 };
 
-/// The cubic smoothing spline: the mean of an integrated random walk of velocity, `roughness` (m²/s³) per interval, seen with white noise.
-/// (Wahba 1978: the smoothing spline with penalty noise²/roughness.) Variances are those of the posterior. One point more than intervals.
-void smooth(const double* time, const double* value, double noise, const std::vector<double>& roughness, AxisSpline& spline,
+/// Cubic smoothing splines: the mean of an integrated random walk of velocity seen with white noise, of strength `roughness` (m²/s³) times
+/// the factor of the interval. (Wahba 1978: the smoothing spline with penalty noise²/roughness.) Variances are those of the posterior.
+void smooth(const Points& points, const Lanes& noise, const Lanes& roughness, const std::vector<double>& factor, Spline& spline,
             std::vector<Evidence>& evidence);
 
-/// −2 log likelihood of one stretch of points under a roughness that is the same everywhere, without constants.
-double misfit(const double* time, const double* value, std::size_t count, double noise, double roughness);
+/// −2 log likelihood of one coordinate of a span under a roughness that is the same everywhere, without constants.
+double misfit(const Points& points, std::size_t axis, double noise, double roughness);
 
-/// The roughness that makes the data most likely given the noise, from at most some ten thousand points of the run.
+/// The roughness that makes a coordinate most likely given the noise, from at most some ten thousand points of the run.
 double likely_roughness(const Run& run, std::size_t axis, const std::vector<Span>& spans, double noise);
 
-/// Smoothing splines of the three coordinates of a span whose strength follows the motion: at an impact the roughness rises in all three
-/// coordinates by one factor, in calm motion it falls.
-void smooth_adaptively(const Run& run, const Span& span, const std::array<double, 3>& noise, const std::array<double, 3>& roughness,
-                       std::array<AxisSpline, 3>& splines);
+/// Smoothing splines whose strength follows the motion: at an impact the roughness rises in all three coordinates by one factor, in calm
+/// motion it falls.
+void smooth_adaptively(const Points& points, const Lanes& noise, const Lanes& roughness, Spline& spline);
 
 }  // namespace millscope::studies

@@ -11,30 +11,25 @@ using Weights = std::array<double, 4>;  // of position and velocity at the knot 
 /// The cubic of one coordinate between two knots, in powers of the time since the first.
 struct Cubic {
   double c0, c1, c2, c3;
-  Cubic(const AxisSpline& s, std::size_t i, double h) : c0(s.position[i]), c1(s.velocity[i]) {
-    const double mean = (s.position[i + 1] - s.position[i]) / h, v0 = s.velocity[i], v1 = s.velocity[i + 1];
-    c2 = (3 * mean - 2 * v0 - v1) / h;
-    c3 = (v0 + v1 - 2 * mean) / (h * h);
+  Cubic(const Knot& before, const Knot& behind, std::size_t axis, double h) : c0(before.x[axis]), c1(before.v[axis]) {
+    const double mean = (behind.x[axis] - c0) / h, v1 = behind.v[axis];
+    c2 = (3 * mean - 2 * c1 - v1) / h;
+    c3 = (c1 + v1 - 2 * mean) / (h * h);
   }
 };
 
+double sum(const Lanes& lanes) { return lanes[0] + lanes[1] + lanes[2]; }
+
 /// Covariance of the states at both ends of an interval, summed over the coordinates.
 struct Ends {
-  std::array<std::array<double, 4>, 4> c{};
-  double roughness = 0;
-
-  void add(const AxisSpline& s, std::size_t i) {
-    const StateVariance &p = s.variance[i], &r = s.variance[i + 1];
-    const CrossVariance& m = s.cross[i];
-    c[0][0] += p.position, c[0][1] += p.mixed, c[1][1] += p.velocity;
-    c[2][2] += r.position, c[2][3] += r.mixed, c[3][3] += r.velocity;
-    c[0][2] += m.position_position, c[0][3] += m.position_velocity, c[1][2] += m.velocity_position, c[1][3] += m.velocity_velocity;
-    if (!s.roughness.empty()) roughness += s.roughness[i];
-  }
+  double xx0, xv0, vv0, xx1, xv1, vv1;
+  Between between;
+  Ends(const Knot& p, const Knot& r, const Between& m)
+      : xx0(sum(p.xx)), xv0(sum(p.xv)), vv0(sum(p.vv)), xx1(sum(r.xx)), xv1(sum(r.xv)), vv1(sum(r.vv)), between(m) {}
   double of(const Weights& w) const {
-    const double diagonal = c[0][0] * w[0] * w[0] + c[1][1] * w[1] * w[1] + c[2][2] * w[2] * w[2] + c[3][3] * w[3] * w[3];
+    const double diagonal = xx0 * w[0] * w[0] + vv0 * w[1] * w[1] + xx1 * w[2] * w[2] + vv1 * w[3] * w[3];
     const double beside =
-        w[0] * (c[0][1] * w[1] + c[0][2] * w[2] + c[0][3] * w[3]) + w[1] * (c[1][2] * w[2] + c[1][3] * w[3]) + c[2][3] * w[2] * w[3];
+        w[0] * (xv0 * w[1] + between.xx * w[2] + between.xv * w[3]) + w[1] * (between.vx * w[2] + between.vv * w[3]) + xv1 * w[2] * w[3];
     return diagonal + 2 * beside;
   }
 };
@@ -44,10 +39,11 @@ struct Interval {
   std::array<Cubic, 3> cubic;
   Ends ends;
 
-  Interval(const double* time, const std::array<AxisSpline, 3>& s, std::size_t i)
-      : start(time[i]), h(time[i + 1] - time[i]), cubic{Cubic(s[0], i, h), Cubic(s[1], i, h), Cubic(s[2], i, h)} {
-    for (const AxisSpline& spline : s) ends.add(spline, i);
-  }
+  Interval(const double* time, const Spline& s, std::size_t i)
+      : start(time[i]),
+        h(time[i + 1] - time[i]),
+        cubic{Cubic(s.knots[i], s.knots[i + 1], 0, h), Cubic(s.knots[i], s.knots[i + 1], 1, h), Cubic(s.knots[i], s.knots[i + 1], 2, h)},
+        ends(s.knots[i], s.knots[i + 1], s.between[i]) {}
 };
 
 // With s = u/h, r = 1 − s: Hermite's weights, those of the derivatives, and what the random motion does between two known ends:
@@ -63,7 +59,7 @@ void fill(const Interval& in, double t, std::size_t k, Piece& piece) {
   const Weights value{(1 + 2 * s) * r * r, u * r * r, s * s * (3 - 2 * s), -s * u * r};
   const Weights slope{-6 * s * r / h, r * (1 - 3 * s), 6 * s * r / h, s * (3 * s - 2)};
   const Weights bend{(12 * s - 6) / (h * h), (6 * s - 4) / h, (6 - 12 * s) / (h * h), (6 * s - 2) / h};
-  const double q = in.ends.roughness, uw = u * w / h;
+  const double q = in.ends.between.roughness, uw = u * w / h;
   piece.position_variance[k] = (in.ends.of(value) + q * uw * uw * uw / 3) / 3;
   piece.velocity_variance[k] = (in.ends.of(slope) + q * uw * (u * u - u * w + w * w) / (h * h)) / 3;
   piece.acceleration_variance[k] = in.ends.of(bend) / 3;
@@ -88,13 +84,13 @@ Piece empty_piece(double first, double last, double step) {
   return piece;
 }
 
-void sample(const double* time, const std::array<AxisSpline, 3>& splines, Piece& piece) {
-  const std::size_t intervals = splines[0].cross.size();
+void sample(const double* time, const Spline& spline, Piece& piece) {
+  const std::size_t intervals = spline.between.size();
   const auto at = [&](std::size_t k) { return piece.start + static_cast<double>(k) * piece.step; };
   for (std::size_t i = 0, k = 0; k < piece.size(); ++i) {
     const bool last = i + 1 == intervals;
     if (!last && at(k) >= time[i + 1]) continue;
-    const Interval interval(time, splines, i);
+    const Interval interval(time, spline, i);
     for (; k < piece.size() && (last || at(k) < time[i + 1]); ++k) fill(interval, at(k), k, piece);
   }
 }

@@ -1,8 +1,6 @@
 // Splines at even times. For the files of this room.
 #pragma once
 
-#include <array>
-
 #include "studies/trajectory/pieces.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
@@ -13,6 +11,6 @@ namespace millscope::studies {
 Piece empty_piece(double first, double last, double step);
 
 /// Fills positions, velocities, accelerations and their variances. `time`: of the knots.
-void sample(const double* time, const std::array<AxisSpline, 3>& splines, Piece& piece);
+void sample(const double* time, const Spline& spline, Piece& piece);
 
 }  // namespace millscope::studies

@@ -1,6 +1,7 @@
 // The smoothing spline as the mean of a random motion: dv = √q dW, dx = v dt, seen with white noise. Over a step h the state (x, v) goes by
 //   F = [1 h; 0 1],   Q = q M,   M = [h³/3 h²/2; h²/2 h]
-// A filter forward and a smoother backward (Rauch, Tung, Striebel 1965) give mean and covariance at the knots in O(n).
+// A filter forward and a smoother backward (Rauch, Tung, Striebel 1965) give mean and covariance at the knots in O(n). The three
+// coordinates go side by side: their chains of divisions do not wait for one another.
 #include <cmath>
 
 #include "studies/trajectory/pieces.hpp"
@@ -11,104 +12,98 @@ namespace {
 constexpr double kFastest = 10;  // m/s, standard deviation of the velocity before anything is seen: wide for any mill
 
 struct State {
-  double x, v;
-  StateVariance p;
+  double x, v, xx, xv, vv;
 };
+
+State begin(double y, double variance) { return {y, 0, variance, 0, kFastest * kFastest}; }
 
 State predict(const State& s, double h, double q) {
-  State next{s.x + h * s.v, s.v, s.p};
-  next.p.position += h * (2 * s.p.mixed + h * s.p.velocity) + q * h * h * h / 3;
-  next.p.mixed += h * s.p.velocity + q * h * h / 2;
-  next.p.velocity += q * h;
-  return next;
+  return {s.x + h * s.v, s.v, s.xx + h * (2 * s.xv + h * s.vv) + q * h * h * h / 3, s.xv + h * s.vv + q * h * h / 2, s.vv + q * h};
 }
 
-State begin(double y, double noise) { return {y, 0, {noise * noise, 0, kFastest * kFastest}}; }
-
-/// Takes in the point y; `square` = innovation²/S and `spread` = S feed the likelihood.
-State update(const State& s, double y, double noise, double& square, double& spread) {
-  const double total = s.p.position + noise * noise, innovation = y - s.x;
-  const double gain_x = s.p.position / total, gain_v = s.p.mixed / total;
-  square = innovation * innovation / total;
-  spread = total;
-  return {s.x + gain_x * innovation,
-          s.v + gain_v * innovation,
-          {s.p.position * (1 - gain_x), s.p.mixed * (1 - gain_x), s.p.velocity - gain_v * s.p.mixed}};
+/// Takes in a point that lies `innovation` from the prediction, with variance `total`.
+State update(const State& s, double innovation, double total) {
+  const double weight = 1 / total, gain_x = s.xx * weight, gain_v = s.xv * weight;
+  return {s.x + gain_x * innovation, s.v + gain_v * innovation, s.xx * (1 - gain_x), s.xv * (1 - gain_x), s.vv - gain_v * s.xv};
 }
 
-/// A symmetric matrix of two rows.
-struct Matrix {
-  double a, b, c;  ///< [a b; b c]
-};
+State lane(const Knot& knot, std::size_t k) { return {knot.x[k], knot.v[k], knot.xx[k], knot.xv[k], knot.vv[k]}; }
 
-Matrix sandwich(const Matrix& outer, const Matrix& inner) {  // outer · inner · outer
-  const double r00 = outer.a * inner.a + outer.b * inner.b, r01 = outer.a * inner.b + outer.b * inner.c;
-  const double r10 = outer.b * inner.a + outer.c * inner.b, r11 = outer.b * inner.b + outer.c * inner.c;
-  return {r00 * outer.a + r01 * outer.b, r00 * outer.b + r01 * outer.c, r10 * outer.b + r11 * outer.c};
+void set_lane(Knot& knot, std::size_t k, const State& s) {
+  knot.x[k] = s.x;
+  knot.v[k] = s.v;
+  knot.xx[k] = s.xx;
+  knot.xv[k] = s.xv;
+  knot.vv[k] = s.vv;
 }
 
-/// One step backward from knot i + 1, which is smoothed, to knot i. With λ = (P⁻)⁻¹(x − x⁻) and Λ = (P⁻)⁻¹(P⁻ − P)(P⁻)⁻¹ at knot i + 1 the
-/// likelihood's slope with respect to q is ½[λᵀMλ − tr(MΛ)].
-void step_back(double h, double q, std::size_t i, AxisSpline& spline, Evidence& evidence) {
-  const State here{spline.position[i], spline.velocity[i], spline.variance[i]};
+/// One step backward of one coordinate, from the smoothed state `after` to the filtered `here`. With λ = (P⁻)⁻¹(x − x⁻) and
+/// Λ = (P⁻)⁻¹(P⁻ − P)(P⁻)⁻¹ behind the step the likelihood's slope with respect to q is ½[λᵀMλ − tr(MΛ)].
+State step_back(const State& here, const State& after, double h, double q, Between& between, Evidence& evidence) {
   const State ahead = predict(here, h, q);
-  const double inverse = 1 / (ahead.p.position * ahead.p.velocity - ahead.p.mixed * ahead.p.mixed);
-  const Matrix precision{ahead.p.velocity * inverse, -ahead.p.mixed * inverse, ahead.p.position * inverse};
-  const StateVariance& after = spline.variance[i + 1];
-  const Matrix gone{ahead.p.position - after.position, ahead.p.mixed - after.mixed, ahead.p.velocity - after.velocity};
-  const double dx = spline.position[i + 1] - ahead.x, dv = spline.velocity[i + 1] - ahead.v;
-  const double force_x = precision.a * dx + precision.b * dv, force_v = precision.b * dx + precision.c * dv;  // λ
-  const Matrix taken = sandwich(precision, gone);                                                             // Λ
-  const double cube = h * h * h / 3, square = h * h / 2;
-  evidence.found = q * (cube * force_x * force_x + 2 * square * force_x * force_v + h * force_v * force_v);
-  evidence.expected = q * (cube * taken.a + 2 * square * taken.b + h * taken.c);
-  // Gain G = P Fᵀ (P⁻)⁻¹; P Fᵀ = [a b; c d].
-  const double a = here.p.position + h * here.p.mixed, b = here.p.mixed, c = here.p.mixed + h * here.p.velocity, d = here.p.velocity;
-  spline.position[i] = here.x + a * force_x + b * force_v;
-  spline.velocity[i] = here.v + c * force_x + d * force_v;
-  spline.variance[i] = {here.p.position - (a * a * taken.a + 2 * a * b * taken.b + b * b * taken.c),
-                        here.p.mixed - (a * c * taken.a + (a * d + b * c) * taken.b + b * d * taken.c),
-                        here.p.velocity - (c * c * taken.a + 2 * c * d * taken.b + d * d * taken.c)};
-  const double g00 = a * precision.a + b * precision.b, g01 = a * precision.b + b * precision.c;
-  const double g10 = c * precision.a + d * precision.b, g11 = c * precision.b + d * precision.c;
-  spline.cross[i] = {g00 * after.position + g01 * after.mixed, g00 * after.mixed + g01 * after.velocity,
-                     g10 * after.position + g11 * after.mixed, g10 * after.mixed + g11 * after.velocity};
+  const double inverse = 1 / (ahead.xx * ahead.vv - ahead.xv * ahead.xv);
+  const double i00 = ahead.vv * inverse, i01 = -ahead.xv * inverse, i11 = ahead.xx * inverse;  // (P⁻)⁻¹
+  const double dx = after.x - ahead.x, dv = after.v - ahead.v;
+  const double lx = i00 * dx + i01 * dv, lv = i01 * dx + i11 * dv;  // λ
+  const double g00 = ahead.xx - after.xx, g01 = ahead.xv - after.xv, g11 = ahead.vv - after.vv;
+  const double r00 = i00 * g00 + i01 * g01, r01 = i00 * g01 + i01 * g11, r10 = i01 * g00 + i11 * g01, r11 = i01 * g01 + i11 * g11;
+  const double l00 = r00 * i00 + r01 * i01, l01 = r00 * i01 + r01 * i11, l11 = r10 * i01 + r11 * i11;  // Λ
+  const double m00 = h * h * h / 3, m01 = h * h / 2;
+  evidence.found += q * (m00 * lx * lx + 2 * m01 * lx * lv + h * lv * lv);
+  evidence.expected += q * (m00 * l00 + 2 * m01 * l01 + h * l11);
+  const double a = here.xx + h * here.xv, b = here.xv, c = here.xv + h * here.vv, d = here.vv;  // P Fᵀ
+  const double gain00 = a * i00 + b * i01, gain01 = a * i01 + b * i11, gain10 = c * i00 + d * i01, gain11 = c * i01 + d * i11;
+  between.xx += gain00 * after.xx + gain01 * after.xv;
+  between.xv += gain00 * after.xv + gain01 * after.vv;
+  between.vx += gain10 * after.xx + gain11 * after.xv;
+  between.vv += gain10 * after.xv + gain11 * after.vv;
+  between.roughness += q;
+  return {here.x + a * lx + b * lv, here.v + c * lx + d * lv, here.xx - (a * a * l00 + 2 * a * b * l01 + b * b * l11),
+          here.xv - (a * c * l00 + (a * d + b * c) * l01 + b * d * l11), here.vv - (c * c * l00 + 2 * c * d * l01 + d * d * l11)};
 }
 
 }  // namespace
 
-double misfit(const double* time, const double* value, std::size_t count, double noise, double roughness) {
-  State s = begin(value[0], noise);
+double misfit(const Points& points, std::size_t axis, double noise, double roughness) {
+  const double variance = noise * noise;
+  const double* y = points.position[axis];
+  State s = begin(y[0], variance);
   double sum = 0, product = 1;
-  for (std::size_t i = 1; i < count; ++i) {
-    double square, spread;
-    s = update(predict(s, time[i] - time[i - 1], roughness), value[i], noise, square, spread);
+  for (std::size_t i = 1; i < points.count; ++i) {
+    s = predict(s, points.time[i] - points.time[i - 1], roughness);
+    const double innovation = y[i] - s.x, total = s.xx + variance;
+    s = update(s, innovation, total);
     if (i == 1) continue;  // says nothing: the velocity was unknown
-    sum += square;
-    product *= spread / (noise * noise);
-    if (product > 1e200) sum += std::log(product), product = 1;  // a logarithm for many points
+    sum += innovation * innovation / total;
+    product *= total / variance;
+    if (product > 1e200) sum += std::log(product), product = 1;  // one logarithm for many points
   }
-  return sum + std::log(product) + static_cast<double>(count - 2) * 2 * std::log(noise);
+  return sum + std::log(product) + static_cast<double>(points.count - 2) * 2 * std::log(noise);
 }
 
-void smooth(const double* time, const double* value, double noise, const std::vector<double>& roughness, AxisSpline& spline,
+void smooth(const Points& points, const Lanes& noise, const Lanes& roughness, const std::vector<double>& factor, Spline& spline,
             std::vector<Evidence>& evidence) {
-  const std::size_t count = roughness.size() + 1;
-  spline.position.resize(count);
-  spline.velocity.resize(count);
-  spline.variance.resize(count);
-  spline.cross.resize(count - 1);
-  spline.roughness = roughness;
-  evidence.resize(count - 1);
-  State s = begin(value[0], noise);
-  for (std::size_t i = 0; i < count; ++i) {
-    double square, spread;
-    if (i > 0) s = update(predict(s, time[i] - time[i - 1], roughness[i - 1]), value[i], noise, square, spread);
-    spline.position[i] = s.x;
-    spline.velocity[i] = s.v;
-    spline.variance[i] = s.p;
+  const std::size_t count = points.count;
+  spline.knots.resize(count);
+  spline.between.assign(count - 1, {});
+  evidence.assign(count - 1, {});
+  std::array<State, 3> state;
+  for (std::size_t k = 0; k < 3; ++k) set_lane(spline.knots[0], k, state[k] = begin(points.position[k][0], noise[k] * noise[k]));
+  for (std::size_t i = 1; i < count; ++i) {
+    const double h = points.time[i] - points.time[i - 1], f = factor[i - 1];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const State ahead = predict(state[k], h, f * roughness[k]);
+      state[k] = update(ahead, points.position[k][i] - ahead.x, ahead.xx + noise[k] * noise[k]);
+      set_lane(spline.knots[i], k, state[k]);
+    }
   }
-  for (std::size_t i = count - 1; i-- > 0;) step_back(time[i + 1] - time[i], roughness[i], i, spline, evidence[i]);
+  for (std::size_t i = count - 1; i-- > 0;) {
+    const double h = points.time[i + 1] - points.time[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      state[k] = step_back(lane(spline.knots[i], k), state[k], h, factor[i] * roughness[k], spline.between[i], evidence[i]);
+      set_lane(spline.knots[i], k, state[k]);
+    }
+  }
 }
 
 }  // namespace millscope::studies

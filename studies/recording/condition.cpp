@@ -1,0 +1,99 @@
+// `condition` of recording.yaml: what the user says of the mill.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "kernel/config/case.hpp"
+#include "kernel/config/units.hpp"
+#include "studies/recording/description.hpp"
+
+namespace millscope::studies {
+namespace {
+
+using config::Node;
+using config::positive;
+using config::read_number;
+
+std::optional<double> number(const Node& section, std::string_view key, std::string_view unit, const config::Range& range) {
+  const auto node = section.find(key);
+  return node ? std::optional(read_number(*node, unit, range)) : std::nullopt;
+}
+
+/// The diameter of the bare shell that a case file gives in its section `mill`.
+std::optional<double> diameter_of_case(const std::string& file) {
+  const Node root = config::load_document(file);
+  const auto mill = root.find("mill");
+  return mill ? number(*mill, "diameter", "m", positive()) : std::nullopt;
+}
+
+void read_geometry(const Node& section, Condition& condition) {
+  const auto node = section.find("geometry");
+  if (!node) return;
+  condition.geometry = config::resolve_file(*node);
+  const auto diameter = diameter_of_case(condition.geometry.string());
+  if (!diameter) return;
+  if (condition.mill_diameter && std::fabs(*diameter - *condition.mill_diameter) > 1e-9 * *diameter) {
+    node->fail(fmt::format("has a mill of {} m in '{}', but 'mill_diameter' says {} m; correct one of them", *diameter, node->text(),
+                           *condition.mill_diameter));
+  }
+  condition.mill_diameter = diameter;
+}
+
+/// `speed: 75 %critical`, `36 rpm`; with `direction`, or with a sign, Ω is known, else only its magnitude.
+void read_speed(const Node& section, Condition& condition) {
+  const auto direction = section.find("direction");
+  const auto node = section.find("speed");
+  if (!node) {
+    if (direction) direction->fail("is of no use without 'speed'; add it, e.g. speed: 36 rpm");
+    return;
+  }
+  const config::Quantity quantity = config::read_quantity(*node);
+  double speed = 0;
+  if (quantity.has_unit && quantity.unit.dimension == config::parse_unit("%critical").dimension) {
+    const double fraction = quantity.unit.to_si(quantity.number);
+    condition.critical_fraction = std::fabs(fraction);
+    const bool known = condition.mill_diameter && condition.bead_diameter;
+    speed = fraction * (known ? config::critical_speed(*condition.mill_diameter, *condition.bead_diameter) : 1);
+    if (known) condition.speed = std::fabs(speed);
+  } else {
+    speed = read_number(*node, "rad/s");
+    condition.speed = std::fabs(speed);
+  }
+  if (speed == 0) node->fail("is 0; a mill at rest needs no 'speed'");
+  if (direction && speed < 0) node->fail("has a sign beside 'direction'; leave one of them out");
+  const bool clockwise = direction && config::read_choice(*direction, "counter_clockwise|clockwise") == "clockwise";
+  if ((direction || speed < 0) && condition.speed) condition.angular_velocity = (clockwise || speed < 0 ? -1 : 1) * *condition.speed;
+}
+
+}  // namespace
+
+Condition read_condition(const Node& section) {
+  section.expect({"speed", "direction", "filling", "porosity", "bead_diameter", "bead_density", "tracer", "mill_diameter", "mill_length",
+                  "power", "geometry"});
+  Condition condition;
+  condition.filling = number(section, "filling", "1", config::between(0, 1, "it is a part of the bare shell's volume"));
+  condition.porosity = number(section, "porosity", "1", config::between(0, 1, "it is a part of the charge's volume"));
+  condition.bead_diameter = number(section, "bead_diameter", "m", positive());
+  condition.bead_density = number(section, "bead_density", "kg/m^3", positive());
+  if (const auto tracer = section.find("tracer")) {
+    tracer->expect({"diameter", "density"});
+    condition.tracer.diameter = number(*tracer, "diameter", "m", positive());
+    condition.tracer.density = number(*tracer, "density", "kg/m^3", positive());
+  }
+  condition.mill_diameter = number(section, "mill_diameter", "m", positive());
+  condition.mill_length = number(section, "mill_length", "m", positive());
+  if (const auto power = section.find("power")) {
+    power->expect({"value", "sem"});
+    condition.power = MeasuredPower{read_number(power->at("value", "the power given to the charge, e.g. 7.34 W"), "W"),
+                                    read_number(power->at("sem", "its standard error, e.g. 0.01 W"), "W", config::not_negative())};
+  }
+  read_geometry(section, condition);
+  if (condition.mill_diameter && condition.bead_diameter && *condition.bead_diameter >= *condition.mill_diameter) {
+    section.at("bead_diameter")
+        .fail(fmt::format("is {} m, not smaller than the mill of {} m", *condition.bead_diameter, *condition.mill_diameter));
+  }
+  read_speed(section, condition);
+  return condition;
+}
+
+}  // namespace millscope::studies

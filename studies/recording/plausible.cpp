@@ -1,0 +1,105 @@
+#include "studies/recording/plausible.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "studies/recording/clean.hpp"
+
+namespace millscope::studies {
+namespace {
+
+constexpr double kLargestMill = 20;       // m, across; the largest mills have 13 m
+constexpr double kSmallestMill = 0.005;   // m
+constexpr double kFalls = 3;              // times √(2 g D)
+constexpr double kLongestInterval = 0.5;  // s; a point now and then shows no motion
+
+/// What is measured, in the units as they were taken.
+struct Measured {
+  double across = 0, along = 0;  // m
+  double speed = 0;              // m/s, 99th percentile
+  double noise = 0;              // m
+  double interval = 0;           // s, median
+  bool moves() const { return across > 10 * noise; }
+};
+
+struct Scale {
+  const char* unit;
+  double si;
+};
+constexpr std::array<Scale, 4> kLengths{{{"mm", 1e-3}, {"m", 1}, {"cm", 1e-2}, {"um", 1e-6}}};
+constexpr std::array<Scale, 4> kTimes{{{"ms", 1e-3}, {"s", 1}, {"us", 1e-6}, {"min", 60}}};
+
+bool fits(double across, double speed, double interval, const Condition& condition) {
+  if (interval > kLongestInterval) return false;
+  if (across > kLargestMill || across < kSmallestMill) return false;
+  if (condition.mill_diameter && (across > 1.5 * *condition.mill_diameter || across < *condition.mill_diameter / 20)) return false;
+  const double fall = fall_speed(condition.mill_diameter.value_or(across));
+  return speed < kFalls * fall && speed > 2e-3 * fall;
+}
+
+template <std::size_t n>
+double scale_of(const std::array<Scale, n>& scales, const std::string& unit) {
+  const auto found = std::find_if(scales.begin(), scales.end(), [&](const Scale& scale) { return unit == scale.unit; });
+  return found == scales.end() ? 0 : found->si;
+}
+
+/// The change of one unit, else of both, that makes sense of the numbers.
+std::string hint(const Measured& m, const Condition& condition, const std::string& time_unit, const std::string& length_unit) {
+  const double length = scale_of(kLengths, length_unit), time = scale_of(kTimes, time_unit);
+  if (length == 0 || time == 0) return "check the units";
+  const auto works = [&](const Scale& l, const Scale& t) {
+    return fits(m.across * l.si / length, m.speed * (l.si / length) / (t.si / time), m.interval * t.si / time, condition);
+  };
+  const Scale now_length{length_unit.c_str(), length}, now_time{time_unit.c_str(), time};
+  const auto say_length = [&](const Scale& l) { return fmt::format("x, y, z are probably in {}, not {}", l.unit, length_unit); };
+  const auto say_time = [&](const Scale& t) { return fmt::format("t is probably in {}, not {}", t.unit, time_unit); };
+  for (const Scale& l : kLengths) {
+    if (works(l, now_time))
+      return fmt::format("{}: say 'columns: {{x: {}, y: {}, z: {}, …}}' in a recording.yaml", say_length(l), l.unit, l.unit, l.unit);
+  }
+  for (const Scale& t : kTimes) {
+    if (works(now_length, t)) return fmt::format("{}: say 'columns: {{t: {}, …}}' in a recording.yaml", say_time(t), t.unit);
+  }
+  for (const Scale& l : kLengths) {
+    for (const Scale& t : kTimes) {
+      if (works(l, t)) return fmt::format("{}, and {}: say so under 'columns' in a recording.yaml", say_length(l), say_time(t));
+    }
+  }
+  return "check the columns and the units; no usual unit makes sense of them";
+}
+
+Measured measure(const std::vector<Run>& runs, double gap_limit) {
+  const Extent extent = measure_extent(runs);
+  return {extent.across(), extent.width[2], fast_speed(runs), measure_travel(runs, gap_limit).noise, median_interval(runs)};
+}
+
+}  // namespace
+
+void check_units(const std::vector<Run>& runs, const Condition& condition, const config::Location& where, const std::string& time_unit,
+                 const std::string& length_unit) {
+  const Measured m = measure(runs, default_gap_limit(runs));
+  const auto refuse = [&](const std::string& what) {
+    throw config::UserError(where, fmt::format("{}; {}", what, hint(m, condition, time_unit, length_unit)));
+  };
+  if (m.across > kLargestMill || m.along > 2 * kLargestMill) {
+    refuse(fmt::format("the points span {:.4g} m across and {:.4g} m along z, and no mill is that large", m.across, m.along));
+  }
+  if (m.moves() && m.across < kSmallestMill) {
+    refuse(fmt::format("the points move within {:.3g} m across, and no mill is that small", m.across));
+  }
+  if (condition.mill_diameter && (m.across > 1.5 * *condition.mill_diameter || (m.moves() && m.across < *condition.mill_diameter / 100))) {
+    refuse(fmt::format("the points span {:.4g} m across, but the mill's diameter is {:.4g} m", m.across, *condition.mill_diameter));
+  }
+  if (m.interval > kLongestInterval) {
+    refuse(fmt::format("the points lie {:.3g} s apart (median), and no motion in a mill can be followed so", m.interval));
+  }
+  const double diameter = std::max(m.across, condition.mill_diameter.value_or(0)), limit = kFalls * fall_speed(diameter);
+  if (m.speed > limit) {
+    refuse(fmt::format("one per cent of the points is faster than {:.4g} m/s, but a fall across {:.3g} m gives no more than {:.3g} m/s",
+                       m.speed, diameter, limit / kFalls));
+  }
+}
+
+}  // namespace millscope::studies

@@ -1,0 +1,13 @@
+// Units that cannot be meant. For the files of this room.
+#pragma once
+
+#include "studies/recording/description.hpp"
+
+namespace millscope::studies {
+
+/// Throws config::UserError at `where` when the points span more than any mill, or more or less than the mill that the condition states, or
+/// when their 99th-percentile speed is above 3 √(2 g D); says which unit is probably meant. `time_unit`, `length_unit`: as written.
+void check_units(const std::vector<Run>& runs, const Condition& condition, const config::Location& where, const std::string& time_unit,
+                 const std::string& length_unit);
+
+}  // namespace millscope::studies

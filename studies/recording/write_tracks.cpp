@@ -1,0 +1,31 @@
+#include <cmath>
+
+#include "kernel/output/file.hpp"
+#include "kernel/output/tracks.hpp"
+#include "studies/recording/recording.hpp"
+
+namespace millscope::studies {
+
+void write_tracks(const Recording& recording, const std::filesystem::path& file) {
+  std::vector<output::TrackInfo> tracks;
+  for (const Run& run : recording.runs) {
+    const TracerBead& tracer = recording.condition.tracer;
+    tracks.push_back(
+        {run.name, 0, tracer.diameter.value_or(0), tracer.density.value_or(0), std::filesystem::path(run.source).filename().string()});
+  }
+  const std::filesystem::path aside = output::temporary_name(file);
+  std::error_code ignored;
+  std::filesystem::remove(aside, ignored);  // of a run that was killed; where this fails, creating says why
+  auto writer = output::TrackWriter::create(aside, tracks);
+  for (std::size_t k = 0; k < recording.runs.size(); ++k) {
+    const Run& run = recording.runs[k];
+    for (std::size_t i = 0; i < run.size(); ++i) {
+      const std::array<double, 3> position{run.position[0][i], run.position[1][i], run.position[2][i]};
+      writer.append_one(k, run.time[i], position);
+    }
+  }
+  writer.close();
+  output::publish(aside, file);
+}
+
+}  // namespace millscope::studies
