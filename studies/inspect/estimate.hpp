@@ -1,0 +1,29 @@
+// A figure read from a recording: with its interval, or with the reason why the recording cannot say.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace millscope::studies {
+
+/// A value and its 90 % interval, in the unit that the holder states.
+struct Estimate {
+  double value = 0;
+  double low = 0;
+  double high = 0;
+};
+
+/// How a bound is to be read.
+enum class Bound {
+  both,      ///< the interval holds on both sides
+  at_least,  ///< the true value may lie anywhere above `low`; `high` is infinite
+};
+
+/// Either an estimate with what it rests on, or none and why not.
+struct Finding {
+  std::optional<Estimate> estimate;
+  std::string note;
+  Bound bound = Bound::both;
+};
+
+}  // namespace millscope::studies

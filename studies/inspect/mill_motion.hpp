@@ -1,0 +1,35 @@
+// Where the mill's axis stands, how fast it turns and on which circle a bead rides along its shell, from the tracer alone.
+//
+// Beads against the shell, between the lifters, turn with it: v = Ω ẑ × (x − c), |x − c| = R. First the rigid rotation is sought that the
+// outermost moving beads share; then the circle that nearly all points lie within and many lie on; then each ride along that circle is cut
+// at its ends, where the bead is not yet or no longer at the shell, and all rides share a centre and a radius.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "studies/inspect/estimate.hpp"
+#include "studies/recording/recording.hpp"
+
+namespace millscope::studies {
+
+struct MillMotion {
+  int sense = 0;                ///< of turning, seen with z towards the viewer: +1 counter-clockwise, −1 clockwise, 0 not recognised
+  std::array<Finding, 2> axis;  ///< x and y in the frame of the file, m
+  Finding speed;                ///< |Ω| of the shell, rad/s
+  Finding path_radius;          ///< of the circle on which the tracer's centre rides along the shell, m: the shell's less a bead's radius
+  std::size_t rides = 0;        ///< separate rides along the shell
+  double ride_time = 0;         ///< s of them, ends cut off
+  double radial_scatter = 0;    ///< standard deviation of the points of rides about the circle, m: the noise with its slow part
+
+  /// Ω about z with its sign, rad/s; 0 where the speed is not known.
+  double angular_velocity() const { return speed.estimate ? sense * speed.estimate->value : 0; }
+
+  /// Best centre; only where `sense` is not 0.
+  std::array<double, 2> centre() const { return {axis[0].estimate->value, axis[1].estimate->value}; }
+};
+
+/// Needs motion across x and y, with the axis along z. Never throws; where the data cannot say, the findings give the reason.
+MillMotion estimate_motion(const Recording& recording);
+
+}  // namespace millscope::studies

@@ -1,0 +1,130 @@
+#include "studies/inspect/rides.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace millscope::studies {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+// Angles about the circle's centre in the turning sense, unwrapped.
+std::vector<double> angles(const Run& run, const std::vector<std::size_t>& points, const Circle& circle, int sense) {
+  std::vector<double> result(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    double angle = sense * std::atan2(run.position[1][points[i]] - circle.y, run.position[0][points[i]] - circle.x);
+    if (i > 0) angle += kTurn * std::round((result[i - 1] - angle) / kTurn);
+    result[i] = angle;
+  }
+  return result;
+}
+
+// Slope of angle over time, and its standard error.
+void fit_speed(const Run& run, const std::vector<double>& angle, int sense, Ride& ride) {
+  const auto n = static_cast<double>(ride.points.size());
+  double mean_time = 0, mean_angle = 0;
+  for (std::size_t i = 0; i < angle.size(); ++i) {
+    mean_time += run.time[ride.points[i]] / n;
+    mean_angle += angle[i] / n;
+  }
+  double tt = 0, ta = 0, aa = 0;
+  for (std::size_t i = 0; i < angle.size(); ++i) {
+    const double t = run.time[ride.points[i]] - mean_time, a = angle[i] - mean_angle;
+    tt += t * t;
+    ta += t * a;
+    aa += a * a;
+  }
+  ride.angular_velocity = sense * ta / tt;
+  ride.deviation = std::sqrt(std::max(0.0, aa - ta * ta / tt) / (n - 2) / tt);
+  ride.duration = run.time[ride.points.back()] - run.time[ride.points.front()];
+}
+
+// Cuts the ends, divides what is long.
+void add_rides(const Run& run, std::size_t number, const std::vector<std::size_t>& points, const Circle& circle, int sense,
+               const RideRule& rule, std::vector<Ride>& rides) {
+  if (points.size() < 8) return;
+  const std::vector<double> angle = angles(run, points, circle, sense);
+  const double whole = angle.back() - angle.front();
+  if (whole < rule.least_angle) return;
+  const double low = angle.front() + rule.cut_start * whole, high = angle.back() - rule.cut_end * whole;
+  const auto parts = static_cast<std::size_t>(std::ceil((high - low) / rule.longest));
+  for (std::size_t part = 0; part < parts; ++part) {
+    const double from = low + (high - low) * static_cast<double>(part) / static_cast<double>(parts);
+    const double to = low + (high - low) * static_cast<double>(part + 1) / static_cast<double>(parts);
+    Ride ride;
+    ride.run = number;
+    std::vector<double> inside;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (angle[i] < from || angle[i] >= to) continue;
+      ride.points.push_back(points[i]);
+      inside.push_back(angle[i]);
+    }
+    if (ride.points.size() < 5) continue;
+    fit_speed(run, inside, sense, ride);
+    if (ride.angular_velocity * sense > 0) rides.push_back(std::move(ride));
+  }
+}
+
+}  // namespace
+
+std::vector<Ride> find_rides(const Recording& recording, const Circle& circle, int sense, const RideRule& rule) {
+  constexpr std::size_t kMayMiss = 2;  // points outside the band that do not end a ride
+  std::vector<Ride> rides;
+  for (std::size_t r = 0; r < recording.runs.size(); ++r) {
+    const Run& run = recording.runs[r];
+    std::vector<std::size_t> points;
+    for (std::size_t i = 0; i < run.size(); ++i) {
+      const double distance = std::hypot(run.position[0][i] - circle.x, run.position[1][i] - circle.y);
+      if (std::fabs(distance - circle.radius) > rule.band) continue;
+      if (!points.empty() && (i - points.back() > kMayMiss + 1 || run.time[i] - run.time[points.back()] > recording.gap_limit)) {
+        add_rides(run, r, points, circle, sense, rule, rides);
+        points.clear();
+      }
+      points.push_back(i);
+    }
+    add_rides(run, r, points, circle, sense, rule, rides);
+  }
+  return rides;
+}
+
+PlanePoints points_of(const Recording& recording, const std::vector<Ride>& rides) {
+  PlanePoints points;
+  for (std::size_t r = 0; r < rides.size(); ++r) {
+    const Run& run = recording.runs[rides[r].run];
+    for (const std::size_t i : rides[r].points) {
+      points.x.push_back(run.position[0][i]);
+      points.y.push_back(run.position[1][i]);
+      points.group.push_back(r);
+    }
+  }
+  return points;
+}
+
+double common_speed(const std::vector<Ride>& rides, const std::vector<double>& times) {
+  double best = -1, result = 0;
+  for (const Ride& candidate : rides) {
+    double speed = candidate.angular_velocity;
+    double density = 0;
+    for (int pass = 0; pass < 20; ++pass) {  // mean shift
+      double sum = 0, shifted = 0;
+      density = 0;
+      for (std::size_t i = 0; i < rides.size(); ++i) {
+        const double width = std::hypot(0.008 * speed, rides[i].deviation), e = (rides[i].angular_velocity - speed) / width;
+        const double weight = rides[i].duration * (times.empty() ? 1 : times[i]) * std::exp(-0.5 * e * e) / width;
+        density += weight;
+        sum += weight / width;
+        shifted += weight / width * rides[i].angular_velocity;
+      }
+      if (!(sum > 0) || std::fabs(shifted / sum - speed) < 1e-9) break;
+      speed = shifted / sum;
+    }
+    if (density > best) {
+      best = density;
+      result = speed;
+    }
+  }
+  return result;
+}
+
+}  // namespace millscope::studies
