@@ -4,7 +4,7 @@
 //   k = 3/8 ρ_fluid C_d/(ρ R) of a sphere
 //
 // Arcs are chosen from the samples (common/flight.hpp), the same way for simulated and measured beads; the fit uses the measured points
-// themselves where there are any, else the samples. Arcs that a cubic does not describe within the noise are left out and counted: a
+// themselves where there are any, else the samples. Arcs that a smooth path does not describe within the noise are left out and counted: a
 // collision too weak to end the arc hides in them. Collisions that hide in the noise bend what is left, so compare a recording with a
 // simulation seen by the same camera, not with 9.81.
 #include <algorithm>
@@ -132,7 +132,7 @@ class FreeFlight {
       totals[kShort] += 1;
       return;
     }
-    const auto equations = arc_equations(points);
+    const auto equations = arc_equations(points, gravity_);
     if (!equations || equations->roughness > roughest_) {
       totals[kRough] += 1;
       return;
@@ -186,6 +186,7 @@ class FreeFlight {
       for (std::size_t i = 0; i < 4; ++i) rest -= both[i] * right[i];
       rest = std::fmax(rest, 0) / (freedom - 4);
       for (std::size_t i = 0; i < 4; ++i) error[i] = std::sqrt(rest * (*inverted)[i][i]);
+      both[1] -= gravity_;
     }
     const double size = std::hypot(both[0], both[1], both[2]);
     results.add("gravity", "m/s^2", both.data(), {3}, "Gravity from the arcs, fitted with drag; x, y, z.");
@@ -199,10 +200,9 @@ class FreeFlight {
     results.add("residual", "1", std::sqrt(rest), "Rms of what the fit leaves, over the noise of the points.");
 
     std::array<double, 3> alone{kNaN, kNaN, kNaN};
-    for (std::size_t i = 0; i < 3; ++i) alone[i] = ratio(right[i], normal[i][i]);
+    for (std::size_t i = 0; i < 3; ++i) alone[i] = ratio(right[i], normal[i][i]) - (i == 1 ? gravity_ : 0);
     results.add("gravity_without_drag", "m/s^2", alone.data(), {3}, "Gravity fitted with k = 0.");
-    const double known = right[3] + gravity_ * normal[3][1];  // g = (0, −gravity, 0)
-    results.add("drag_at_known_gravity", "1/m", ratio(known, normal[3][3]),
+    results.add("drag_at_known_gravity", "1/m", ratio(right[3], normal[3][3]),
                 "Drag coefficient with gravity as stated, straight down; the camera's scale and tilt go into it.");
   }
 
