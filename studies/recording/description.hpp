@@ -15,7 +15,7 @@ namespace millscope::studies {
 
 enum class Format { automatic, ctrack, table, tracks };
 
-/// A unit and the way to SI, exact for decimal prefixes: SI value = number · multiplier / divisor.
+/// A unit and the way to SI: SI value = number · multiplier / divisor.
 struct ColumnUnit {
   std::string text;
   double multiplier = 1, divisor = 1;

@@ -46,7 +46,19 @@ bool begins_with_number(std::string_view line) {
   return first != std::string_view::npos && first < 3 && line[first] >= '0' && line[first] <= '9';
 }
 
-/// The first lines of a file: up to the first that looks like a row, and that row.
+/// A row has four numbers or more; a title or a remark may have some.
+bool is_row(std::string_view line) {
+  int numbers = 0;
+  for (std::size_t begin = 0; begin != std::string_view::npos && begin < line.size();) {
+    const std::size_t end = std::min(line.find_first_of(" \t,;", begin), line.size());
+    const std::string_view word = trimmed(line.substr(begin, end - begin));
+    numbers += begins_with_number(word) || word == "nan" || word == "NaN" || word == "NAN" || word == "inf" || word == "-inf";
+    begin = line.find_first_not_of(" \t,;", end);
+  }
+  return numbers >= 4;
+}
+
+/// The first lines of a file: up to the first row, and that row.
 struct Top {
   std::vector<std::string_view> head;  ///< trimmed, comment marks too
   std::string_view row;
@@ -62,7 +74,7 @@ Top top_of(std::string_view text, const Description& description) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     const std::string_view line = trimmed(text.substr(begin, end - begin));
     begin = end + 1;
-    if (++number <= description.skip_lines || line.empty() || is_comment(line) || !begins_with_number(line)) {
+    if (++number <= description.skip_lines || line.empty() || is_comment(line) || !is_row(line)) {
       top.head.push_back(line);
       continue;
     }
@@ -225,7 +237,7 @@ KnownLayout layout_of(std::string_view text, const std::filesystem::path& file, 
   const bool automatic = description.format == Format::automatic && !description.columns;
   if (description.format == Format::ctrack || (automatic && looks_like_ctrack(top))) return ctrack(description);
   if (top.row_line == 0) {
-    throw UserError(fmt::format("{}: holds no usable point: none of its first lines begins with a number", file.string()));
+    throw UserError(fmt::format("{}: holds no usable point: none of its first lines has four numbers", file.string()));
   }
   KnownLayout known;
   known.layout.separator = top.separator;

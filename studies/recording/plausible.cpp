@@ -19,6 +19,7 @@ constexpr double kLongestInterval = 0.5;  // s; a point now and then shows no mo
 struct Measured {
   double across = 0, along = 0;  // m
   double speed = 0;              // m/s, 99th percentile
+  double usual_speed = 0;        // m/s, 95th percentile; outliers do not reach it
   double noise = 0;              // m
   double interval = 0;           // s, median
   bool moves() const { return across > 10 * noise; }
@@ -50,7 +51,7 @@ std::string hint(const Measured& m, const Condition& condition, const std::strin
   const double length = scale_of(kLengths, length_unit), time = scale_of(kTimes, time_unit);
   if (length == 0 || time == 0) return "check the units";
   const auto works = [&](const Scale& l, const Scale& t) {
-    return fits(m.across * l.si / length, m.speed * (l.si / length) / (t.si / time), m.interval * t.si / time, condition);
+    return fits(m.across * l.si / length, m.usual_speed * (l.si / length) / (t.si / time), m.interval * t.si / time, condition);
   };
   const Scale now_length{length_unit.c_str(), length}, now_time{time_unit.c_str(), time};
   const auto say_length = [&](const Scale& l) { return fmt::format("x, y, z are probably in {}, not {}", l.unit, length_unit); };
@@ -72,7 +73,9 @@ std::string hint(const Measured& m, const Condition& condition, const std::strin
 
 Measured measure(const std::vector<Run>& runs, double gap_limit) {
   const Extent extent = measure_extent(runs);
-  return {extent.across(), extent.width[2], fast_speed(runs), measure_travel(runs, gap_limit).noise, median_interval(runs)};
+  return {
+      extent.across(),      extent.width[2], speed_quantile(runs, 0.99), speed_quantile(runs, 0.95), measure_travel(runs, gap_limit).noise,
+      median_interval(runs)};
 }
 
 }  // namespace
@@ -96,7 +99,7 @@ void check_units(const std::vector<Run>& runs, const Condition& condition, const
     refuse(fmt::format("the points lie {:.3g} s apart (median), and no motion in a mill can be followed so", m.interval));
   }
   const double diameter = std::max(m.across, condition.mill_diameter.value_or(0)), limit = kFalls * fall_speed(diameter);
-  if (m.speed > limit) {
+  if (m.speed > limit && m.usual_speed > limit / 3) {
     refuse(fmt::format("one per cent of the points is faster than {:.4g} m/s, but a fall across {:.3g} m gives no more than {:.3g} m/s",
                        m.speed, diameter, limit / kFalls));
   }

@@ -17,7 +17,7 @@ enum Quantity { kTime, kX, kY, kZ, kError, kEvents, kQuantities };
 /// Which column holds what. Column numbers count from 0; −1: the file has none.
 struct Layout {
   std::array<int, kQuantities> column{-1, -1, -1, -1, -1, -1};
-  /// SI value = number · multiplier / divisor; a divisor of 1000 keeps 0.1 ms exact where a factor of 0.001 would not.
+  /// SI value = number · multiplier / divisor: one rounding for mm and ms, where a factor of 0.001 makes two.
   std::array<double, kQuantities> multiplier{1, 1, 1, 1, 1, 1};
   std::array<double, kQuantities> divisor{1, 1, 1, 1, 1, 1};
   char separator = ' ';          ///< ' ': any run of blanks and tabs

@@ -33,14 +33,14 @@ Extent measure_extent(std::span<const Run> runs) {
       for (std::size_t i = 0; i < run.size(); i += stride) values.push_back(run.position[axis][i]);
     }
     if (values.empty()) continue;
-    const double low = quantile(values, 0.005), high = quantile(values, 0.995);
+    const double low = quantile(values, 0.02), high = quantile(values, 0.98);
     extent.middle[axis] = quantile(values, 0.5);
     extent.width[axis] = high - low;
   }
   return extent;
 }
 
-double fast_speed(std::span<const Run> runs) {
+double speed_quantile(std::span<const Run> runs, double fraction) {
   constexpr std::size_t kSteps = 5;
   constexpr double kNoises = 5;  // taken off the way, lest a bead at rest looks fast to a quick camera
   const std::size_t stride = stride_of(runs);
@@ -54,7 +54,7 @@ double fast_speed(std::span<const Run> runs) {
       speeds.push_back(std::max(0.0, std::sqrt(squared) - kNoises * noise) / (run.time[i + kSteps] - run.time[i]));
     }
   }
-  return speeds.empty() ? 0 : quantile(speeds, 0.99);
+  return speeds.empty() ? 0 : quantile(speeds, fraction);
 }
 
 double fall_speed(double diameter) { return std::sqrt(2 * kGravity * diameter); }
@@ -69,7 +69,7 @@ bool Travel::possible(const Run& run, std::size_t i, std::size_t j) const {
 
 Travel measure_travel(std::span<const Run> runs, double gap_limit) {
   Travel travel;
-  travel.speed = 1.5 * std::max(fall_speed(measure_extent(runs).across()), fast_speed(runs));
+  travel.speed = 1.5 * std::max(fall_speed(measure_extent(runs).across()), 1.5 * speed_quantile(runs, 0.95));
   for (const Run& run : runs) {
     for (const double noise : difference_noise(run, gap_limit)) travel.noise = std::max(travel.noise, noise);
   }

@@ -11,19 +11,20 @@ namespace millscope::studies {
 /// Where the points of some runs lie: medians and percentiles, so outliers hardly matter.
 struct Extent {
   std::array<double, 3> middle{};  ///< median, m
-  std::array<double, 3> width{};   ///< from the 0.5th to the 99.5th percentile, m
+  std::array<double, 3> width{};   ///< from the 2nd to the 98th percentile, m
   double largest() const;          ///< of the three widths
   double across() const;           ///< larger width of x and y: about the mill's diameter
 };
 Extent measure_extent(std::span<const Run> runs);
 
-/// 99th percentile of the speed over five points, m/s; 0 where no run has six points.
-double fast_speed(std::span<const Run> runs);
+/// The speed over five points that the part `fraction` of the points does not exceed, m/s; 0 where no run has six points.
+double speed_quantile(std::span<const Run> runs, double fraction);
 
 /// √(2 g D): the speed of a fall across the mill, m/s.
 double fall_speed(double diameter);
 
-/// What a bead in these runs can do: one and a half times the speed of a fall across the mill, or of what is measured where that is more.
+/// What a bead in these runs can do: one and a half times the speed of a fall across the mill, or of the 95th percentile of the measured
+/// speeds and a half where that is more.
 struct Travel {
   double speed = 0;  ///< m/s
   double noise = 0;  ///< m, of a component

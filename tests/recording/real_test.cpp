@@ -1,0 +1,78 @@
+// Real recordings beside the sources, where there are any.
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+
+#include "recording/support.hpp"
+#include "studies/trajectory/trajectory.hpp"
+
+using namespace millscope::studies;
+using namespace recording_test;
+
+namespace {
+
+std::filesystem::path real(const std::string& name) { return std::filesystem::path(MILLSCOPE_SOURCE_DIR) / "../shared/recordings" / name; }
+
+bool absent(const std::string& name) {
+  if (std::filesystem::exists(real(name))) return false;
+  WARN(name << " is not here; this test is skipped");
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("a real rotor recording: the cut last line and the points metres away are counted") {
+  if (absent("rotor_calibration.a")) return;
+  const Recording recording = read_recording(real("rotor_calibration.a"));
+  REQUIRE(recording.runs.size() == 1);
+  const Run& run = recording.runs[0];
+  CHECK(run.report.rows == 30611);
+  CHECK(run.report.unreadable == 1);
+  CHECK(run.report.outside + run.report.outliers == 17);
+  CHECK(run.report.used == run.size());
+  CHECK(run.report.gap_time == Approx(68.8).margin(0.1));
+  for (const auto& component : run.position) {
+    for (const double x : component) REQUIRE(std::fabs(x) < 0.15);
+  }
+  // The tracker's u is about 3 mm; the noise is a tenth of it (its README: 0.45 mm for a tracer at rest).
+  const auto noise = estimate_noise(run, recording.gap_limit);
+  for (const double each : noise) CHECK((each > 0.1e-3 && each < 0.45e-3));
+}
+
+TEST_CASE("a real mill recording: all points are used and its long gaps are found") {
+  if (absent("uct_mill_part1.a")) return;
+  const Recording recording = read_recording(real("uct_mill_part1.a"));
+  const Run& run = recording.runs[0];
+  CHECK(run.report.rows == 16398);
+  CHECK(run.report.unreadable == 0);
+  CHECK(run.report.used > 16380);
+  const Trajectory trajectory = fit_trajectory(run, {.gap_limit = 0.1});
+  CHECK(trajectory.covered == Approx(96).margin(1));
+  CHECK(trajectory.span == Approx(191.85).margin(0.1));
+  for (const double each : trajectory.noise) CHECK((each > 0.4e-3 && each < 1.1e-3));
+}
+
+TEST_CASE("another code's recordings of one mill: five runs, duplicates, outliers, noise as stated") {
+  if (absent("mill10_A_75_1.a")) return;
+  const Scratch scratch;
+  const Recording recording = read_recording(
+      scratch.file("r.yaml", "files: \"" + std::filesystem::canonical(real(".")).string() + "/mill10_A_75_?.a\"\nformat: ctrack\n"));
+  REQUIRE(recording.runs.size() == 5);
+  std::uint64_t rows = 0, dropped = 0, duplicates = 0;
+  for (const Run& run : recording.runs) {
+    rows += run.report.rows;
+    dropped += run.report.outliers + run.report.outside;
+    duplicates += run.report.duplicates;
+    for (const double each : estimate_noise(run, recording.gap_limit)) CHECK((each > 0.5e-3 && each < 1e-3));  // its README: 0.5 to 1 mm
+  }
+  CHECK(rows == 32180);
+  CHECK(duplicates > 100);
+  CHECK(static_cast<double>(dropped) / static_cast<double>(rows) == Approx(1e-3).margin(0.5e-3));  // one in a thousand was put there
+}
+
+TEST_CASE("a gzipped recording") {
+  if (absent("mill10_long/mill10_A_75_01.a.gz")) return;
+  const Recording recording = read_recording(real("mill10_long/mill10_A_75_01.a.gz"));
+  CHECK(recording.runs[0].name == "mill10_A_75_01");
+  CHECK(recording.runs[0].report.rows == 3032);
+}

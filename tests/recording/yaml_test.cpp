@@ -1,0 +1,155 @@
+// recording.yaml.
+#include <catch2/catch.hpp>
+
+#include <numbers>
+
+#include "recording/support.hpp"
+
+using namespace millscope::studies;
+using namespace recording_test;
+using Catch::Contains;
+
+namespace {
+
+struct Folder : Scratch {
+  Folder() {
+    file("a.txt", circle_rows(300));
+    file("b.txt", circle_rows(200));
+  }
+  Recording read(const std::string& yaml) const { return read_recording(file("r.yaml", yaml)); }
+  std::string why(const std::string& yaml) const {
+    return refusal([&] { read(yaml); });
+  }
+};
+
+}  // namespace
+
+TEST_CASE("several files are several runs, each with its own start") {
+  const Folder folder;
+  const Recording recording = folder.read("files: [b.txt, a.txt]\n");
+  REQUIRE(recording.runs.size() == 2);
+  CHECK(recording.runs[0].name == "b");
+  CHECK(recording.runs[1].name == "a");
+  CHECK(recording.runs[0].time[0] == 0);
+  CHECK(recording.runs[1].time[0] == 0);
+  CHECK(recording.runs[1].source == (folder / "a.txt").string());
+  CHECK_THAT(folder.why("files: [a.txt, a.txt]\n"), Contains("r.yaml:1:") && Contains("second time"));
+}
+
+TEST_CASE("a pattern names all files that match, by name, and runs of one name are told apart") {
+  const Folder folder;
+  std::filesystem::create_directory(folder / "more");
+  folder.file("more/a.txt", circle_rows(250));
+  const Recording recording = folder.read("files: [\"?.txt\", more/a.txt]\n");
+  REQUIRE(recording.runs.size() == 3);
+  CHECK(recording.runs[0].name == "a");
+  CHECK(recording.runs[1].name == "b");
+  CHECK(recording.runs[2].name == "a_2");
+  CHECK_THAT(folder.why("files: \"*.a\"\n"), Contains("r.yaml:1:") && Contains("no file has such a name"));
+}
+
+TEST_CASE("the condition is read in SI, and what is absent stays unknown") {
+  const Folder folder;
+  const Condition c = folder
+                          .read(R"(files: a.txt
+condition:
+  speed: 75 %critical
+  direction: clockwise
+  filling: 31.3 %
+  porosity: 0.37
+  bead_diameter: 10 mm
+  bead_density: 2.5 g/cm^3
+  tracer: {diameter: 10 mm, density: 2500}
+  mill_diameter: 300 mm
+  mill_length: 60 mm
+  power: {value: 7.335 W, sem: 3 mW}
+encoder: none
+)")
+                          .condition;
+  const double critical = 42.3 / std::sqrt(0.29) * std::numbers::pi / 30;
+  CHECK(*c.critical_fraction == Approx(0.75));
+  CHECK(*c.speed == Approx(0.75 * critical));
+  CHECK(*c.angular_velocity == Approx(-0.75 * critical));
+  CHECK(*c.filling == Approx(0.313));
+  CHECK(*c.porosity == Approx(0.37));
+  CHECK(*c.bead_diameter == 0.01);
+  CHECK(*c.bead_density == Approx(2500));
+  CHECK(*c.tracer.density == 2500);
+  CHECK(*c.mill_length == 0.06);
+  CHECK(c.power->sem == Approx(0.003));
+  CHECK(c.geometry.empty());
+
+  const Condition none = folder.read("files: a.txt\n").condition;
+  CHECK_FALSE(none.speed);
+  CHECK_FALSE(none.filling);
+  CHECK_FALSE(none.power);
+}
+
+TEST_CASE("a speed without a sense keeps the sense open") {
+  const Folder folder;
+  const auto condition = [&](const std::string& text) { return folder.read("files: a.txt\ncondition: {" + text + "}\n").condition; };
+  CHECK(*condition("speed: 36 rpm").speed == Approx(3.7699).epsilon(1e-4));
+  CHECK_FALSE(condition("speed: 36 rpm").angular_velocity);
+  CHECK(*condition("speed: -36 rpm").angular_velocity == Approx(-3.7699).epsilon(1e-4));
+  CHECK(*condition("speed: 36 rpm, direction: counter_clockwise").angular_velocity == Approx(3.7699).epsilon(1e-4));
+  CHECK_FALSE(condition("speed: 75 %critical").speed);
+  CHECK(*condition("speed: 75 %critical").critical_fraction == Approx(0.75));
+}
+
+TEST_CASE("the mill's diameter comes from the geometry's case where it is not said") {
+  const Folder folder;
+  folder.file("mill.yaml", "mill: {diameter: 300 mm, speed: 75 %critical}\n");
+  const std::string head = "files: a.txt\ncondition:\n  bead_diameter: 10 mm\n  speed: 75 %critical\n  geometry: mill.yaml\n";
+  const Condition c = folder.read(head).condition;
+  CHECK(*c.mill_diameter == Approx(0.3));
+  CHECK(c.geometry == folder / "mill.yaml");
+  CHECK(*c.speed == Approx(6.169).epsilon(1e-3));
+  CHECK_THAT(folder.why(head + "  mill_diameter: 310 mm\n"), Contains("r.yaml:5:") && Contains("mill_diameter"));
+}
+
+TEST_CASE("axes are swapped and turned, and nothing is mirrored silently") {
+  const Folder folder;
+  const Run plain = folder.read("files: a.txt\n").runs[0];
+  const Run turned = folder.read("files: a.txt\naxes: {x: y, y: -x, z: +z}\n").runs[0];
+  for (const std::size_t i : {0u, 17u, 299u}) {
+    CHECK(turned.position[0][i] == plain.position[1][i]);
+    CHECK(turned.position[1][i] == -plain.position[0][i]);
+    CHECK(turned.position[2][i] == plain.position[2][i]);
+  }
+  CHECK_THAT(folder.why("files: a.txt\naxes: {x: -x, y: y, z: z}\n"), Contains("r.yaml:2:") && Contains("mirror: true"));
+  const Run mirrored = folder.read("files: a.txt\nmirror: true\naxes: {x: -x, y: y, z: z}\n").runs[0];
+  CHECK(mirrored.position[0][9] == -plain.position[0][9]);
+  CHECK_THAT(folder.why("files: a.txt\nmirror: true\naxes: {x: y, y: z, z: x}\n"), Contains("mirrors nothing"));
+  CHECK_THAT(folder.why("files: a.txt\naxes: {x: y, y: y, z: z}\n"), Contains("second time"));
+  CHECK_THAT(folder.why("files: a.txt\naxes: {x: up, y: y, z: z}\n"), Contains("'up'"));
+}
+
+TEST_CASE("where the mill stands is taken as it is given") {
+  const Folder folder;
+  const Recording recording = folder.read("files: a.txt\nframe: {axis: [1.4 mm, -0.9 mm], ends: [0, 60 mm]}\n");
+  REQUIRE(recording.frame);
+  CHECK(recording.frame->axis[0] == Approx(0.0014));
+  CHECK(recording.frame->axis[1] == Approx(-0.0009));
+  CHECK(recording.frame->high == Approx(0.06));
+  CHECK_FALSE(folder.read("files: a.txt\n").frame);
+  CHECK_THAT(folder.why("files: a.txt\nframe: {axis: [0, 0], ends: [60 mm, 0]}\n"), Contains("must rise"));
+}
+
+TEST_CASE("what is wrong is named with its line") {
+  const Folder folder;
+  CHECK_THAT(folder.why("files: a.txt\ncondition:\n  fillin: 30 %\n"), Contains("r.yaml:3:") && Contains("did you mean 'filling'"));
+  CHECK_THAT(folder.why("files: a.txt\nformat: ctrak\n"), Contains("r.yaml:2:") && Contains("did you mean 'ctrack'"));
+  CHECK_THAT(folder.why("format: ctrack\n"), Contains("missing key 'files'"));
+  CHECK_THAT(folder.why("files: []\n"), Contains("empty list"));
+  CHECK_THAT(folder.why("files: gone.txt\n"), Contains("gone.txt") && Contains("cannot be opened"));
+  CHECK_THAT(folder.why("files: a.txt\ncolumns: {t: ms, x: mm, y: mm}\n"), Contains("r.yaml:2:") && Contains("has no 'z'"));
+  CHECK_THAT(folder.why("files: a.txt\ncolumns: {t: mm, x: mm, y: mm, z: mm}\n"), Contains("r.yaml:2:") && Contains("time, e.g. ms"));
+  CHECK_THAT(folder.why("files: a.txt\ncolumns: {t: ms, x: furlong, y: mm, z: mm}\n"), Contains("furlong"));
+  CHECK_THAT(folder.why("files: a.txt\ncolumns: {t: ms, time: ms, x: mm, y: mm, z: mm}\n"), Contains("second column"));
+  CHECK_THAT(folder.why("files: a.txt\ncolumns: {t: ms, speed: m/s, x: mm, y: mm, z: mm}\n"), Contains("write 'skip'"));
+  CHECK_THAT(folder.why("files: a.txt\ncondition: {direction: clockwise}\n"), Contains("without 'speed'"));
+  CHECK_THAT(folder.why("files: a.txt\ncondition: {speed: -3 rad/s, direction: clockwise}\n"), Contains("sign beside"));
+  CHECK_THAT(folder.why("files: a.txt\ncondition: {power: {value: 7 W}}\n"), Contains("missing key 'sem'"));
+  CHECK_THAT(folder.why("files: a.txt\nencoder: pulses.csv\n"), Contains("must be one of none"));
+  CHECK_THAT(folder.why("files: a.txt\ngap_limit: 0\n"), Contains("gap_limit"));
+}
