@@ -11,7 +11,12 @@
 
 namespace millscope::studies {
 
-/// The smallest piece of data that is loaded at once. The host adds consecutive chunks up to a block, the unit of resampling.
+struct BasicSeries;  // times.hpp
+
+/// The data in chunks, the smallest piece that is loaded at once. The host adds consecutive chunks up to a block, the unit of resampling.
+///
+/// Where a chunk goes on without a break from the one before, it begins with the last frame of that one, whose samples have weight 0: so
+/// every change from one frame to the next lies within a chunk.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
@@ -26,6 +31,13 @@ class FrameSource {
   virtual std::unique_ptr<Scratch> make_scratch() const = 0;
   virtual const FrameBlock& load(std::size_t chunk, Scratch& scratch) const = 0;
   virtual std::string description() const = 0;  ///< for reports: file, beads, seconds
+
+  /// Cuts each stretch into even chunks of at least `duration` (s) each, at most about `most` chunks in all. Ids of chunks change.
+  virtual void cut(double duration, std::size_t most) = 0;
+  /// A first look at the motion, one series per stretch, from which the length of blocks follows. Cheap beside loading everything.
+  virtual std::vector<BasicSeries> survey() const = 0;
+  /// Which fields of FrameField the analyzers use beyond those that are always there; others need not be loaded.
+  virtual void want(std::uint64_t fields) = 0;
 };
 
 }  // namespace millscope::studies

@@ -1,0 +1,13 @@
+// The joint covariance of a run's results, read off their common draws. For the files of this room.
+#pragma once
+
+#include "studies/analysis/results.hpp"
+
+namespace millscope::studies {
+
+inline constexpr std::size_t kLongestCovarianceRow = 64;
+
+/// Fills entries, covariance and rank from the draws. The diagonal is sem².
+void add_covariance(ResultSet& results);
+
+}  // namespace millscope::studies

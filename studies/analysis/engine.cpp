@@ -1,0 +1,206 @@
+#include "studies/analysis/engine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "studies/analysis/covariance.hpp"
+#include "studies/analysis/parallel.hpp"
+#include "studies/analysis/resample.hpp"
+#include "studies/analysis/sums.hpp"
+#include "studies/analysis/times.hpp"
+
+namespace millscope::studies {
+namespace {
+
+using config::UserError;
+
+constexpr std::size_t kMostChunks = 128, kWantedBlocks = 64, kFewestChunks = 16;
+constexpr double kMostSumBytes = 1e9, kMostDrawBytes = 4e9;
+
+/// How finely the data may be cut so that the sums of all chunks fit into memory.
+std::size_t most_chunks(const SumLayout& layout) {
+  const double fit = kMostSumBytes / (8.0 * static_cast<double>(std::max<std::size_t>(1, layout.size)));
+  return static_cast<std::size_t>(std::clamp(fit, static_cast<double>(kFewestChunks), static_cast<double>(kMostChunks)));
+}
+
+double total_duration(const SumTable& table) {
+  double sum = 0;
+  for (const ResultBlock& span : table.spans) sum += span.duration;
+  return sum;
+}
+
+double block_length(const BlockRule& rule, double wished, double total) {
+  return std::max({rule.least, wished, total / static_cast<double>(kWantedBlocks)});
+}
+
+/// Sums of the blocks and the rule that cut them.
+struct Blocks {
+  SumTable table;
+  BlockRule rule;
+};
+
+Blocks gather(FrameSource& source, const std::vector<AnalyzerInstance>& instances, const SumLayout& layout, const EngineOptions& options) {
+  const bool one_bead = (source.context().has & kHasAllBeads) == 0;
+  if (options.progress) options.progress("surveying", 0);
+  const std::vector<BasicSeries> series = source.survey();
+  double total = 0;
+  for (const BasicSeries& s : series) total += s.duration();
+  Blocks blocks;
+  blocks.rule = block_rule(series, one_bead);
+  const double length = block_length(blocks.rule, options.block, total);
+  source.cut(length, most_chunks(layout));
+  const std::size_t workers = worker_count(options.threads, source.chunk_count());
+  blocks.table = merge_blocks(sum_chunks(source, instances, layout, workers, options.progress), length);
+  return blocks;
+}
+
+/// Deviations of one analyzer's values: first the draws, then each block left out; [draws + blocks, values].
+struct Deviations {
+  std::size_t values = 0;
+  std::vector<float> numbers;
+  float* row(std::size_t item) { return numbers.data() + item * values; }
+};
+
+struct Resampling {
+  const std::vector<Row>& blocks;
+  const std::vector<std::uint32_t>& counts;
+  std::size_t draws;
+  std::size_t items() const { return draws + blocks.size(); }
+  std::uint32_t count(std::size_t item, std::size_t block) const {
+    return item < draws ? counts[item * blocks.size() + block] : (item - draws == block ? 0U : 1U);
+  }
+};
+
+void add_part(const SumLayout::Part& part, const Row& row, double count, double* sums) {
+  const double* from = row.data() + part.begin;
+  for (std::size_t i = 0; i < part.size; ++i) sums[i] += count * from[i];
+}
+
+Deviations resample(const AnalyzerInstance& instance, const SumLayout::Part& part, const std::vector<ResultArray>& arrays,
+                    const Resampling& resampling, std::size_t workers) {
+  Deviations deviations;
+  std::vector<double> centre;
+  for (const ResultArray& a : arrays) centre.insert(centre.end(), a.value.begin(), a.value.end());
+  deviations.values = centre.size();
+  const double bytes = 4.0 * static_cast<double>(resampling.items()) * static_cast<double>(centre.size());
+  if (bytes > kMostDrawBytes) {
+    throw UserError(fmt::format("analyzer '{}': {} values in {} resamples need {:.1f} GB; give it fewer cells, or lower resampling.draws",
+                                instance.name, centre.size(), resampling.items(), bytes * 1e-9));
+  }
+  deviations.numbers.resize(resampling.items() * centre.size());
+  struct Scratch {
+    std::vector<double> sums, values;
+  };
+  std::vector<Scratch> scratch(workers);
+  for_each_item(resampling.items(), workers, [&](std::size_t item, std::size_t worker) {
+    Scratch& s = scratch[worker];
+    s.sums.assign(part.size, 0.0);
+    s.values.resize(centre.size());
+    for (std::size_t b = 0; b < resampling.blocks.size(); ++b) {
+      const std::uint32_t count = resampling.count(item, b);
+      if (count > 0) add_part(part, resampling.blocks[b], count, s.sums.data());
+    }
+    finish_values(instance, part, s.sums.data(), arrays, s.values);
+    float* row = deviations.row(item);
+    for (std::size_t i = 0; i < centre.size(); ++i) row[i] = static_cast<float>(s.values[i] - centre[i]);
+  });
+  return deviations;
+}
+
+/// Uncertainty of the values first … first + array.size() − 1 of the deviations.
+void judge(ResultArray& array, std::size_t first, const Deviations& deviations, const Resampling& resampling,
+           const std::vector<std::uint8_t>& follows) {
+  const std::size_t size = array.size(), draws = resampling.draws, blocks = resampling.blocks.size();
+  array.sem.resize(size);
+  array.low.resize(size);
+  array.high.resize(size);
+  array.effective_blocks.resize(size);
+  array.flags.resize(size);
+  const bool keep = size <= kMostDrawnValues && blocks >= 2;
+  if (keep) array.draws.resize(draws * size);
+  std::vector<float> column(resampling.items());
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t item = 0; item < column.size(); ++item) column[item] = deviations.numbers[item * deviations.values + first + i];
+    const std::span<const float> all(column);
+    const Uncertainty u = uncertainty(array.value[i], all.first(draws), all.subspan(draws), follows);
+    array.sem[i] = u.sem;
+    array.low[i] = u.low;
+    array.high[i] = u.high;
+    array.effective_blocks[i] = u.effective_blocks;
+    array.flags[i] = u.flags;
+    if (!keep) continue;
+    for (std::size_t b = 0; b < draws; ++b) array.draws[b * size + i] = static_cast<float>(u.scale * column[b]);
+  }
+}
+
+std::vector<std::uint8_t> followers(const std::vector<ResultBlock>& spans) {
+  std::vector<std::uint8_t> follows(spans.size(), 0);
+  for (std::size_t i = 1; i < spans.size(); ++i) follows[i] = spans[i].stretch == spans[i - 1].stretch ? 1 : 0;
+  return follows;
+}
+
+std::vector<std::string> notes_on(const ResultMeta& meta, const BlockRule& rule, double total) {
+  std::vector<std::string> notes;
+  const std::size_t blocks = meta.blocks.size();
+  if (blocks < 10) {
+    const double least = std::max(rule.least, meta.block_duration);
+    notes.push_back(fmt::format(
+        "only {} block{} of at least three autocorrelation times in {:.3g} s: {}; about {:.3g} s would give 10 blocks", blocks,
+        blocks == 1 ? "" : "s", total, blocks < 2 ? "no uncertainty can be given" : "the intervals cannot be relied on", 10 * least));
+  }
+  for (const ObservableTime& t : rule.times) {
+    if (t.sets_the_block || std::isnan(t.time) || 3 * t.time <= meta.block_duration) continue;
+    notes.push_back(
+        fmt::format("{} is remembered for {:.3g} s, longer than a third of a block ({:.3g} s): what depends on it rests on about {:.0f} "
+                    "independent values and is widened only as far as the blocks show it",
+                    t.name, t.time, meta.block_duration, t.effective));
+  }
+  return notes;
+}
+
+}  // namespace
+
+ResultSet run_analyzers(FrameSource& source, const std::vector<AnalyzerInstance>& instances, const EngineOptions& options) {
+  const SumLayout layout(instances);
+  std::uint64_t fields = 0;
+  for (const AnalyzerInstance& instance : instances) fields |= instance.object.table().needs;
+  source.want(fields);
+  const Blocks blocks = gather(source, instances, layout, options);
+  ResultSet results;
+  results.meta.context = source.context();
+  results.meta.seed = options.seed;
+  results.meta.draws = static_cast<std::uint32_t>(options.draws);
+  results.meta.blocks = blocks.table.spans;
+  results.meta.times = blocks.rule.times;
+  const double total = total_duration(blocks.table);
+  const std::size_t count = blocks.table.rows.size();
+  results.meta.block_duration = count > 0 ? total / static_cast<double>(count) : 0;
+  results.meta.notes = notes_on(results.meta, blocks.rule, total);
+
+  const std::vector<std::uint32_t> counts = draw_counts(count, options.draws, options.seed);
+  const Resampling resampling{blocks.table.rows, counts, options.draws};
+  const std::vector<std::uint8_t> follows = followers(blocks.table.spans);
+  const std::size_t workers = worker_count(options.threads, resampling.items());
+  for (std::size_t k = 0; k < instances.size(); ++k) {
+    if (options.progress) options.progress("resampling", static_cast<double>(k) / static_cast<double>(instances.size()));
+    const SumLayout::Part& part = layout.parts[k];
+    std::vector<double> sums(part.size, 0.0);
+    for (const Row& row : blocks.table.rows) add_part(part, row, 1.0, sums.data());
+    std::vector<ResultArray> arrays = finish_arrays(instances[k], part, sums.data());
+    const Deviations deviations = resample(instances[k], part, arrays, resampling, workers);
+    std::size_t first = 0;
+    for (ResultArray& array : arrays) {
+      const std::size_t size = array.size();
+      if (!array.is_axis) judge(array, first, deviations, resampling, follows);
+      first += size;
+      results.arrays.push_back(std::move(array));
+    }
+  }
+  add_covariance(results);
+  return results;
+}
+
+}  // namespace millscope::studies

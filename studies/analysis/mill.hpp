@@ -1,0 +1,27 @@
+// The mill of a case: its shell, its motion and its charge, without the physics.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "kernel/dem/motion.hpp"
+#include "kernel/host/registry.hpp"
+#include "millscope/analyzer.hpp"
+
+namespace millscope::studies {
+
+struct MillOfCase {
+  std::string name;
+  /// Everything that follows from the case; `has`, `start`, `end` and ids are the source's.
+  AnalyzerContext context{};
+  dem::Motion motion;  ///< of the shell
+  double period = 0;   ///< along z, m; 0: not periodic
+  std::vector<std::string> notes;
+};
+
+/// Reads a case, or what `millscope run` left of it (case.resolved.yaml). Of the plugins only those of geometry and gravity are used.
+/// Throws config::UserError.
+MillOfCase read_mill_of_case(const std::filesystem::path& case_file, const host::Registry& registry);
+
+}  // namespace millscope::studies

@@ -1,0 +1,174 @@
+#include "studies/analysis/tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "kernel/config/units.hpp"
+#include "kernel/output/file.hpp"
+#include "studies/analysis/results_file.hpp"
+
+namespace millscope::studies {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// A cell of a CSV: quoted where it must be.
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+std::string number(double value) { return std::isfinite(value) ? config::number_text(value) : ""; }
+
+bool is_number(const ResultArray& a) { return a.shape.empty() && !a.is_axis; }
+
+void write_numbers(const fs::path& file, const ResultSet& results) {
+  output::AtomicFile out(file);
+  out.write("analyzer,name,unit,value,sem,low_90,high_90,effective_blocks,doubts,meaning\n");
+  for (const ResultArray& a : results.arrays) {
+    if (!is_number(a)) continue;
+    out.write(fmt::format("{},{},{},{},{},{},{},{},{},{}\n", a.analyzer, a.name, quoted(a.unit), number(a.value[0]), number(a.sem[0]),
+                          number(a.low[0]), number(a.high[0]), number(a.effective_blocks[0]), quoted(flag_text(a.flags[0])),
+                          quoted(a.doc)));
+  }
+  out.commit();
+}
+
+/// Results of one analyzer over the same cells.
+struct Table {
+  std::vector<const ResultArray*> columns;
+};
+
+std::string table_name(const ResultArray& a) {
+  std::string name = a.analyzer;
+  for (std::size_t d = 0; d < a.shape.size(); ++d) name += "." + (a.axes[d].empty() ? fmt::format("{}", a.shape[d]) : a.axes[d]);
+  return name;
+}
+
+std::string head(const ResultSet& results, const Table& table) {
+  std::string line;
+  const ResultArray& first = *table.columns.front();
+  for (std::size_t d = 0; d < first.shape.size(); ++d) {
+    const ResultArray* axis = results.axis(first, d);
+    if (axis == nullptr) {
+      line += fmt::format("index_{},", d);
+    } else if (axis->size() == first.shape[d] + 1) {
+      line += quoted(fmt::format("{}_from [{}]", axis->name, axis->unit)) + "," +
+              quoted(fmt::format("{}_to [{}]", axis->name, axis->unit)) + ",";
+    } else {
+      line += quoted(fmt::format("{} [{}]", axis->name, axis->unit)) + ",";
+    }
+  }
+  for (const ResultArray* a : table.columns)
+    line += quoted(fmt::format("{} [{}]", a->name, a->unit)) + fmt::format(",{0}_sem,{0}_low,{0}_high,", a->name);
+  line.back() = '\n';
+  return line;
+}
+
+std::string row(const ResultSet& results, const Table& table, std::size_t cell) {
+  std::string line;
+  const ResultArray& first = *table.columns.front();
+  std::size_t rest = first.size(), left = cell;
+  for (std::size_t d = 0; d < first.shape.size(); ++d) {
+    rest /= first.shape[d];
+    const std::size_t at = left / rest;
+    left %= rest;
+    const ResultArray* axis = results.axis(first, d);
+    if (axis == nullptr) {
+      line += fmt::format("{},", at);
+    } else if (axis->size() == first.shape[d] + 1) {
+      line += number(axis->value[at]) + "," + number(axis->value[at + 1]) + ",";
+    } else {
+      line += number(axis->value[at]) + ",";
+    }
+  }
+  for (const ResultArray* a : table.columns) {
+    line += number(a->value[cell]) + "," + number(a->sem[cell]) + "," + number(a->low[cell]) + "," + number(a->high[cell]) + ",";
+  }
+  line.back() = '\n';
+  return line;
+}
+
+void write_table(const fs::path& file, const ResultSet& results, const Table& table) {
+  output::AtomicFile out(file);
+  out.write(head(results, table));
+  for (std::size_t cell = 0; cell < table.columns.front()->size(); ++cell) out.write(row(results, table, cell));
+  out.commit();
+}
+
+}  // namespace
+
+std::string flag_text(std::uint8_t flags) {
+  std::string text;
+  const auto add = [&](std::uint8_t bit, const char* what) {
+    if ((flags & bit) != 0) text += (text.empty() ? "" : ", ") + std::string(what);
+  };
+  add(kNoUncertainty, "no uncertainty");
+  add(kFewBlocks, "few blocks");
+  add(kCorrelated, "correlated blocks");
+  add(kOftenUndefined, "often undefined");
+  return text;
+}
+
+std::vector<fs::path> write_tables(const fs::path& directory, const ResultSet& results) {
+  std::vector<fs::path> files{directory / "numbers.csv"};
+  write_numbers(files.front(), results);
+  std::vector<std::string> order;
+  std::map<std::string, Table> tables;
+  for (const ResultArray& a : results.arrays) {
+    if (a.is_axis || a.shape.empty() || a.size() == 0) continue;
+    const std::string name = table_name(a);
+    if (tables.find(name) == tables.end()) order.push_back(name);
+    tables[name].columns.push_back(&a);
+  }
+  for (const std::string& name : order) {
+    files.push_back(directory / (name + ".csv"));
+    write_table(files.back(), results, tables[name]);
+  }
+  return files;
+}
+
+Json summary_json(const ResultSet& results) {
+  Json j;
+  j["schema_version"] = kResultsSchema;
+  const Json meta = meta_json(results.meta);
+  for (const auto& [key, value] : meta.items()) j[key] = value;
+  j["covariance"] = {{"values", results.covariance_entries.size()}, {"rank", results.covariance_rank}};
+  for (const ResultArray& a : results.arrays) {
+    if (!is_number(a)) continue;
+    j["numbers"][a.analyzer][a.name] = {{"value", a.value[0]},
+                                        {"sem", a.sem[0]},
+                                        {"low_90", a.low[0]},
+                                        {"high_90", a.high[0]},
+                                        {"unit", a.unit},
+                                        {"effective_blocks", a.effective_blocks[0]},
+                                        {"doubts", flag_text(a.flags[0])},
+                                        {"meaning", a.doc}};
+  }
+  return j;
+}
+
+std::string number_table(const ResultSet& results) {
+  std::size_t width = 4;
+  for (const ResultArray& a : results.arrays) {
+    if (is_number(a)) width = std::max(width, a.analyzer.size() + a.name.size() + 1);
+  }
+  std::string page = fmt::format("{:<{}}  {:>11}  {:>9}  {:>23}  {}\n", "result", width, "value", "+- sem", "90 % interval", "unit");
+  for (const ResultArray& a : results.arrays) {
+    if (!is_number(a)) continue;
+    const std::string interval = std::isfinite(a.low[0]) ? fmt::format("{:.5g} … {:.5g}", a.low[0], a.high[0]) : "-";
+    const std::string sem = std::isfinite(a.sem[0]) ? fmt::format("{:.2g}", a.sem[0]) : "-";
+    const std::string doubts = flag_text(a.flags[0]);
+    page += fmt::format("{:<{}}  {:>11.5g}  {:>9}  {:>23}  {}{}\n", a.analyzer + "." + a.name, width, a.value[0], sem, interval, a.unit,
+                        doubts.empty() ? "" : "  (" + doubts + ")");
+  }
+  return page;
+}
+
+}  // namespace millscope::studies

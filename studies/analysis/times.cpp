@@ -1,0 +1,180 @@
+#include "studies/analysis/times.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace millscope::studies {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Mean and variance of all values.
+struct Moments {
+  double mean = 0, variance = 0;
+  std::size_t count = 0;
+};
+
+Moments moments_of(const EvenSeries& series) {
+  Moments m;
+  for (const auto& row : series.rows) {
+    for (const double value : row) {
+      if (std::isnan(value)) continue;
+      m.mean += value;
+      ++m.count;
+    }
+  }
+  if (m.count == 0) return m;
+  m.mean /= static_cast<double>(m.count);
+  for (const auto& row : series.rows) {
+    for (const double value : row) m.variance += std::isnan(value) ? 0 : (value - m.mean) * (value - m.mean);
+  }
+  m.variance /= static_cast<double>(m.count);
+  return m;
+}
+
+/// Autocovariance at one lag over all pairs that exist; NaN: none.
+double covariance_at(const EvenSeries& series, double mean, std::size_t lag) {
+  double sum = 0;
+  std::size_t pairs = 0;
+  for (const auto& row : series.rows) {
+    for (std::size_t i = 0; i + lag < row.size(); ++i) {
+      const double product = (row[i] - mean) * (row[i + lag] - mean);
+      if (std::isnan(product)) continue;
+      sum += product;
+      ++pairs;
+    }
+  }
+  return pairs == 0 ? kNaN : sum / static_cast<double>(pairs);
+}
+
+/// The usual distance of two frames, s.
+double usual_step(const std::vector<BasicSeries>& stretches) {
+  std::vector<double> steps;
+  for (const BasicSeries& s : stretches) {
+    for (std::size_t i = 1; i < s.size(); ++i) steps.push_back(s.time[i] - s.time[i - 1]);
+  }
+  if (steps.empty()) return 0;
+  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+  return steps[steps.size() / 2];
+}
+
+std::vector<double> even_row(const BasicSeries& s, std::size_t basic, double step) {
+  std::vector<double> row;
+  if (s.size() == 0) return row;
+  const auto last = static_cast<std::size_t>((s.time.back() - s.time.front()) / step + 0.5);
+  row.assign(last + 1, 0.0);
+  std::vector<double> count(last + 1, 0.0);
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    const auto at = std::min(last, static_cast<std::size_t>((s.time[i] - s.time.front()) / step + 0.5));
+    row[at] += s.value[basic][i];
+    count[at] += 1;
+  }
+  for (std::size_t k = 0; k < row.size(); ++k) row[k] = count[k] > 0 ? row[k] / count[k] : kNaN;
+  return row;
+}
+
+}  // namespace
+
+void BasicSeries::append(const BasicSeries& other) {
+  time.insert(time.end(), other.time.begin(), other.time.end());
+  weight.insert(weight.end(), other.weight.begin(), other.weight.end());
+  for (std::size_t k = 0; k < kBasics; ++k) value[k].insert(value[k].end(), other.value[k].begin(), other.value[k].end());
+}
+
+double BasicSeries::duration() const { return std::accumulate(weight.begin(), weight.end(), 0.0); }
+
+BasicSeries basics_of(const FrameBlock& block) {
+  BasicSeries series;
+  for (std::int64_t f = 0; f < block.frame_count; ++f) {
+    const std::int64_t begin = block.first[f], end = block.first[f + 1];
+    double weight = 0, sums[kBasics] = {};
+    for (std::int64_t s = begin; s < end; ++s) {
+      const double w = block.weight[s], x = block.position[0][s], y = block.position[1][s];
+      weight += w;
+      sums[0] += w * x;
+      sums[1] += w * y;
+      sums[2] += w * std::sqrt(x * x + y * y);
+      sums[3] += w * block.position[2][s];
+      if (block.velocity[0] == nullptr) continue;
+      const double u = block.velocity[0][s], v = block.velocity[1][s], z = block.velocity[2][s];
+      sums[4] += w * std::sqrt(u * u + v * v + z * z);
+    }
+    if (!(weight > 0)) continue;
+    series.time.push_back(block.time[f]);
+    series.weight.push_back(weight / static_cast<double>(end - begin));
+    for (std::size_t k = 0; k < kBasics; ++k) series.value[k].push_back(sums[k] / weight);
+  }
+  return series;
+}
+
+EvenSeries even_series(const std::vector<BasicSeries>& stretches, std::size_t basic, std::size_t most) {
+  EvenSeries even;
+  double span = 0;
+  for (const BasicSeries& s : stretches) span += s.size() > 0 ? s.time.back() - s.time.front() : 0;
+  const double usual = usual_step(stretches);
+  if (!(usual > 0)) return even;
+  even.step = usual * std::max(1.0, std::ceil(span / usual / static_cast<double>(most)));
+  for (const BasicSeries& s : stretches) even.rows.push_back(even_row(s, basic, even.step));
+  return even;
+}
+
+double autocorrelation_time(const EvenSeries& series) {
+  const Moments m = moments_of(series);
+  if (m.count < 8) return kNaN;
+  if (!(m.variance > 0)) return 0.5 * series.step;
+  std::size_t longest = 0;
+  for (const auto& row : series.rows) longest = std::max(longest, row.size());
+  double tau = 0.5;
+  std::size_t window = 1;
+  for (; window < longest; ++window) {
+    const double covariance = covariance_at(series, m.mean, window);
+    if (!std::isnan(covariance)) tau += covariance / m.variance;
+    if (static_cast<double>(window) >= 5 * tau) break;
+  }
+  const double n = static_cast<double>(m.count);
+  return series.step * std::max(0.5, tau) * (1 + (2 * static_cast<double>(window) + 1) / n);
+}
+
+double circulation_time(const EvenSeries& series) {
+  const Moments m = moments_of(series);
+  const double band = std::sqrt(m.variance) / 3;
+  double sum = 0;
+  std::size_t count = 0;
+  for (const auto& row : series.rows) {
+    bool below = false, seen = false;
+    std::size_t last = 0;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (std::isnan(row[i])) {
+        below = seen = false;
+      } else if (row[i] < m.mean - band) {
+        below = true;
+      } else if (below && row[i] > m.mean + band) {
+        if (seen) sum += series.step * static_cast<double>(i - last), ++count;
+        below = false;
+        seen = true;
+        last = i;
+      }
+    }
+  }
+  return count < 2 ? 0 : sum / static_cast<double>(count);
+}
+
+BlockRule block_rule(const std::vector<BasicSeries>& stretches, bool one_bead) {
+  BlockRule rule;
+  double span = 0;
+  for (const BasicSeries& s : stretches) span += s.duration();
+  for (std::size_t k = 0; k < kBasics; ++k) {
+    const EvenSeries even = even_series(stretches, k);
+    const double time = autocorrelation_time(even);
+    const bool transverse = std::string(kBasicNames[k]) != "z";
+    rule.times.push_back({kBasicNames[k], time, span / (2 * time), transverse});
+    if (transverse && !std::isnan(time)) rule.least = std::max(rule.least, 3 * time);
+    if (k == 0 && one_bead) rule.circulation = circulation_time(even);
+  }
+  rule.least = std::max(rule.least, 2 * rule.circulation);
+  return rule;
+}
+
+}  // namespace millscope::studies

@@ -1,0 +1,186 @@
+#include "studies/analysis/trajectory_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "studies/analysis/times.hpp"
+
+namespace millscope::studies {
+namespace {
+
+struct TrajectoryScratch : FrameSource::Scratch {
+  FrameBlock block{};
+};
+
+double covered(const Trajectory& t) {
+  double sum = 0;
+  for (const Piece& piece : t.pieces) sum += std::accumulate(piece.weight.begin(), piece.weight.end(), 0.0);
+  return sum;
+}
+
+double mass_of(const Trajectory& t) { return t.density * std::numbers::pi / 6 * t.diameter * t.diameter * t.diameter; }
+
+}  // namespace
+
+struct TrajectorySource::Arrays {
+  std::vector<double> time, omega, phase, weight, position[3], velocity[3], radius, mass, position_variance, velocity_variance;
+  std::vector<std::int32_t> piece;
+  std::vector<std::int64_t> id;
+  std::vector<double> location_variance;
+  std::vector<std::int64_t> location_id;
+
+  std::size_t size() const { return time.size(); }
+  void add(const Piece& from, std::size_t k, std::int32_t number, double sample_weight) {
+    time.push_back(from.start + static_cast<double>(k) * from.step);
+    piece.push_back(number);
+    weight.push_back(sample_weight);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      position[axis].push_back(from.position[axis][k]);
+      velocity[axis].push_back(from.velocity[axis][k]);
+    }
+    position_variance.push_back(from.position_variance[k]);
+    velocity_variance.push_back(from.velocity_variance[k]);
+  }
+};
+
+TrajectorySource::TrajectorySource(std::vector<Trajectory> trajectories, AnalyzerContext context, ShellMotion motion, bool exact,
+                                   std::string description)
+    : trajectories_(std::move(trajectories)),
+      context_(context),
+      motion_(std::move(motion)),
+      exact_(exact),
+      description_(std::move(description)) {
+  context_.has = kHasVelocity | kHasLocations;
+  if (motion_.omega) context_.has |= kHasOmega;
+  if (motion_.phase) context_.has |= kHasPhase;
+  context_.largest_id = 0;
+  context_.start = std::numeric_limits<double>::infinity();
+  context_.end = -context_.start;
+  for (const Trajectory& t : trajectories_) {
+    context_.largest_id = std::max(context_.largest_id, t.id);
+    for (const Piece& piece : t.pieces) {
+      context_.start = std::min(context_.start, piece.start);
+      context_.end = std::max(context_.end, piece.start + static_cast<double>(piece.size() - 1) * piece.step);
+    }
+  }
+  cut(0, 1);
+}
+
+TrajectorySource::~TrajectorySource() = default;
+
+std::size_t TrajectorySource::stretch(std::size_t chunk) const { return chunks_.at(chunk).stretch; }
+std::vector<BasicSeries> TrajectorySource::survey() const {
+  std::vector<BasicSeries> series(trajectories_.size());
+  const auto scratch = make_scratch();
+  for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk) series[chunks_[chunk].stretch].append(basics_of(load(chunk, *scratch)));
+  return series;
+}
+
+std::unique_ptr<FrameSource::Scratch> TrajectorySource::make_scratch() const { return std::make_unique<TrajectoryScratch>(); }
+
+std::size_t TrajectorySource::parts_of(std::size_t trajectory, double duration, std::size_t most) const {
+  double total = 0;
+  for (const Trajectory& t : trajectories_) total += covered(t);
+  const double own = covered(trajectories_[trajectory]);
+  const double fair = total > 0 ? std::floor(static_cast<double>(most) * own / total + 1e-6) : 1;
+  const double fit = duration > 0 ? std::floor(own / duration + 1e-6) : fair;
+  return static_cast<std::size_t>(std::max(1.0, std::min(fair, fit)));
+}
+
+void TrajectorySource::cut(double duration, std::size_t most) {
+  arrays_.clear();
+  chunks_.clear();
+  std::size_t longest = 0;
+  for (std::size_t k = 0; k < trajectories_.size(); ++k) {
+    lay_out(k, parts_of(k, duration, most));
+    longest = std::max(longest, arrays_.back()->size());
+  }
+  first_.resize(longest + 1);
+  std::iota(first_.begin(), first_.end(), std::int64_t{0});
+}
+
+void TrajectorySource::lay_out(std::size_t number, std::size_t parts) {
+  const Trajectory& t = trajectories_[number];
+  auto arrays = std::make_unique<Arrays>();
+  const double total = covered(t);
+  double before = 0;
+  std::size_t part = 0;
+  chunks_.push_back({number, 0, 0, 0, 0, 0});
+  for (std::size_t p = 0; p < t.pieces.size(); ++p) {
+    const Piece& piece = t.pieces[p];
+    const auto label = static_cast<std::int32_t>(p);
+    for (std::size_t k = 0; k < piece.size(); ++k) {
+      const double middle = before + 0.5 * piece.weight[k];
+      const auto here = total > 0 ? static_cast<std::size_t>(middle / total * static_cast<double>(parts)) : 0;
+      if (here > part && here < parts) {
+        part = here;
+        chunks_.back().last = arrays->size();
+        chunks_.push_back({number, arrays->size(), 0, 0, 0, 0});
+        if (k > 0) arrays->add(piece, k - 1, label, 0.0);
+      }
+      arrays->add(piece, k, label, piece.weight[k]);
+      before += piece.weight[k];
+      chunks_.back().duration += piece.weight[k];
+    }
+  }
+  chunks_.back().last = arrays->size();
+  const std::size_t size = arrays->size(), points = t.location_time.size();
+  arrays->id.assign(size, t.id);
+  arrays->radius.assign(size, 0.5 * t.diameter);
+  arrays->mass.assign(size, mass_of(t));
+  for (const double time : arrays->time) {
+    if (motion_.omega) arrays->omega.push_back(motion_.omega(time));
+    if (motion_.phase) arrays->phase.push_back(motion_.phase(time));
+  }
+  const double variance = (t.noise[0] * t.noise[0] + t.noise[1] * t.noise[1] + t.noise[2] * t.noise[2]) / 3;
+  arrays->location_variance.assign(points, variance);
+  arrays->location_id.assign(points, t.id);
+  std::size_t from = 0;
+  for (Chunk& chunk : chunks_) {
+    if (chunk.stretch != number) continue;
+    const bool is_last = chunk.last == size;
+    const double until = is_last ? std::numeric_limits<double>::infinity() : arrays->time[chunk.last - 1];
+    chunk.location_first = from;
+    from = static_cast<std::size_t>(std::upper_bound(t.location_time.begin(), t.location_time.end(), until) - t.location_time.begin());
+    chunk.location_last = from;
+  }
+  arrays_.push_back(std::move(arrays));
+}
+
+const FrameBlock& TrajectorySource::load(std::size_t number, Scratch& scratch) const {
+  FrameBlock& block = static_cast<TrajectoryScratch&>(scratch).block;
+  const Chunk& chunk = chunks_.at(number);
+  const Arrays& a = *arrays_[chunk.stretch];
+  const Trajectory& t = trajectories_[chunk.stretch];
+  const std::size_t from = chunk.first;
+  block = {};
+  block.has = context_.has;
+  block.duration = chunk.duration;
+  block.frame_count = static_cast<std::int64_t>(chunk.last - chunk.first);
+  block.time = a.time.data() + from;
+  block.piece = a.piece.data() + from;
+  block.omega = motion_.omega ? a.omega.data() + from : nullptr;
+  block.phase = motion_.phase ? a.phase.data() + from : nullptr;
+  block.first = first_.data();
+  block.weight = a.weight.data() + from;
+  block.id = a.id.data() + from;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    block.position[axis] = a.position[axis].data() + from;
+    block.velocity[axis] = a.velocity[axis].data() + from;
+    block.location_position[axis] = t.location_position[axis].data() + chunk.location_first;
+  }
+  block.radius = a.radius.data() + from;
+  block.mass = a.mass.data() + from;
+  block.position_variance = exact_ ? nullptr : a.position_variance.data() + from;
+  block.velocity_variance = exact_ ? nullptr : a.velocity_variance.data() + from;
+  block.location_count = static_cast<std::int64_t>(chunk.location_last - chunk.location_first);
+  block.location_time = t.location_time.data() + chunk.location_first;
+  block.location_variance = exact_ ? nullptr : a.location_variance.data() + chunk.location_first;
+  block.location_id = a.location_id.data() + chunk.location_first;
+  return block;
+}
+
+}  // namespace millscope::studies
