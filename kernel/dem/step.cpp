@@ -7,13 +7,17 @@
 
 namespace millscope::dem {
 
-/// Phase A: walls, then the pairs of this slab.
-void System::contacts(int slab, int worker) {
+/// Phase A: walls, then the pairs of this slab. With `finish` phase B trails behind: pairs are listed by owner, and an owner comes before
+/// its partners, so that a bead is done with once the last list has passed it; it is finished while it is still in the cache.
+void System::contacts(int slab, int worker, bool finish_too) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
   Scratch& scratch = *scratch_[static_cast<std::size_t>(worker)];
   state.ledger.reset_instant();
+  state.result = {false, -1};
   for (std::size_t body = 0; body < bodies.size(); ++body) walls(slab, worker, body);
   const ScatterContext base{particles.force.data(), state.halo.data(), slab_begin(slab + 1), false};
+  const std::int64_t slab_end = base.slab_end;
+  std::int64_t finished = slab_begin(slab);
   for (std::size_t p = 0; p < physics_.size(); ++p) {
     if (physics_[p].wall) continue;
     const PairPhysics& physics = physics_[p];
@@ -36,15 +40,21 @@ void System::contacts(int slab, int worker) {
     for (std::int64_t first = 0; first < list.count; first += kBatch) {
       const std::int64_t last = std::min(list.count, first + kBatch);
       const std::int64_t count = wide_->search(gather, list, first, last, batch);
-      if (count == 0) continue;
-      wide_->gather(gather, list, count, batch);
-      count_collisions(count, batch, ledger);
-      if (step_ % 16 == 0) note_overlap(count, batch, ledger);
-      ledger.contacts += count;
-      evaluate({&physics, settings_.time_step, count, false}, batch, ledger);
-      wide_->scatter(scatter, list, count, moments, batch);
+      if (count > 0) {
+        wide_->gather(gather, list, count, batch);
+        count_collisions(count, batch, ledger);
+        if (step_ % 16 == 0) note_overlap(count, batch, ledger);
+        ledger.contacts += count;
+        evaluate({&physics, settings_.time_step, count, false}, batch, ledger);
+        wide_->scatter(scatter, list, count, moments, batch);
+      }
+      if (finish_too && p == last_list_ && last < list.count) {
+        finish(slab, worker, {finished, list.owner[last]});
+        finished = list.owner[last];
+      }
     }
   }
+  if (finish_too) finish(slab, worker, {finished, slab_end});
 }
 
 void System::find_first_references() {
@@ -61,12 +71,11 @@ void System::find_first_references() {
 }
 
 /// The forces that earlier slabs computed for beads of this one, added in slab order.
-void System::add_halos(int slab) {
-  const std::int64_t begin = slab_begin(slab), end = slab_begin(slab + 1);
+void System::add_halos(int slab, BeadRange range) {
   for (int earlier = 0; earlier < slab; ++earlier) {
     AlignedVector<ForceLine>& halo = slabs_[static_cast<std::size_t>(earlier)]->halo;
     const std::int64_t halo_begin = slab_begin(earlier + 1), halo_end = halo_begin + static_cast<std::int64_t>(halo.size());
-    for (std::int64_t i = std::max(begin, halo_begin); i < std::min(end, halo_end); ++i) {
+    for (std::int64_t i = std::max(range.begin, halo_begin); i < std::min(range.end, halo_end); ++i) {
       ForceLine& from = halo[static_cast<std::size_t>(i - halo_begin)];
       ForceLine& to = particles.force[static_cast<std::size_t>(i)];
       for (int a = 0; a < 3; ++a) {
@@ -79,13 +88,12 @@ void System::add_halos(int slab) {
 }
 
 /// Body forces that differ from bead to bead; the fluid that moves with a bead slows all that acts on it.
-void System::apply_body_forces(int slab, int worker) {
+void System::apply_body_forces(int slab, int worker, BeadRange range) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
   Scratch& scratch = *scratch_[static_cast<std::size_t>(worker)];
   double* const* array = scratch.body_arrays;
-  const std::int64_t end = slab_begin(slab + 1);
-  for (std::int64_t begin = slab_begin(slab); begin < end; begin += kBatch) {
-    const std::int64_t count = std::min(kBatch, end - begin);
+  for (std::int64_t begin = range.begin; begin < range.end; begin += kBatch) {
+    const std::int64_t count = std::min(kBatch, range.end - begin);
     for (std::int64_t k = 0; k < count; ++k) {
       const std::size_t i = static_cast<std::size_t>(begin + k);
       const double* x = &particles.position[i].x;
@@ -134,14 +142,15 @@ void System::apply_body_forces(int slab, int worker) {
   }
 }
 
-void System::finish_slab(int slab, int worker) {
-  add_halos(slab);
-  if (has_general_body_force_) apply_body_forces(slab, worker);
-  integrate(slab);
+void System::finish(int slab, int worker, BeadRange range) {
+  if (range.begin == range.end) return;
+  add_halos(slab, range);
+  if (has_general_body_force_) apply_body_forces(slab, worker, range);
+  integrate(slab, range);
 }
 
 /// Kick, drift, predict.
-void System::integrate(int slab) {
+void System::integrate(int slab, BeadRange range) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
   const IntegrateContext context{particles.position.data(),
                                  particles.motion.data(),
@@ -149,12 +158,14 @@ void System::integrate(int slab) {
                                  particles.force.data(),
                                  particles.acceleration.data(),
                                  particles.reference.data(),
-                                 slab_begin(slab),
-                                 slab_begin(slab + 1),
+                                 range.begin,
+                                 range.end,
                                  settings_.time_step,
                                  {acceleration_[0], acceleration_[1], acceleration_[2]},
                                  largest_step_ * largest_step_};
-  state.result = wide_->integrate(context);
+  const IntegrateResult result = wide_->integrate(context);
+  state.result.rebuild = state.result.rebuild || result.rebuild;
+  if (result.runaway >= 0) state.result.runaway = result.runaway;
 }
 
 void System::advance() {
@@ -169,21 +180,20 @@ void System::advance() {
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) poses_[b] = pose_at(bodies[b].motion, now);
   if (observe) {
-    workers_->run(settings_.partitions, [this](int slab, int worker) { contacts(slab, worker); });
+    workers_->run(settings_.partitions, [this](int slab, int worker) { contacts(slab, worker, false); });
     workers_->run(settings_.partitions, [this](int slab, int worker) {
-      add_halos(slab);
-      if (has_general_body_force_) apply_body_forces(slab, worker);
+      add_halos(slab, beads_of(slab));
+      if (has_general_body_force_) apply_body_forces(slab, worker, beads_of(slab));
     });
     observe(*this);
-    workers_->run(settings_.partitions, [this](int slab, int) { integrate(slab); });
+    workers_->run(settings_.partitions, [this](int slab, int) { integrate(slab, beads_of(slab)); });
   } else {
     workers_->run(settings_.partitions, [this](int slab, int worker) {
-      contacts(slab, worker);
-      if (follows_at_once(slab, worker)) finish_slab(slab, worker);
+      contacts(slab, worker, follows_at_once(slab, worker));
     });
     if (workers_->count() > 1) {
       workers_->run(settings_.partitions, [this](int slab, int worker) {
-        if (!follows_at_once(slab, worker)) finish_slab(slab, worker);
+        if (!follows_at_once(slab, worker)) finish(slab, worker, beads_of(slab));
       });
     }
   }

@@ -108,6 +108,9 @@ void System::prepare() {
   spare_material_.resize(beads);
   reaches_.resize(beads);
   for (auto& c : wall_coordinates_) c.resize(beads);
+  for (std::size_t p = 0; p < physics_.size(); ++p) {
+    if (!physics_[p].wall) last_list_ = p;
+  }
   equality_.assign(physics_.size(), Equality{});
   for (std::size_t p = 0; p < physics_.size(); ++p) {
     Equality e{true, -1, 0, {}};

@@ -137,16 +137,20 @@ class System {
   void build_pairs(int slab);
   void extract_wall_history();
   void build_walls();
-  void contacts(int slab, int worker);
+  void contacts(int slab, int worker, bool finish);
   void walls(int slab, int worker, std::size_t body);
-  void integrate(int slab);
-  void apply_body_forces(int slab, int worker);
-  void finish_slab(int slab, int worker);  ///< phase B
+  struct BeadRange {
+    std::int64_t begin, end;
+  };
+  BeadRange beads_of(int slab) const { return {slab_begin(slab), slab_begin(slab + 1)}; }
+  void integrate(int slab, BeadRange range);
+  void apply_body_forces(int slab, int worker, BeadRange range);
+  void finish(int slab, int worker, BeadRange range);  ///< phase B
   void find_first_references();
   bool follows_at_once(int slab, int worker) const {
     return first_reference_[static_cast<std::size_t>(slab)] >= workers_->first(worker, settings_.partitions);
   }
-  void add_halos(int slab);
+  void add_halos(int slab, BeadRange range);
   [[noreturn]] void complain(std::int64_t bead, const char* what) const;
   int pair_index(int a, int b, bool wall) const;
   std::int64_t slab_begin(int slab) const { return slab * particles.count() / settings_.partitions; }
@@ -171,6 +175,7 @@ class System {
   double wall_moved_ = 0;    ///< bound on its displacement since the rebuild, m
   double largest_step_ = 0;  ///< displacement in one step that no sound run reaches, m
   bool has_general_body_force_ = false;
+  std::size_t last_list_ = 0;                 ///< the last pair of materials of beads in `physics_`
   std::vector<int> first_reference_;          ///< per slab: the earliest slab with a pair that reaches into it
   std::vector<std::uint8_t> normal_channel_;  ///< per channel: its work counts as impact, not shear
 
