@@ -112,9 +112,16 @@ void System::save(const DoubleSink& put_doubles, const IntegerSink& put_integers
         at + "partner", [q](const SlabState& s) -> const auto& { return s.lists[q].partner; });
     integers(
         at + "touching", [q](const SlabState& s) -> const auto& { return s.lists[q].touching; });
+    std::vector<std::int64_t> contacts;
+    for (const auto& slab : slabs_) contacts.push_back(slab->lists[q].contact_count());
+    put_integers(at + "contacts", contacts.data(), contacts.size());
     for (std::size_t h = 0; h < slots; ++h) {
-      numbers(
-          fmt::format("{}history_{}", at, h), [ q, h ](const SlabState& s) -> const auto& { return s.lists[q].history[h]; });
+      std::vector<double> all;
+      for (std::size_t k = 0; k < slabs_.size(); ++k) {
+        const double* values = slabs_[k]->lists[q].history[h].data();
+        all.insert(all.end(), values, values + contacts[k]);
+      }
+      put_doubles(fmt::format("{}contact_history_{}", at, h), all.data(), all.size());
     }
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -200,9 +207,10 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
         get_integers(at + "partner"), count, slabs_, [q](SlabState & s) -> auto& { return s.lists[q].partner; });
     dealt(
         get_integers(at + "touching"), count, slabs_, [q](SlabState & s) -> auto& { return s.lists[q].touching; });
+    const std::vector<std::int64_t> contacts = get_integers(at + "contacts");
     for (std::size_t h = 0; h < slots; ++h) {
       dealt(
-          get_doubles(fmt::format("{}history_{}", at, h)), count, slabs_,
+          get_doubles(fmt::format("{}contact_history_{}", at, h)), contacts, slabs_,
           [ q, h ](SlabState & s) -> auto& { return s.lists[q].history[h]; });
     }
   }

@@ -119,8 +119,9 @@ void System::extract_pair_history() {
   const auto each = [this](const auto& visit) {
     for (const auto& slab : slabs_) {
       for (PairList& list : slab->lists) {
+        std::size_t contact = 0;
         for (std::size_t s = 0; s < list.touching.size(); ++s) {
-          if (list.touching[s]) visit(list, s, new_index_[list.owner[s]], new_index_[list.partner[s]]);
+          if (list.touching[s]) visit(list, contact++, new_index_[list.owner[s]], new_index_[list.partner[s]]);
         }
       }
     }
@@ -130,11 +131,11 @@ void System::extract_pair_history() {
   carried_partner_.resize(carried_start_[n]);
   carried_history_.resize(carried_start_[n] * slots);
   std::vector<std::uint32_t> next(carried_start_.begin(), carried_start_.end() - 1);
-  each([&](const PairList& list, std::size_t s, std::uint32_t i, std::uint32_t j) {
+  each([&](const PairList& list, std::size_t contact, std::uint32_t i, std::uint32_t j) {
     const std::size_t at = next[std::min(i, j)]++;
     carried_partner_[at] = std::max(i, j);
     for (std::size_t h = 0; h < slots; ++h) {
-      carried_history_[at * slots + h] = (i < j ? 1.0 : layout_.history_sign[h]) * list.history[h][s];
+      carried_history_[at * slots + h] = (i < j ? 1.0 : layout_.history_sign[h]) * list.history[h][contact];
     }
   });
 }
@@ -150,6 +151,7 @@ void System::build_pairs(int slab) {
     for (auto& h : list.history) h.clear();
   }
   std::vector<std::uint32_t> found;
+  std::vector<std::pair<std::size_t, std::uint32_t>> kept;  // slot and entry of a carried history
   std::int64_t last_partner = -1;
   const std::int64_t begin = slab_begin(slab), end = slab_begin(slab + 1);
   const int n0 = grid_.cells[grid_.axis[0]], n1 = grid_.cells[grid_.axis[1]], n2 = grid_.cells[grid_.axis[2]];
@@ -209,13 +211,17 @@ void System::build_pairs(int slab) {
                             found.begin() + static_cast<std::ptrdiff_t>(last));
         list.owner.insert(list.owner.end(), last - first, owner);
         list.touching.resize(total, 0);
-        for (auto& h : list.history) h.resize(total);
+        kept.clear();
         for (std::uint32_t e = carried_start_[owner]; e < carried_start_[owner + 1]; ++e) {
           const auto at = std::find(list.partner.begin() + static_cast<std::ptrdiff_t>(base), list.partner.end(), carried_partner_[e]);
           if (at == list.partner.end()) continue;
           const std::size_t s = static_cast<std::size_t>(at - list.partner.begin());
           list.touching[s] = 1;
-          for (std::size_t h = 0; h < slots; ++h) list.history[h][s] = carried_history_[e * slots + h];
+          kept.emplace_back(s, e);
+        }
+        std::sort(kept.begin(), kept.end());
+        for (const auto& [s, e] : kept) {
+          for (std::size_t h = 0; h < slots; ++h) list.history[h].push_back(carried_history_[e * slots + h]);
         }
       };
       if (material_count_ == 1) {

@@ -33,13 +33,16 @@ struct PeriodicBox {
 /// Numbers that law, interactions and pair parameters may keep per contact, all together.
 inline constexpr int kMaxHistories = 24;
 
-/// One part of the pair list: all listed pairs of one slab and one pair of materials. Owner i < partner j.
+/// One part of the pair list: all listed pairs of one slab and one pair of materials. Owner i < partner j. Histories stand in the order of
+/// the slots, for the touching ones only: a sweep reads those of the last step and writes those of this one.
 struct PairListView {
   std::int64_t count;
   const std::uint32_t* owner;
   const std::uint32_t* partner;
-  std::uint8_t* touching;          ///< 1 while within reach
-  double* history[kMaxHistories];  ///< per slot
+  std::uint8_t* touching;                ///< 1 while within reach
+  std::int64_t read, written;            ///< histories that the sweep has passed, and made
+  const double* history[kMaxHistories];  ///< per contact of the last step
+  double* next[kMaxHistories];           ///< per contact of this step: room for all that `written` plus one batch needs
   std::int32_t history_count;
 };
 
@@ -51,6 +54,7 @@ struct BatchArrays {
   std::uint32_t* owner;
   std::uint32_t* partner;
   std::uint32_t* slot;
+  std::uint32_t* source;  ///< where the history stood in the last step; any place when fresh
   std::uint8_t* fresh;
   double* difference[3];  ///< x_i − x_j
   double* normal[3];

@@ -31,7 +31,7 @@ void System::contacts(int slab, int worker, bool finish_too) {
     }
     const bool spins = !physics.interactions.empty();
     const bool moments = physics.has_post();
-    const PairListView list = state.lists[p].view();
+    PairListView list = state.lists[p].view();
     const GatherContext gather{particles.position.data(), particles.motion.data(), settings_.periodic, physics.reach, equality.equal, spins,
                                equality.radius,           0.5 * equality.mass};
     ScatterContext scatter = base;
@@ -41,6 +41,7 @@ void System::contacts(int slab, int worker, bool finish_too) {
       const std::int64_t last = std::min(list.count, first + kBatch);
       const std::int64_t count = wide_->search(gather, list, first, last, batch);
       if (count > 0) {
+        state.lists[p].make_room(list);
         wide_->gather(gather, list, count, batch);
         count_collisions(count, batch, ledger);
         if (step_ % 16 == 0) note_overlap(count, batch, ledger);
@@ -48,11 +49,13 @@ void System::contacts(int slab, int worker, bool finish_too) {
         evaluate({&physics, settings_.time_step, count, false}, batch, ledger);
         wide_->scatter(scatter, list, count, moments, batch);
       }
+      list.written += count;
       if (finish_too && p == last_list_ && last < list.count) {
         finish(slab, worker, {finished, list.owner[last]});
         finished = list.owner[last];
       }
     }
+    state.lists[p].end_sweep();
   }
   if (finish_too) finish(slab, worker, {finished, slab_end});
 }

@@ -25,8 +25,12 @@ namespace millscope::dem {
 struct PairList {
   std::vector<std::uint32_t> owner, partner;
   std::vector<std::uint8_t> touching;
-  std::vector<std::vector<double>> history;
+  std::vector<std::vector<double>> history;  ///< [number][contact]: of the touching slots, in their order; may have room to spare
+  std::vector<std::vector<double>> next;     ///< the same of the step that is being made
   PairListView view();
+  std::int64_t contact_count() const;
+  void make_room(PairListView& view);   ///< in `next` for one more batch
+  void end_sweep();                     ///< `next` becomes `history`
 };
 
 /// A contact that lasts, at a wall: its history is found again by bead, feature and the nearest normal.

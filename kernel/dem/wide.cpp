@@ -10,19 +10,23 @@ namespace {
 inline double root(double a) { return __builtin_sqrt(a); }
 
 template <bool kPeriodic>
-std::int64_t search_slots(const GatherContext& g, const PairListView& list, std::int64_t first, std::int64_t last, BatchArrays& b) {
+std::int64_t search_slots(const GatherContext& g, PairListView& list, std::int64_t first, std::int64_t last, BatchArrays& b) {
   const Box4 box = box4(g.box);
   const double* __restrict x = reinterpret_cast<const double*>(g.position);
   const std::uint32_t* __restrict owner = list.owner;
   const std::uint32_t* __restrict partner = list.partner;
   std::uint8_t* __restrict touching = list.touching;
   std::uint32_t* __restrict slot = b.slot;
+  std::uint32_t* __restrict source = b.source;
   std::uint8_t* __restrict fresh = b.fresh;
   const double reach = g.reach;
   std::int64_t n = 0;
+  std::uint32_t read = static_cast<std::uint32_t>(list.read);
   const auto keep = [&](std::int64_t s, std::int64_t hit) {
     slot[n] = static_cast<std::uint32_t>(s);
+    source[n] = read;
     fresh[n] = static_cast<std::uint8_t>(touching[s] ^ 1);
+    read += touching[s];
     touching[s] = static_cast<std::uint8_t>(hit);
     n += hit;
   };
@@ -43,10 +47,11 @@ std::int64_t search_slots(const GatherContext& g, const PairListView& list, std:
     const double limit = d[3] + reach;
     keep(s, d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < limit * limit);
   }
+  list.read = read;
   return n;
 }
 
-std::int64_t search(const GatherContext& g, const PairListView& list, std::int64_t first, std::int64_t last, BatchArrays& b) {
+std::int64_t search(const GatherContext& g, PairListView& list, std::int64_t first, std::int64_t last, BatchArrays& b) {
   return box4(g.box).any ? search_slots<true>(g, list, first, last, b) : search_slots<false>(g, list, first, last, b);
 }
 
@@ -167,8 +172,8 @@ void gather_history(const PairListView& list, std::int64_t count, std::int64_t p
     const double* __restrict from = list.history[h];
     double* __restrict to = b.history[h];
     const std::uint8_t* __restrict fresh = b.fresh;
-    const std::uint32_t* __restrict slot = b.slot;
-    for (std::int64_t k = 0; k < count; ++k) to[k] = fresh[k] ? 0.0 : from[slot[k]];
+    const std::uint32_t* __restrict source = b.source;
+    for (std::int64_t k = 0; k < count; ++k) to[k] = fresh[k] ? 0.0 : from[source[k]];
     for (std::int64_t k = count; k < padded; ++k) to[k] = 0.0;
   }
 }
@@ -291,9 +296,8 @@ void scatter(const ScatterContext& s, const PairListView& list, std::int64_t cou
   }
   for (std::int32_t h = 0; h < list.history_count; ++h) {
     const double* __restrict from = b.history[h];
-    double* __restrict to = list.history[h];
-    const std::uint32_t* __restrict slot = b.slot;
-    for (std::int64_t k = 0; k < count; ++k) to[slot[k]] = from[k];
+    double* __restrict to = list.next[h] + list.written;
+    for (std::int64_t k = 0; k < count; ++k) to[k] = from[k];
   }
 }
 

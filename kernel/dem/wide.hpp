@@ -45,8 +45,8 @@ struct IntegrateResult {
 
 struct WideTable {
   const char* name;
-  /// Finds the pairs of slots [first, last) that are within reach; fills owner, partner, slot, fresh. Returns their number.
-  std::int64_t (*search)(const GatherContext&, const PairListView&, std::int64_t first, std::int64_t last, BatchArrays&);
+  /// Finds the pairs of slots [first, last) that are within reach; fills slot, source, fresh. Returns their number.
+  std::int64_t (*search)(const GatherContext&, PairListView&, std::int64_t first, std::int64_t last, BatchArrays&);
   /// Fills overlap, normal, velocity, radius, mass (padded), history.
   void (*gather)(const GatherContext&, const PairListView&, std::int64_t count, BatchArrays&);
   /// Adds force × arms (and moments when `with_moments`) to the beads, stores histories.
