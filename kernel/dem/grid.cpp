@@ -12,6 +12,12 @@ double component(const PositionLine& p, int axis) { return axis == 0 ? p.x : axi
 
 double speed(const MotionLine& m) { return std::sqrt(m.v[0] * m.v[0] + m.v[1] * m.v[1] + m.v[2] * m.v[2]); }
 
+/// The skin is cut by what rounding to single precision may hide of a displacement.
+ReferenceLine reference_of(const PositionLine& x, double skin) {
+  const double hidden = 2e-7 * (std::abs(x.x) + std::abs(x.y) + std::abs(x.z)), allowed = std::max(0.0, skin - hidden);
+  return {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z), static_cast<float>(allowed * allowed)};
+}
+
 /// Puts items first…last of `values` where the new order wants them.
 template <class Values>
 void move_items(const Values& values, Values& to, const std::vector<std::uint32_t>& new_index, std::int64_t first, std::int64_t last) {
@@ -49,7 +55,7 @@ void System::sort_beads() {
       const double skin = std::min(settings_.skin_cap * largest_radius,
                                    settings_.skin_base * x.radius + settings_.skin_steps * settings_.time_step * speed(p.motion[k]));
       reaches_[k] = {x.x, x.y, x.z, x.radius + skin + 0.5 * law_reach};
-      p.reference[k] = {x.x, x.y, x.z, skin * skin};
+      p.reference[k] = reference_of(x, skin);
       e.reach = std::max(e.reach, reaches_[k].radius);
     }
   });
@@ -248,15 +254,11 @@ void System::rebuild() {
                   [&](int slab, int) { move_items(values, spare, new_index_, slab_begin(slab), slab_begin(slab + 1)); });
     values.swap(spare);
   };
-  // The forces are zero between steps: their lines serve as the spare half of the accelerations.
-  permute(p.acceleration, p.force);
-  workers_->run(settings_.partitions, [&p, this](int slab, int) {
-    std::fill(p.force.begin() + slab_begin(slab), p.force.begin() + slab_begin(slab + 1), ForceLine{});
-  });
+  permute(p.acceleration, spare_acceleration_);
   permute(p.motion, spare_motion_);
   permute(p.half, spare_motion_);
   permute(p.position, spare_position_);
-  permute(p.reference, spare_position_);
+  permute(p.reference, spare_reference_);
   permute(reaches_, spare_position_);
   permute(p.id, spare_id_);
   permute(p.material, spare_material_);

@@ -25,6 +25,17 @@ struct alignas(64) ForceLine {
   double f[3], unused_f, t[3], unused_t;
 };
 
+/// 32 bytes: linear (m/s²) and angular (rad/s²) acceleration of the last step. It only enters the prediction, in the second order of
+/// the step: single precision is ample.
+struct alignas(32) AccelerationLine {
+  float linear[4], angular[4];
+};
+
+/// 16 bytes: centre at the last list rebuild (m) and the square of the displacement that is allowed from there (m²).
+struct alignas(16) ReferenceLine {
+  float x, y, z, allowed2;
+};
+
 /// Periodic lengths per axis (m); 0: not periodic.
 struct PeriodicBox {
   double length[3];

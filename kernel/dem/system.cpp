@@ -122,6 +122,8 @@ void System::prepare() {
   const std::size_t beads = particles.position.size();
   spare_motion_.resize(beads);
   spare_position_.resize(beads);
+  spare_acceleration_.resize(beads);
+  spare_reference_.resize(beads);
   spare_id_.resize(beads);
   spare_material_.resize(beads);
   reaches_.resize(beads);

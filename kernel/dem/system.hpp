@@ -204,6 +204,8 @@ class System {
   // the other halves of swaps, kept from rebuild to rebuild
   AlignedVector<MotionLine> spare_motion_;
   AlignedVector<PositionLine> spare_position_;
+  AlignedVector<AccelerationLine> spare_acceleration_;
+  AlignedVector<ReferenceLine> spare_reference_;
   std::vector<std::uint32_t> spare_id_;
   std::vector<std::uint8_t> spare_material_;
   std::vector<double> wall_coordinates_[4];  ///< x, y, z in a body's frame, and reach, of every bead

@@ -312,15 +312,15 @@ IntegrateResult integrate(const IntegrateContext& c) {
     ForceLine& force = c.force[i];
     const Four a = (load4(force.f) * four(motion.inverse_mass) + g) * keep;
     const Four alpha = load4(force.t) * four(motion.inverse_inertia) * keep;
-    ForceLine& last = c.last[i];
-    const Four next_a = a + (a - load4(last.f)), next_alpha = alpha + (alpha - load4(last.t));
-    store4(last.f, a);
-    store4(last.t, alpha);
+    AccelerationLine& last = c.last[i];
+    const Four next_a = a + (a - load4_single(last.linear)), next_alpha = alpha + (alpha - load4_single(last.angular));
+    store4_single(last.linear, a);
+    store4_single(last.angular, alpha);
     const Four v = load4(half.v) + dt * a;
     const Four w = load4(half.w) + dt * alpha;
     const Four step = dt * v * keep;
     const Four x = load4(&c.position[i]) + step;
-    const Four moved = (x - load4(&c.reference[i])) * keep;
+    const Four moved = (x - load4_single(&c.reference[i].x)) * keep;
     const Four step2 = step * step, moved2 = moved * moved;
     store4(half.v, v);
     store4(half.w, w);
@@ -329,7 +329,7 @@ IntegrateResult integrate(const IntegrateContext& c) {
     store4(&c.position[i], x);
     store4(force.f, four(0.0));
     store4(force.t, four(0.0));
-    if (!(moved2[0] + moved2[1] + moved2[2] <= c.reference[i].radius)) result.rebuild = true;
+    if (!(moved2[0] + moved2[1] + moved2[2] <= static_cast<double>(c.reference[i].allowed2))) result.rebuild = true;
     if (!(step2[0] + step2[1] + step2[2] <= c.largest_step2)) result.runaway = i;
   }
   return result;

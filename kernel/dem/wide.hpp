@@ -29,8 +29,8 @@ struct IntegrateContext {
   MotionLine* motion;
   MotionLine* half;
   ForceLine* force;
-  ForceLine* last;                ///< accelerations of the last step, replaced
-  const PositionLine* reference;  ///< centre at the last rebuild; `radius` holds the square of the allowed displacement
+  AccelerationLine* last;  ///< of the last step, replaced
+  const ReferenceLine* reference;
   std::int64_t begin, end;
   double time_step;
   double acceleration[3];  ///< uniform, m/s²
