@@ -277,7 +277,7 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
     }
     slab.halo.assign(static_cast<std::size_t>(last + 1 - end), ForceLine{});
   }
-  find_first_references();
+  prepare_sweeps();
 }
 
 }  // namespace millscope::dem

@@ -190,7 +190,6 @@ System::Scratch::Scratch(int history_count) {
   wall.capacity = kBatch;
   pair.resize(stride);
   normal.resize(stride);
-  query_first.resize(stride);
 }
 
 }  // namespace millscope::dem

@@ -263,7 +263,7 @@ void System::rebuild() {
   permute(p.id, spare_id_);
   permute(p.material, spare_material_);
   workers_->run(settings_.partitions, [this](int slab, int) { build_pairs(slab); });
-  find_first_references();
+  prepare_sweeps();
   build_walls();
   ++rebuilds_;
   last_rebuild_step_ = step_;

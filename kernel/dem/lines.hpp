@@ -36,6 +36,14 @@ struct alignas(16) ReferenceLine {
   float x, y, z, allowed2;
 };
 
+/// Where the forces of a slab's beads stand while its step is made: all of them side by side (mask −1), or, where beads are finished behind
+/// the pair loop, in a ring that is just long enough and stays in the cache. Lines are zero before the first force and after the last.
+struct ForceWindow {
+  ForceLine* lines;
+  std::int64_t mask;  ///< −1, or a power of two less one
+  ForceLine& operator[](std::int64_t bead) const { return lines[bead & mask]; }
+};
+
 /// Periodic lengths per axis (m); 0: not periodic.
 struct PeriodicBox {
   double length[3];

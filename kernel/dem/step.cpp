@@ -1,5 +1,6 @@
 // One time step.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "kernel/config/error.hpp"
@@ -7,49 +8,32 @@
 
 namespace millscope::dem {
 
-/// Phase A: walls, then the pairs of this slab. With `finish` phase B trails behind: pairs are listed by owner, and an owner comes before
+/// How far the walls are seen to before the batch that ends at slot `last`: beyond every bead that is finished after it.
+std::int64_t System::wall_target(const PairListView& list, std::int64_t last, std::int64_t slab_end) {
+  constexpr std::int64_t kAhead = 512;
+  return last < list.count ? std::min<std::int64_t>(slab_end, list.owner[last] + kAhead) : slab_end;
+}
+
+/// Phase A: walls and the pairs of this slab. With `finish_too` phase B trails behind: pairs are listed by owner, and an owner comes before
 /// its partners, so that a bead is done with once the last list has passed it; it is finished while it is still in the cache.
 void System::contacts(int slab, int worker, bool finish_too) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
   Scratch& scratch = *scratch_[static_cast<std::size_t>(worker)];
   state.ledger.reset_instant();
   state.result = {false, -1};
-  for (std::size_t body = 0; body < bodies.size(); ++body) walls(slab, worker, body);
-  const ScatterContext base{particles.force.data(), state.halo.data(), slab_begin(slab + 1), false};
-  const std::int64_t slab_end = base.slab_end;
+  const bool in_ring = finish_too && state.ring > 0;
+  state.force = in_ring ? ForceWindow{scratch.ring.data(), state.ring - 1} : ForceWindow{particles.force.data(), -1};
+  const std::int64_t slab_end = slab_begin(slab + 1);
+  begin_walls(slab);
+  if (list_count_ != 1) walls(slab, worker, slab_end);
   std::int64_t finished = slab_begin(slab);
   for (std::size_t p = 0; p < physics_.size(); ++p) {
     if (physics_[p].wall) continue;
-    const PairPhysics& physics = physics_[p];
-    const Equality& equality = equality_[p];
-    BatchArrays batch = scratch.batch;
-    if (equality.equal) {
-      // Arrays that hold the same number everywhere, made once.
-      batch.radius = equality.arrays[0]->data();
-      batch.mass = equality.arrays[1]->data();
-      batch.radius_i = batch.radius_j = equality.arrays[2]->data();
-    }
-    const bool spins = !physics.interactions.empty();
-    const bool moments = physics.has_post();
     PairListView list = state.lists[p].view();
-    const GatherContext gather{particles.position.data(), particles.motion.data(), settings_.periodic, physics.reach, equality.equal, spins,
-                               equality.radius,           0.5 * equality.mass};
-    ScatterContext scatter = base;
-    scatter.equal = equality.equal;
-    PairLedger& ledger = state.ledger.pairs[p];
     for (std::int64_t first = 0; first < list.count; first += kBatch) {
       const std::int64_t last = std::min(list.count, first + kBatch);
-      const std::int64_t count = wide_->search(gather, list, first, last, batch);
-      if (count > 0) {
-        state.lists[p].make_room(list);
-        wide_->gather(gather, list, count, batch);
-        count_collisions(count, batch, ledger);
-        if (step_ % 16 == 0) note_overlap(count, batch, ledger);
-        ledger.contacts += count;
-        evaluate({&physics, settings_.time_step, count, false}, batch, ledger);
-        wide_->scatter(scatter, list, count, moments, batch);
-      }
-      list.written += count;
+      if (list_count_ == 1) walls(slab, worker, wall_target(list, last, slab_end));
+      list.written += pair_batch(slab, worker, p, {first, last}, list);
       if (finish_too && p == last_list_ && last < list.count) {
         finish(slab, worker, {finished, list.owner[last]});
         finished = list.owner[last];
@@ -57,10 +41,76 @@ void System::contacts(int slab, int worker, bool finish_too) {
     }
     state.lists[p].end_sweep();
   }
+  walls(slab, worker, slab_end);
+  end_walls(slab);
   if (finish_too) finish(slab, worker, {finished, slab_end});
 }
 
-void System::find_first_references() {
+/// Contacts among the list slots of one batch. Returns their number.
+std::int64_t System::pair_batch(int slab, int worker, std::size_t p, SlotRange slots, PairListView& list) {
+  SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
+  const PairPhysics& physics = physics_[p];
+  const Equality& equality = equality_[p];
+  BatchArrays batch = scratch_[static_cast<std::size_t>(worker)]->batch;
+  if (equality.equal) {
+    // Arrays that hold the same number everywhere, made once.
+    batch.radius = equality.arrays[0]->data();
+    batch.mass = equality.arrays[1]->data();
+    batch.radius_i = batch.radius_j = equality.arrays[2]->data();
+  }
+  const GatherContext gather{particles.position.data(),
+                             particles.motion.data(),
+                             settings_.periodic,
+                             physics.reach,
+                             equality.equal,
+                             !physics.interactions.empty(),
+                             equality.radius,
+                             0.5 * equality.mass};
+  const std::int64_t count = wide_->search(gather, list, slots.first, slots.last, batch);
+  if (count == 0) return 0;
+  state.lists[p].make_room(list);
+  wide_->gather(gather, list, count, batch);
+  PairLedger& ledger = state.ledger.pairs[p];
+  count_collisions(count, batch, ledger);
+  if (step_ % 16 == 0) note_overlap(count, batch, ledger);
+  ledger.contacts += count;
+  evaluate({&physics, settings_.time_step, count, false}, batch, ledger);
+  const ScatterContext scatter{state.force, state.halo.data(), slab_begin(slab + 1), equality.equal};
+  wide_->scatter(scatter, list, count, physics.has_post(), batch);
+  return count;
+}
+
+/// The length of the ring that serves a slab: the most beads that carry forces at once, in the order in which `contacts` goes.
+void System::size_ring(int slab) {
+  SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
+  const BeadRange beads = beads_of(slab);
+  state.ring = 0;
+  if (list_count_ != 1) return;
+  const PairListView list = state.lists[last_list_].view();
+  std::int64_t finished = beads.begin, longest = 0, touched = beads.begin;
+  for (std::int64_t first = 0; first < list.count; first += kBatch) {
+    const std::int64_t last = std::min(list.count, first + kBatch);
+    touched = std::max(touched, wall_target(list, last, beads.end));
+    for (std::int64_t s = first; s < last; ++s) {
+      const std::int64_t partner = list.partner[s];
+      if (partner < beads.end) touched = std::max(touched, partner + 1);
+    }
+    longest = std::max(longest, touched - finished);
+    if (last < list.count) finished = list.owner[last];
+  }
+  longest = std::max(longest, beads.end - finished);
+  const std::int64_t ring = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(longest)));
+  if (2 * ring <= beads.end - beads.begin) state.ring = ring;
+}
+
+/// What follows from new lists: which slabs reach into which, and the rings.
+void System::prepare_sweeps() {
+  for (int slab = 0; slab < settings_.partitions; ++slab) size_ring(slab);
+  std::int64_t longest = 0;
+  for (const auto& slab : slabs_) longest = std::max(longest, slab->ring);
+  for (const auto& scratch : scratch_) {
+    if (static_cast<std::int64_t>(scratch->ring.size()) < longest) scratch->ring.assign(static_cast<std::size_t>(longest), ForceLine{});
+  }
   first_reference_.assign(static_cast<std::size_t>(settings_.partitions), 0);
   for (int slab = 0; slab < settings_.partitions; ++slab) {
     int first = slab;
@@ -75,12 +125,13 @@ void System::find_first_references() {
 
 /// The forces that earlier slabs computed for beads of this one, added in slab order.
 void System::add_halos(int slab, BeadRange range) {
+  const ForceWindow force = slabs_[static_cast<std::size_t>(slab)]->force;
   for (int earlier = 0; earlier < slab; ++earlier) {
     AlignedVector<ForceLine>& halo = slabs_[static_cast<std::size_t>(earlier)]->halo;
     const std::int64_t halo_begin = slab_begin(earlier + 1), halo_end = halo_begin + static_cast<std::int64_t>(halo.size());
     for (std::int64_t i = std::max(range.begin, halo_begin); i < std::min(range.end, halo_end); ++i) {
       ForceLine& from = halo[static_cast<std::size_t>(i - halo_begin)];
-      ForceLine& to = particles.force[static_cast<std::size_t>(i)];
+      ForceLine& to = force[i];
       for (int a = 0; a < 3; ++a) {
         to.f[a] += from.f[a];
         to.t[a] += from.t[a];
@@ -130,7 +181,7 @@ void System::apply_body_forces(int slab, int worker, BeadRange range) {
       state.ledger.body_force_work[f] += batch.power_sum * settings_.time_step;
     }
     for (std::int64_t k = 0; k < count; ++k) {
-      ForceLine& line = particles.force[static_cast<std::size_t>(begin + k)];
+      ForceLine& line = state.force[begin + k];
       for (int a = 0; a < 3; ++a) {
         line.f[a] += array[11 + a][k];
         line.t[a] += array[14 + a][k];
@@ -158,7 +209,7 @@ void System::integrate(int slab, BeadRange range) {
   const IntegrateContext context{particles.position.data(),
                                  particles.motion.data(),
                                  particles.half.data(),
-                                 particles.force.data(),
+                                 state.force,
                                  particles.acceleration.data(),
                                  particles.reference.data(),
                                  range.begin,

@@ -128,8 +128,11 @@ void System::prepare() {
   spare_material_.resize(beads);
   reaches_.resize(beads);
   for (auto& c : wall_coordinates_) c.resize(beads);
+  list_count_ = 0;
   for (std::size_t p = 0; p < physics_.size(); ++p) {
-    if (!physics_[p].wall) last_list_ = p;
+    if (physics_[p].wall) continue;
+    last_list_ = p;
+    ++list_count_;
   }
   equality_.assign(physics_.size(), Equality{});
   for (std::size_t p = 0; p < physics_.size(); ++p) {

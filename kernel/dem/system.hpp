@@ -48,7 +48,9 @@ struct WallSlab {
   std::vector<std::uint32_t> bead;  ///< bead index
   std::vector<std::int64_t> first;  ///< bead.size() + 1
   std::vector<std::uint32_t> candidates;
-  WallContacts active, next;
+  WallContacts active, next;  ///< of the last step and of this one
+  std::size_t swept = 0;      ///< beads of `bead` that this step has been through
+  std::size_t matched = 0;    ///< contacts of `active` that it has passed
 };
 
 struct Body {
@@ -141,8 +143,25 @@ class System {
   void build_pairs(int slab);
   void extract_wall_history();
   void build_walls();
-  void contacts(int slab, int worker, bool finish);
-  void walls(int slab, int worker, std::size_t body);
+  struct SlotRange {
+    std::int64_t first, last;
+  };
+  void contacts(int slab, int worker, bool finish_too);
+  std::int64_t pair_batch(int slab, int worker, std::size_t physics, SlotRange slots, PairListView& list);
+  static std::int64_t wall_target(const PairListView& list, std::int64_t last, std::int64_t slab_end);
+  void size_ring(int slab);
+  struct WallChunk {
+    int slab, worker;
+    std::size_t body;
+    std::int64_t begin, count;  ///< of WallSlab::bead
+    std::size_t base;           ///< its first contact in WallSlab::next
+  };
+  void begin_walls(int slab);
+  void walls(int slab, int worker, std::int64_t end);
+  void find_wall_contacts(WallChunk& chunk);
+  std::int64_t gather_wall_batch(const WallChunk& chunk, std::size_t physics);
+  void scatter_wall_batch(const WallChunk& chunk, std::size_t physics, std::int64_t count);
+  void end_walls(int slab);
   struct BeadRange {
     std::int64_t begin, end;
   };
@@ -150,7 +169,7 @@ class System {
   void integrate(int slab, BeadRange range);
   void apply_body_forces(int slab, int worker, BeadRange range);
   void finish(int slab, int worker, BeadRange range);  ///< phase B
-  void find_first_references();
+  void prepare_sweeps();
   bool follows_at_once(int slab, int worker) const {
     return first_reference_[static_cast<std::size_t>(slab)] >= workers_->first(worker, settings_.partitions);
   }
@@ -180,6 +199,7 @@ class System {
   double largest_step_ = 0;  ///< displacement in one step that no sound run reaches, m
   bool has_general_body_force_ = false;
   std::size_t last_list_ = 0;                 ///< the last pair of materials of beads in `physics_`
+  int list_count_ = 0;                        ///< how many there are
   std::vector<int> first_reference_;          ///< per slab: the earliest slab with a pair that reaches into it
   std::vector<std::uint8_t> normal_channel_;  ///< per channel: its work counts as impact, not shear
 

@@ -276,8 +276,8 @@ void scatter_lines(const ScatterContext& s, std::int64_t count, const BatchArray
     const int lanes = count - k < 4 ? static_cast<int>(count - k) : 4;
     for (int c = 0; c < lanes; ++c) {
       const std::int64_t i = b.owner[k + c], j = b.partner[k + c];
-      ForceLine* to_i = s.force + i;
-      ForceLine* to_j = j < s.slab_end ? s.force + j : s.halo + (j - s.slab_end);
+      ForceLine* to_i = &s.force[i];
+      ForceLine* to_j = j < s.slab_end ? &s.force[j] : s.halo + (j - s.slab_end);
       store4(to_i->f, load4(to_i->f) + f[c]);
       store4(to_i->t, load4(to_i->t) + ti[c]);
       store4(to_j->f, load4(to_j->f) - f[c]);

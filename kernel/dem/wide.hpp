@@ -18,7 +18,7 @@ struct GatherContext {
 };
 
 struct ScatterContext {
-  ForceLine* force;  ///< of all beads; the slab writes its own only
+  ForceWindow force;
   ForceLine* halo;   ///< of beads from `slab_end` on
   std::int64_t slab_end;
   bool equal;  ///< torque_i serves both
@@ -28,7 +28,7 @@ struct IntegrateContext {
   PositionLine* position;
   MotionLine* motion;
   MotionLine* half;
-  ForceLine* force;
+  ForceWindow force;
   AccelerationLine* last;  ///< of the last step, replaced
   const ReferenceLine* reference;
   std::int64_t begin, end;
