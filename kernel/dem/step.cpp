@@ -7,12 +7,12 @@
 #include "kernel/dem/slab.hpp"
 
 namespace millscope::dem {
+namespace {
 
-/// How far the walls are seen to before the batch that ends at slot `last`: beyond every bead that is finished after it.
-std::int64_t System::wall_target(const PairListView& list, std::int64_t last, std::int64_t slab_end) {
-  constexpr std::int64_t kAhead = 512;
-  return last < list.count ? std::min<std::int64_t>(slab_end, list.owner[last] + kAhead) : slab_end;
-}
+// Walls and phase B trail behind the pairs by this many batches: few enough that the beads between are still in the cache.
+constexpr std::int64_t kTrail = 4;
+
+}  // namespace
 
 /// Phase A: walls and the pairs of this slab. With `finish_too` phase B trails behind: pairs are listed by owner, and an owner comes before
 /// its partners, so that a bead is done with once the last list has passed it; it is finished while it is still in the cache.
@@ -25,17 +25,16 @@ void System::contacts(int slab, int worker, bool finish_too) {
   state.force = in_ring ? ForceWindow{scratch.ring.data(), state.ring - 1} : ForceWindow{particles.force.data(), -1};
   const std::int64_t slab_end = slab_begin(slab + 1);
   begin_walls(slab);
-  if (list_count_ != 1) walls(slab, worker, slab_end);
   std::int64_t finished = slab_begin(slab);
   for (std::size_t p = 0; p < physics_.size(); ++p) {
     if (physics_[p].wall) continue;
     PairListView list = state.lists[p].view();
     for (std::int64_t first = 0; first < list.count; first += kBatch) {
       const std::int64_t last = std::min(list.count, first + kBatch);
-      if (list_count_ == 1) walls(slab, worker, wall_target(list, last, slab_end));
       list.written += pair_batch(slab, worker, p, {first, last}, list);
-      if (finish_too && p == last_list_ && last < list.count) {
-        finish(slab, worker, {finished, list.owner[last]});
+      if (p == last_list_ && last < list.count && last % (kTrail * kBatch) == 0) {
+        walls(slab, worker, list.owner[last]);
+        if (finish_too) finish(slab, worker, {finished, list.owner[last]});
         finished = list.owner[last];
       }
     }
@@ -58,14 +57,21 @@ std::int64_t System::pair_batch(int slab, int worker, std::size_t p, SlotRange s
     batch.mass = equality.arrays[1]->data();
     batch.radius_i = batch.radius_j = equality.arrays[2]->data();
   }
-  const GatherContext gather{particles.position.data(),
+  GatherContext gather{particles.position.data(),
                              particles.motion.data(),
                              settings_.periodic,
                              physics.reach,
                              equality.equal,
                              !physics.interactions.empty(),
                              equality.radius,
-                             0.5 * equality.mass};
+                             0.5 * equality.mass,
+                             0,
+                             0};
+  const std::size_t batch_index = static_cast<std::size_t>(slots.first / kBatch);
+  if (p == last_list_ && batch_index + 2 < state.frontier.size()) {
+    gather.ahead = state.frontier[batch_index + 1];
+    gather.ahead_end = state.frontier[batch_index + 2];
+  }
   const std::int64_t count = wide_->search(gather, list, slots.first, slots.last, batch);
   if (count == 0) return 0;
   state.lists[p].make_room(list);
@@ -80,27 +86,28 @@ std::int64_t System::pair_batch(int slab, int worker, std::size_t p, SlotRange s
   return count;
 }
 
-/// The length of the ring that serves a slab: the most beads that carry forces at once, in the order in which `contacts` goes.
+/// How far each batch reaches, and the length of the ring that serves a slab: the most beads that carry forces at once, in the order in which `contacts` goes.
 void System::size_ring(int slab) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
   const BeadRange beads = beads_of(slab);
   state.ring = 0;
-  if (list_count_ != 1) return;
+  state.frontier.clear();
   const PairListView list = state.lists[last_list_].view();
-  std::int64_t finished = beads.begin, longest = 0, touched = beads.begin;
+  std::int64_t finished = beads.begin, longest = 0, touched = beads.begin, frontier = beads.begin;
   for (std::int64_t first = 0; first < list.count; first += kBatch) {
     const std::int64_t last = std::min(list.count, first + kBatch);
-    touched = std::max(touched, wall_target(list, last, beads.end));
     for (std::int64_t s = first; s < last; ++s) {
       const std::int64_t partner = list.partner[s];
+      frontier = std::max(frontier, partner + 1);
       if (partner < beads.end) touched = std::max(touched, partner + 1);
     }
+    state.frontier.push_back(static_cast<std::uint32_t>(frontier));
     longest = std::max(longest, touched - finished);
-    if (last < list.count) finished = list.owner[last];
+    if (last < list.count && last % (kTrail * kBatch) == 0) finished = list.owner[last];
   }
   longest = std::max(longest, beads.end - finished);
   const std::int64_t ring = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(longest)));
-  if (2 * ring <= beads.end - beads.begin) state.ring = ring;
+  if (list_count_ == 1 && 2 * ring <= beads.end - beads.begin) state.ring = ring;
 }
 
 /// What follows from new lists: which slabs reach into which, and the rings.

@@ -148,7 +148,6 @@ class System {
   };
   void contacts(int slab, int worker, bool finish_too);
   std::int64_t pair_batch(int slab, int worker, std::size_t physics, SlotRange slots, PairListView& list);
-  static std::int64_t wall_target(const PairListView& list, std::int64_t last, std::int64_t slab_end);
   void size_ring(int slab);
   struct WallChunk {
     int slab, worker;

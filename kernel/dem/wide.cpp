@@ -35,7 +35,14 @@ std::int64_t search_slots(const GatherContext& g, PairListView& list, std::int64
     return kPeriodic ? minimum_image(d, box) : d;
   };
   std::int64_t s = first;
+  std::int64_t ahead = g.ahead;
   for (; s + 4 <= last; s += 4) {
+    if (ahead < g.ahead_end) {
+      __builtin_prefetch(g.position + ahead, 0, 2);
+      __builtin_prefetch(g.motion + ahead, 0, 2);
+      __builtin_prefetch(g.motion + ahead + 1, 0, 2);
+      ahead += 2;
+    }
     Four d[4] = {difference(s), difference(s + 1), difference(s + 2), difference(s + 3)};
     transpose(d[0], d[1], d[2], d[3]);
     const Four limit = d[3] + four(reach);
@@ -307,6 +314,9 @@ IntegrateResult integrate(const IntegrateContext& c) {
   const Four g = {c.acceleration[0], c.acceleration[1], c.acceleration[2], 0.0};
   const Four keep = {1.0, 1.0, 1.0, 0.0};
   for (std::int64_t i = c.begin; i < c.end; ++i) {
+    __builtin_prefetch(c.half + i + 12, 1, 2);
+    __builtin_prefetch(c.last + i + 12, 1, 2);
+    __builtin_prefetch(c.reference + i + 12, 0, 2);
     MotionLine& motion = c.motion[i];
     MotionLine& half = c.half[i];
     ForceLine& force = c.force[i];

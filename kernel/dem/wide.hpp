@@ -15,6 +15,8 @@ struct GatherContext {
   bool spins;     ///< also fill spin_i, spin_j (interactions need them)
   double radius;  ///< when equal
   double mass;    ///< m*, when equal
+  /// Beads that the batches to come will touch first: `search` asks for their lines in passing.
+  std::int64_t ahead, ahead_end;
 };
 
 struct ScatterContext {
