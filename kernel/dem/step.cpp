@@ -66,11 +66,19 @@ std::int64_t System::pair_batch(int slab, int worker, std::size_t p, SlotRange s
                              equality.radius,
                              0.5 * equality.mass,
                              0,
-                             0};
+                             0,
+                             nullptr};
   const std::size_t batch_index = static_cast<std::size_t>(slots.first / kBatch);
   if (p == last_list_ && batch_index + 2 < state.frontier.size()) {
     gather.ahead = state.frontier[batch_index + 1];
     gather.ahead_end = state.frontier[batch_index + 2];
+    const std::int64_t slab_end = slab_begin(slab + 1);
+    if (gather.ahead >= slab_end) {
+      gather.ahead_force = state.halo.data() + (gather.ahead - slab_end);
+    } else if (state.force.mask == -1) {
+      gather.ahead_force = particles.force.data() + gather.ahead;
+      gather.ahead_end = std::min(gather.ahead_end, slab_end);
+    }
   }
   const std::int64_t count = wide_->search(gather, list, slots.first, slots.last, batch);
   if (count == 0) return 0;
@@ -107,7 +115,7 @@ void System::size_ring(int slab) {
   }
   longest = std::max(longest, beads.end - finished);
   const std::int64_t ring = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(longest)));
-  if (list_count_ == 1 && 2 * ring <= beads.end - beads.begin) state.ring = ring;
+  if (list_count_ == 1 && ring < beads.end - beads.begin) state.ring = ring;
 }
 
 /// What follows from new lists: which slabs reach into which, and the rings.

@@ -41,6 +41,10 @@ std::int64_t search_slots(const GatherContext& g, PairListView& list, std::int64
       __builtin_prefetch(g.position + ahead, 0, 2);
       __builtin_prefetch(g.motion + ahead, 0, 2);
       __builtin_prefetch(g.motion + ahead + 1, 0, 2);
+      if (g.ahead_force) {
+        __builtin_prefetch(g.ahead_force + (ahead - g.ahead), 1, 2);
+        __builtin_prefetch(g.ahead_force + (ahead - g.ahead) + 1, 1, 2);
+      }
       ahead += 2;
     }
     Four d[4] = {difference(s), difference(s + 1), difference(s + 2), difference(s + 3)};

@@ -17,6 +17,7 @@ struct GatherContext {
   double mass;    ///< m*, when equal
   /// Beads that the batches to come will touch first: `search` asks for their lines in passing.
   std::int64_t ahead, ahead_end;
+  const ForceLine* ahead_force;  ///< where the force of bead `ahead` stands; nullptr: those lines are in the cache already
 };
 
 struct ScatterContext {
