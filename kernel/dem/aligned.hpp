@@ -19,11 +19,11 @@ struct CacheAligned {
   CacheAligned(const CacheAligned<U>&) {}
   T* allocate(std::size_t n) {
     const std::size_t bytes = n * sizeof(T);
-    void* p = ::operator new (bytes, alignment(bytes));
+    void* p = ::operator new(bytes, alignment(bytes));
     if (bytes >= kHugePage) madvise(p, bytes, MADV_HUGEPAGE);  // where it is refused, small pages do as well
     return static_cast<T*>(p);
   }
-  void deallocate(T* p, std::size_t n) { ::operator delete (p, alignment(n * sizeof(T))); }
+  void deallocate(T* p, std::size_t n) { ::operator delete(p, alignment(n * sizeof(T))); }
   static std::align_val_t alignment(std::size_t bytes) { return std::align_val_t{bytes >= kHugePage ? kHugePage : kCacheLine}; }
   friend bool operator==(const CacheAligned&, const CacheAligned&) { return true; }
 };

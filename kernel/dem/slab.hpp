@@ -8,10 +8,10 @@ namespace millscope::dem {
 struct SlabState {
   std::vector<PairList> lists;  ///< one per pair of materials (those with a wall stay empty)
   AlignedVector<ForceLine> halo;
-  ForceWindow force{nullptr, -1};  ///< in use during this step
+  ForceWindow force{nullptr, -1};       ///< in use during this step
   std::vector<std::uint32_t> frontier;  ///< [batch of the last list]: the first bead that it and earlier ones do not touch
-  std::int64_t ring = 0;           ///< lines that a ring needs, a power of two; 0: the slab is no longer than that
-  std::vector<WallSlab> walls;  ///< one per body
+  std::int64_t ring = 0;                ///< lines that a ring needs, a power of two; 0: the slab is no longer than that
+  std::vector<WallSlab> walls;          ///< one per body
   Ledger ledger;
   std::vector<std::vector<double>> impact, shear;  ///< [body][triangle], J
   IntegrateResult result{false, -1};

@@ -58,16 +58,16 @@ std::int64_t System::pair_batch(int slab, int worker, std::size_t p, SlotRange s
     batch.radius_i = batch.radius_j = equality.arrays[2]->data();
   }
   GatherContext gather{particles.position.data(),
-                             particles.motion.data(),
-                             settings_.periodic,
-                             physics.reach,
-                             equality.equal,
-                             !physics.interactions.empty(),
-                             equality.radius,
-                             0.5 * equality.mass,
-                             0,
-                             0,
-                             nullptr};
+                       particles.motion.data(),
+                       settings_.periodic,
+                       physics.reach,
+                       equality.equal,
+                       !physics.interactions.empty(),
+                       equality.radius,
+                       0.5 * equality.mass,
+                       0,
+                       0,
+                       nullptr};
   const std::size_t batch_index = static_cast<std::size_t>(slots.first / kBatch);
   if (p == last_list_ && batch_index + 2 < state.frontier.size()) {
     gather.ahead = state.frontier[batch_index + 1];
@@ -94,7 +94,8 @@ std::int64_t System::pair_batch(int slab, int worker, std::size_t p, SlotRange s
   return count;
 }
 
-/// How far each batch reaches, and the length of the ring that serves a slab: the most beads that carry forces at once, in the order in which `contacts` goes.
+/// How far each batch reaches, and the length of the ring that serves a slab: the most beads that carry forces at once, in the order in
+/// which `contacts` goes.
 void System::size_ring(int slab) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
   const BeadRange beads = beads_of(slab);
@@ -257,9 +258,7 @@ void System::advance() {
     observe(*this);
     workers_->run(settings_.partitions, [this](int slab, int) { integrate(slab, beads_of(slab)); });
   } else {
-    workers_->run(settings_.partitions, [this](int slab, int worker) {
-      contacts(slab, worker, follows_at_once(slab, worker));
-    });
+    workers_->run(settings_.partitions, [this](int slab, int worker) { contacts(slab, worker, follows_at_once(slab, worker)); });
     if (workers_->count() > 1) {
       workers_->run(settings_.partitions, [this](int slab, int worker) {
         if (!follows_at_once(slab, worker)) finish(slab, worker, beads_of(slab));

@@ -307,7 +307,8 @@ std::uint64_t System::state_hash() const {
   for (const Entry& e : entries) {
     hash.add(&e.a, sizeof e.a);
     hash.add(&e.b, sizeof e.b);
-    for (std::size_t h = 0; h < e.list->history.size(); ++h) hash.add((e.flip ? layout_.history_sign[h] : 1) * e.list->history[h][e.contact]);
+    for (std::size_t h = 0; h < e.list->history.size(); ++h)
+      hash.add((e.flip ? layout_.history_sign[h] : 1) * e.list->history[h][e.contact]);
   }
   for (std::size_t body = 0; body < bodies.size(); ++body) {
     std::vector<std::pair<std::uint32_t, std::vector<double>>> contacts;

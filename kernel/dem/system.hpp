@@ -29,8 +29,8 @@ struct PairList {
   std::vector<std::vector<double>> next;     ///< the same of the step that is being made
   PairListView view();
   std::int64_t contact_count() const;
-  void make_room(PairListView& view);   ///< in `next` for one more batch
-  void end_sweep();                     ///< `next` becomes `history`
+  void make_room(PairListView& view);  ///< in `next` for one more batch
+  void end_sweep();                    ///< `next` becomes `history`
 };
 
 /// A contact that lasts, at a wall: its history is found again by bead, feature and the nearest normal.

@@ -232,6 +232,9 @@ void gather(const GatherContext& g, const PairListView& list, std::int64_t count
     kinematics<false>(padded, 0.0, b);
   }
   gather_history(list, count, padded, b);
+  for (std::int32_t h = 0; h < list.history_count; ++h) {  // those of the next batch, about as many
+    for (std::int64_t k = 0; k < count; k += 8) __builtin_prefetch(list.history[h] + list.read + k, 0, 2);
+  }
   pad(count, padded, b);
 }
 
@@ -313,14 +316,15 @@ void scatter(const ScatterContext& s, const PairListView& list, std::int64_t cou
 }
 
 IntegrateResult integrate(const IntegrateContext& c) {
+  constexpr std::int64_t kFetchAhead = 24;  // beads: longer than a line takes to come from memory
   IntegrateResult result{false, -1};
   const Four dt = four(c.time_step), half_dt = four(0.5 * c.time_step);
   const Four g = {c.acceleration[0], c.acceleration[1], c.acceleration[2], 0.0};
   const Four keep = {1.0, 1.0, 1.0, 0.0};
   for (std::int64_t i = c.begin; i < c.end; ++i) {
-    __builtin_prefetch(c.half + i + 12, 1, 2);
-    __builtin_prefetch(c.last + i + 12, 1, 2);
-    __builtin_prefetch(c.reference + i + 12, 0, 2);
+    __builtin_prefetch(c.half + i + kFetchAhead, 1, 2);
+    __builtin_prefetch(c.last + i + kFetchAhead, 1, 2);
+    __builtin_prefetch(c.reference + i + kFetchAhead, 0, 2);
     MotionLine& motion = c.motion[i];
     MotionLine& half = c.half[i];
     ForceLine& force = c.force[i];

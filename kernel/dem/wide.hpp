@@ -22,7 +22,7 @@ struct GatherContext {
 
 struct ScatterContext {
   ForceWindow force;
-  ForceLine* halo;   ///< of beads from `slab_end` on
+  ForceLine* halo;  ///< of beads from `slab_end` on
   std::int64_t slab_end;
   bool equal;  ///< torque_i serves both
 };
