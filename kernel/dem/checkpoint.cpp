@@ -21,6 +21,19 @@ void put(AlignedVector<Line>& lines, const std::vector<double>& values) {
   if (!values.empty()) std::memcpy(static_cast<void*>(lines.data()), values.data(), values.size() * sizeof(double));
 }
 
+/// Lines of singles as doubles, and back: exact.
+template <class Line>
+std::vector<double> widened(const AlignedVector<Line>& lines) {
+  const float* first = reinterpret_cast<const float*>(lines.data());
+  return {first, first + lines.size() * sizeof(Line) / sizeof(float)};
+}
+
+template <class Line>
+void put_narrowed(AlignedVector<Line>& lines, const std::vector<double>& values) {
+  lines.resize(values.size() * sizeof(float) / sizeof(Line));
+  std::transform(values.begin(), values.end(), reinterpret_cast<float*>(lines.data()), [](double v) { return static_cast<float>(v); });
+}
+
 /// Every number of a ledger in a fixed order.
 template <class LedgerType, class Visit>
 void each_number(LedgerType& ledger, const Visit& visit) {
@@ -84,8 +97,9 @@ void System::save(const DoubleSink& put_doubles, const IntegerSink& put_integers
   put_doubles("position", doubles(p.position), 4 * n);
   put_doubles("motion", doubles(p.motion), 8 * n);
   put_doubles("half", doubles(p.half), 8 * n);
-  put_doubles("acceleration", doubles(p.acceleration), 8 * n);
-  put_doubles("reference", doubles(p.reference), 4 * n);
+  const std::vector<double> acceleration = widened(p.acceleration), reference = widened(p.reference);
+  put_doubles("acceleration", acceleration.data(), acceleration.size());
+  put_doubles("reference", reference.data(), reference.size());
   const std::vector<std::int64_t> ids(p.id.begin(), p.id.end()), materials(p.material.begin(), p.material.end());
   put_integers("id", ids.data(), n);
   put_integers("material", materials.data(), n);
@@ -112,9 +126,16 @@ void System::save(const DoubleSink& put_doubles, const IntegerSink& put_integers
         at + "partner", [q](const SlabState& s) -> const auto& { return s.lists[q].partner; });
     integers(
         at + "touching", [q](const SlabState& s) -> const auto& { return s.lists[q].touching; });
+    std::vector<std::int64_t> contacts;
+    for (const auto& slab : slabs_) contacts.push_back(slab->lists[q].contact_count());
+    put_integers(at + "contacts", contacts.data(), contacts.size());
     for (std::size_t h = 0; h < slots; ++h) {
-      numbers(
-          fmt::format("{}history_{}", at, h), [ q, h ](const SlabState& s) -> const auto& { return s.lists[q].history[h]; });
+      std::vector<double> all;
+      for (std::size_t k = 0; k < slabs_.size(); ++k) {
+        const double* values = slabs_[k]->lists[q].history[h].data();
+        all.insert(all.end(), values, values + contacts[k]);
+      }
+      put_doubles(fmt::format("{}contact_history_{}", at, h), all.data(), all.size());
     }
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -177,8 +198,8 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
   p.resize(n);
   put(p.motion, get_doubles("motion"));
   put(p.half, get_doubles("half"));
-  put(p.acceleration, get_doubles("acceleration"));
-  put(p.reference, get_doubles("reference"));
+  put_narrowed(p.acceleration, get_doubles("acceleration"));
+  put_narrowed(p.reference, get_doubles("reference"));
   const std::vector<std::int64_t> ids = get_integers("id"), materials = get_integers("material");
   std::copy(ids.begin(), ids.end(), p.id.begin());
   std::transform(materials.begin(), materials.end(), p.material.begin(), [](std::int64_t m) { return static_cast<std::uint8_t>(m); });
@@ -200,9 +221,10 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
         get_integers(at + "partner"), count, slabs_, [q](SlabState & s) -> auto& { return s.lists[q].partner; });
     dealt(
         get_integers(at + "touching"), count, slabs_, [q](SlabState & s) -> auto& { return s.lists[q].touching; });
+    const std::vector<std::int64_t> contacts = get_integers(at + "contacts");
     for (std::size_t h = 0; h < slots; ++h) {
       dealt(
-          get_doubles(fmt::format("{}history_{}", at, h)), count, slabs_,
+          get_doubles(fmt::format("{}contact_history_{}", at, h)), contacts, slabs_,
           [ q, h ](SlabState & s) -> auto& { return s.lists[q].history[h]; });
     }
   }
@@ -255,7 +277,7 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
     }
     slab.halo.assign(static_cast<std::size_t>(last + 1 - end), ForceLine{});
   }
-  find_first_references();
+  prepare_sweeps();
 }
 
 }  // namespace millscope::dem

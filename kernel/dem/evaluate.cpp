@@ -175,11 +175,12 @@ System::Scratch::Scratch(int history_count) {
   for (double*& p : wall.normal) p = take();
   for (double*& p : body_arrays) p = take();
   for (int h = 0; h < history_count; ++h) batch.history[h] = take();
-  integers_.assign(6 * stride, 0);
+  integers_.assign(7 * stride, 0);
   batch.owner = integers_.data();
   batch.partner = batch.owner + stride;
   batch.slot = batch.partner + stride;
-  wall.feature = batch.slot + stride;
+  batch.source = batch.slot + stride;
+  wall.feature = batch.source + stride;
   wall.triangle = wall.feature + stride;
   wall.material = wall.triangle + stride;
   bytes_.assign(stride, 0);
@@ -189,7 +190,6 @@ System::Scratch::Scratch(int history_count) {
   wall.capacity = kBatch;
   pair.resize(stride);
   normal.resize(stride);
-  query_first.resize(stride);
 }
 
 }  // namespace millscope::dem

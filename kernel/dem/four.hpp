@@ -18,6 +18,10 @@ inline Four load4(const void* p) { return *static_cast<const FourAlias*>(p); }
 inline void store4(void* p, Four v) { *static_cast<FourAlias*>(p) = v; }
 inline void store4_unaligned(double* p, Four v) { __builtin_memcpy(p, &v, sizeof v); }
 
+typedef float FourSingleAlias __attribute__((vector_size(16), may_alias));
+inline Four load4_single(const float* p) { return __builtin_convertvector(*reinterpret_cast<const FourSingleAlias*>(p), Four); }
+inline void store4_single(float* p, Four v) { *reinterpret_cast<FourSingleAlias*>(p) = __builtin_convertvector(v, FourSingleAlias); }
+
 /// Rounds to the nearest integer (|a| < 2^51) with additions alone: exact and the same everywhere.
 inline Four nearest(Four a) {
   const Four magic = four(6755399441055744.0);  // 1.5 · 2^52

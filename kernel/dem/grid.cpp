@@ -12,6 +12,12 @@ double component(const PositionLine& p, int axis) { return axis == 0 ? p.x : axi
 
 double speed(const MotionLine& m) { return std::sqrt(m.v[0] * m.v[0] + m.v[1] * m.v[1] + m.v[2] * m.v[2]); }
 
+/// The skin is cut by what rounding to single precision may hide of a displacement.
+ReferenceLine reference_of(const PositionLine& x, double skin) {
+  const double hidden = 2e-7 * (std::abs(x.x) + std::abs(x.y) + std::abs(x.z)), allowed = std::max(0.0, skin - hidden);
+  return {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z), static_cast<float>(allowed * allowed)};
+}
+
 /// Puts items first…last of `values` where the new order wants them.
 template <class Values>
 void move_items(const Values& values, Values& to, const std::vector<std::uint32_t>& new_index, std::int64_t first, std::int64_t last) {
@@ -49,7 +55,7 @@ void System::sort_beads() {
       const double skin = std::min(settings_.skin_cap * largest_radius,
                                    settings_.skin_base * x.radius + settings_.skin_steps * settings_.time_step * speed(p.motion[k]));
       reaches_[k] = {x.x, x.y, x.z, x.radius + skin + 0.5 * law_reach};
-      p.reference[k] = {x.x, x.y, x.z, skin * skin};
+      p.reference[k] = reference_of(x, skin);
       e.reach = std::max(e.reach, reaches_[k].radius);
     }
   });
@@ -119,8 +125,9 @@ void System::extract_pair_history() {
   const auto each = [this](const auto& visit) {
     for (const auto& slab : slabs_) {
       for (PairList& list : slab->lists) {
+        std::size_t contact = 0;
         for (std::size_t s = 0; s < list.touching.size(); ++s) {
-          if (list.touching[s]) visit(list, s, new_index_[list.owner[s]], new_index_[list.partner[s]]);
+          if (list.touching[s]) visit(list, contact++, new_index_[list.owner[s]], new_index_[list.partner[s]]);
         }
       }
     }
@@ -130,11 +137,11 @@ void System::extract_pair_history() {
   carried_partner_.resize(carried_start_[n]);
   carried_history_.resize(carried_start_[n] * slots);
   std::vector<std::uint32_t> next(carried_start_.begin(), carried_start_.end() - 1);
-  each([&](const PairList& list, std::size_t s, std::uint32_t i, std::uint32_t j) {
+  each([&](const PairList& list, std::size_t contact, std::uint32_t i, std::uint32_t j) {
     const std::size_t at = next[std::min(i, j)]++;
     carried_partner_[at] = std::max(i, j);
     for (std::size_t h = 0; h < slots; ++h) {
-      carried_history_[at * slots + h] = (i < j ? 1.0 : layout_.history_sign[h]) * list.history[h][s];
+      carried_history_[at * slots + h] = (i < j ? 1.0 : layout_.history_sign[h]) * list.history[h][contact];
     }
   });
 }
@@ -150,6 +157,7 @@ void System::build_pairs(int slab) {
     for (auto& h : list.history) h.clear();
   }
   std::vector<std::uint32_t> found;
+  std::vector<std::pair<std::size_t, std::uint32_t>> kept;  // slot and entry of a carried history
   std::int64_t last_partner = -1;
   const std::int64_t begin = slab_begin(slab), end = slab_begin(slab + 1);
   const int n0 = grid_.cells[grid_.axis[0]], n1 = grid_.cells[grid_.axis[1]], n2 = grid_.cells[grid_.axis[2]];
@@ -209,13 +217,17 @@ void System::build_pairs(int slab) {
                             found.begin() + static_cast<std::ptrdiff_t>(last));
         list.owner.insert(list.owner.end(), last - first, owner);
         list.touching.resize(total, 0);
-        for (auto& h : list.history) h.resize(total);
+        kept.clear();
         for (std::uint32_t e = carried_start_[owner]; e < carried_start_[owner + 1]; ++e) {
           const auto at = std::find(list.partner.begin() + static_cast<std::ptrdiff_t>(base), list.partner.end(), carried_partner_[e]);
           if (at == list.partner.end()) continue;
           const std::size_t s = static_cast<std::size_t>(at - list.partner.begin());
           list.touching[s] = 1;
-          for (std::size_t h = 0; h < slots; ++h) list.history[h][s] = carried_history_[e * slots + h];
+          kept.emplace_back(s, e);
+        }
+        std::sort(kept.begin(), kept.end());
+        for (const auto& [s, e] : kept) {
+          for (std::size_t h = 0; h < slots; ++h) list.history[h].push_back(carried_history_[e * slots + h]);
         }
       };
       if (material_count_ == 1) {
@@ -242,20 +254,16 @@ void System::rebuild() {
                   [&](int slab, int) { move_items(values, spare, new_index_, slab_begin(slab), slab_begin(slab + 1)); });
     values.swap(spare);
   };
-  // The forces are zero between steps: their lines serve as the spare half of the accelerations.
-  permute(p.acceleration, p.force);
-  workers_->run(settings_.partitions, [&p, this](int slab, int) {
-    std::fill(p.force.begin() + slab_begin(slab), p.force.begin() + slab_begin(slab + 1), ForceLine{});
-  });
+  permute(p.acceleration, spare_acceleration_);
   permute(p.motion, spare_motion_);
   permute(p.half, spare_motion_);
   permute(p.position, spare_position_);
-  permute(p.reference, spare_position_);
+  permute(p.reference, spare_reference_);
   permute(reaches_, spare_position_);
   permute(p.id, spare_id_);
   permute(p.material, spare_material_);
   workers_->run(settings_.partitions, [this](int slab, int) { build_pairs(slab); });
-  find_first_references();
+  prepare_sweeps();
   build_walls();
   ++rebuilds_;
   last_rebuild_step_ = step_;

@@ -25,6 +25,25 @@ struct alignas(64) ForceLine {
   double f[3], unused_f, t[3], unused_t;
 };
 
+/// 32 bytes: linear (m/s²) and angular (rad/s²) acceleration of the last step. It only enters the prediction, in the second order of
+/// the step: single precision is ample.
+struct alignas(32) AccelerationLine {
+  float linear[4], angular[4];
+};
+
+/// 16 bytes: centre at the last list rebuild (m) and the square of the displacement that is allowed from there (m²).
+struct alignas(16) ReferenceLine {
+  float x, y, z, allowed2;
+};
+
+/// Where the forces of a slab's beads stand while its step is made: all of them side by side (mask −1), or, where beads are finished behind
+/// the pair loop, in a ring that is just long enough and stays in the cache. Lines are zero before the first force and after the last.
+struct ForceWindow {
+  ForceLine* lines;
+  std::int64_t mask;  ///< −1, or a power of two less one
+  ForceLine& operator[](std::int64_t bead) const { return lines[bead & mask]; }
+};
+
 /// Periodic lengths per axis (m); 0: not periodic.
 struct PeriodicBox {
   double length[3];
@@ -33,13 +52,16 @@ struct PeriodicBox {
 /// Numbers that law, interactions and pair parameters may keep per contact, all together.
 inline constexpr int kMaxHistories = 24;
 
-/// One part of the pair list: all listed pairs of one slab and one pair of materials. Owner i < partner j.
+/// One part of the pair list: all listed pairs of one slab and one pair of materials. Owner i < partner j. Histories stand in the order of
+/// the slots, for the touching ones only: a sweep reads those of the last step and writes those of this one.
 struct PairListView {
   std::int64_t count;
   const std::uint32_t* owner;
   const std::uint32_t* partner;
-  std::uint8_t* touching;          ///< 1 while within reach
-  double* history[kMaxHistories];  ///< per slot
+  std::uint8_t* touching;                ///< 1 while within reach
+  std::int64_t read, written;            ///< histories that the sweep has passed, and made
+  const double* history[kMaxHistories];  ///< per contact of the last step
+  double* next[kMaxHistories];           ///< per contact of this step: room for all that `written` plus one batch needs
   std::int32_t history_count;
 };
 
@@ -51,6 +73,7 @@ struct BatchArrays {
   std::uint32_t* owner;
   std::uint32_t* partner;
   std::uint32_t* slot;
+  std::uint32_t* source;  ///< where the history stood in the last step; any place when fresh
   std::uint8_t* fresh;
   double* difference[3];  ///< x_i − x_j
   double* normal[3];

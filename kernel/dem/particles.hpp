@@ -13,8 +13,8 @@ struct Particles {
   AlignedVector<MotionLine> motion;  ///< predicted, at the time of `position`
   AlignedVector<MotionLine> half;    ///< half a step earlier; lanes 3 and 7 as in `motion`
   AlignedVector<ForceLine> force;
-  AlignedVector<ForceLine> acceleration;  ///< of the last step: linear (m/s²) and angular (rad/s²)
-  AlignedVector<PositionLine> reference;  ///< centre at the last rebuild, `radius`: square of the allowed displacement
+  AlignedVector<AccelerationLine> acceleration;  ///< of the last step
+  AlignedVector<ReferenceLine> reference;
   std::vector<std::uint32_t> id;
   std::vector<std::uint8_t> material;
 

@@ -8,7 +8,10 @@ namespace millscope::dem {
 struct SlabState {
   std::vector<PairList> lists;  ///< one per pair of materials (those with a wall stay empty)
   AlignedVector<ForceLine> halo;
-  std::vector<WallSlab> walls;  ///< one per body
+  ForceWindow force{nullptr, -1};       ///< in use during this step
+  std::vector<std::uint32_t> frontier;  ///< [batch of the last list]: the first bead that it and earlier ones do not touch
+  std::int64_t ring = 0;                ///< lines that a ring needs, a power of two; 0: the slab is no longer than that
+  std::vector<WallSlab> walls;          ///< one per body
   Ledger ledger;
   std::vector<std::vector<double>> impact, shear;  ///< [body][triangle], J
   IntegrateResult result{false, -1};
@@ -23,12 +26,12 @@ struct System::Scratch {
   std::vector<std::uint32_t> found;
   double* query_position[3];
   double* query_radius;
-  std::vector<std::int64_t> query_first;
   std::vector<std::int32_t> pair;             ///< physics of each wall contact
   std::vector<std::array<double, 3>> normal;  ///< of each wall contact, world frame
   double* body_arrays[17];                    ///< for BodyForceBatch
   std::vector<double> added_mass;
   std::vector<std::uint8_t> fresh;  ///< of each wall contact
+  AlignedVector<ForceLine> ring;    ///< for ForceWindow
 
  private:
   AlignedVector<double> doubles_;

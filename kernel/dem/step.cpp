@@ -1,53 +1,132 @@
 // One time step.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "kernel/config/error.hpp"
 #include "kernel/dem/slab.hpp"
 
 namespace millscope::dem {
+namespace {
 
-/// Phase A: walls, then the pairs of this slab.
-void System::contacts(int slab, int worker) {
+// Walls and phase B trail behind the pairs by this many batches: few enough that the beads between are still in the cache.
+constexpr std::int64_t kTrail = 4;
+
+}  // namespace
+
+/// Phase A: walls and the pairs of this slab. With `finish_too` phase B trails behind: pairs are listed by owner, and an owner comes before
+/// its partners, so that a bead is done with once the last list has passed it; it is finished while it is still in the cache.
+void System::contacts(int slab, int worker, bool finish_too) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
   Scratch& scratch = *scratch_[static_cast<std::size_t>(worker)];
   state.ledger.reset_instant();
-  for (std::size_t body = 0; body < bodies.size(); ++body) walls(slab, worker, body);
-  const ScatterContext base{particles.force.data(), state.halo.data(), slab_begin(slab + 1), false};
+  state.result = {false, -1};
+  const bool in_ring = finish_too && state.ring > 0;
+  state.force = in_ring ? ForceWindow{scratch.ring.data(), state.ring - 1} : ForceWindow{particles.force.data(), -1};
+  const std::int64_t slab_end = slab_begin(slab + 1);
+  begin_walls(slab);
+  std::int64_t finished = slab_begin(slab);
   for (std::size_t p = 0; p < physics_.size(); ++p) {
     if (physics_[p].wall) continue;
-    const PairPhysics& physics = physics_[p];
-    const Equality& equality = equality_[p];
-    BatchArrays batch = scratch.batch;
-    if (equality.equal) {
-      // Arrays that hold the same number everywhere, made once.
-      batch.radius = equality.arrays[0]->data();
-      batch.mass = equality.arrays[1]->data();
-      batch.radius_i = batch.radius_j = equality.arrays[2]->data();
-    }
-    const bool spins = !physics.interactions.empty();
-    const bool moments = physics.has_post();
-    const PairListView list = state.lists[p].view();
-    const GatherContext gather{particles.position.data(), particles.motion.data(), settings_.periodic, physics.reach, equality.equal, spins,
-                               equality.radius,           0.5 * equality.mass};
-    ScatterContext scatter = base;
-    scatter.equal = equality.equal;
-    PairLedger& ledger = state.ledger.pairs[p];
+    PairListView list = state.lists[p].view();
     for (std::int64_t first = 0; first < list.count; first += kBatch) {
       const std::int64_t last = std::min(list.count, first + kBatch);
-      const std::int64_t count = wide_->search(gather, list, first, last, batch);
-      if (count == 0) continue;
-      wide_->gather(gather, list, count, batch);
-      count_collisions(count, batch, ledger);
-      if (step_ % 16 == 0) note_overlap(count, batch, ledger);
-      ledger.contacts += count;
-      evaluate({&physics, settings_.time_step, count, false}, batch, ledger);
-      wide_->scatter(scatter, list, count, moments, batch);
+      list.written += pair_batch(slab, worker, p, {first, last}, list);
+      if (p == last_list_ && last < list.count && last % (kTrail * kBatch) == 0) {
+        walls(slab, worker, list.owner[last]);
+        if (finish_too) finish(slab, worker, {finished, list.owner[last]});
+        finished = list.owner[last];
+      }
     }
+    state.lists[p].end_sweep();
   }
+  walls(slab, worker, slab_end);
+  end_walls(slab);
+  if (finish_too) finish(slab, worker, {finished, slab_end});
 }
 
-void System::find_first_references() {
+/// Contacts among the list slots of one batch. Returns their number.
+std::int64_t System::pair_batch(int slab, int worker, std::size_t p, SlotRange slots, PairListView& list) {
+  SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
+  const PairPhysics& physics = physics_[p];
+  const Equality& equality = equality_[p];
+  BatchArrays batch = scratch_[static_cast<std::size_t>(worker)]->batch;
+  if (equality.equal) {
+    // Arrays that hold the same number everywhere, made once.
+    batch.radius = equality.arrays[0]->data();
+    batch.mass = equality.arrays[1]->data();
+    batch.radius_i = batch.radius_j = equality.arrays[2]->data();
+  }
+  GatherContext gather{particles.position.data(),
+                       particles.motion.data(),
+                       settings_.periodic,
+                       physics.reach,
+                       equality.equal,
+                       !physics.interactions.empty(),
+                       equality.radius,
+                       0.5 * equality.mass,
+                       0,
+                       0,
+                       nullptr};
+  const std::size_t batch_index = static_cast<std::size_t>(slots.first / kBatch);
+  if (p == last_list_ && batch_index + 2 < state.frontier.size()) {
+    gather.ahead = state.frontier[batch_index + 1];
+    gather.ahead_end = state.frontier[batch_index + 2];
+    const std::int64_t slab_end = slab_begin(slab + 1);
+    if (gather.ahead >= slab_end) {
+      gather.ahead_force = state.halo.data() + (gather.ahead - slab_end);
+    } else if (state.force.mask == -1) {
+      gather.ahead_force = particles.force.data() + gather.ahead;
+      gather.ahead_end = std::min(gather.ahead_end, slab_end);
+    }
+  }
+  const std::int64_t count = wide_->search(gather, list, slots.first, slots.last, batch);
+  if (count == 0) return 0;
+  state.lists[p].make_room(list);
+  wide_->gather(gather, list, count, batch);
+  PairLedger& ledger = state.ledger.pairs[p];
+  count_collisions(count, batch, ledger);
+  if (step_ % 16 == 0) note_overlap(count, batch, ledger);
+  ledger.contacts += count;
+  evaluate({&physics, settings_.time_step, count, false}, batch, ledger);
+  const ScatterContext scatter{state.force, state.halo.data(), slab_begin(slab + 1), equality.equal};
+  wide_->scatter(scatter, list, count, physics.has_post(), batch);
+  return count;
+}
+
+/// How far each batch reaches, and the length of the ring that serves a slab: the most beads that carry forces at once, in the order in
+/// which `contacts` goes.
+void System::size_ring(int slab) {
+  SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
+  const BeadRange beads = beads_of(slab);
+  state.ring = 0;
+  state.frontier.clear();
+  const PairListView list = state.lists[last_list_].view();
+  std::int64_t finished = beads.begin, longest = 0, touched = beads.begin, frontier = beads.begin;
+  for (std::int64_t first = 0; first < list.count; first += kBatch) {
+    const std::int64_t last = std::min(list.count, first + kBatch);
+    for (std::int64_t s = first; s < last; ++s) {
+      const std::int64_t partner = list.partner[s];
+      frontier = std::max(frontier, partner + 1);
+      if (partner < beads.end) touched = std::max(touched, partner + 1);
+    }
+    state.frontier.push_back(static_cast<std::uint32_t>(frontier));
+    longest = std::max(longest, touched - finished);
+    if (last < list.count && last % (kTrail * kBatch) == 0) finished = list.owner[last];
+  }
+  longest = std::max(longest, beads.end - finished);
+  const std::int64_t ring = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(longest)));
+  if (list_count_ == 1 && ring < beads.end - beads.begin) state.ring = ring;
+}
+
+/// What follows from new lists: which slabs reach into which, and the rings.
+void System::prepare_sweeps() {
+  for (int slab = 0; slab < settings_.partitions; ++slab) size_ring(slab);
+  std::int64_t longest = 0;
+  for (const auto& slab : slabs_) longest = std::max(longest, slab->ring);
+  for (const auto& scratch : scratch_) {
+    if (static_cast<std::int64_t>(scratch->ring.size()) < longest) scratch->ring.assign(static_cast<std::size_t>(longest), ForceLine{});
+  }
   first_reference_.assign(static_cast<std::size_t>(settings_.partitions), 0);
   for (int slab = 0; slab < settings_.partitions; ++slab) {
     int first = slab;
@@ -61,14 +140,14 @@ void System::find_first_references() {
 }
 
 /// The forces that earlier slabs computed for beads of this one, added in slab order.
-void System::add_halos(int slab) {
-  const std::int64_t begin = slab_begin(slab), end = slab_begin(slab + 1);
+void System::add_halos(int slab, BeadRange range) {
+  const ForceWindow force = slabs_[static_cast<std::size_t>(slab)]->force;
   for (int earlier = 0; earlier < slab; ++earlier) {
     AlignedVector<ForceLine>& halo = slabs_[static_cast<std::size_t>(earlier)]->halo;
     const std::int64_t halo_begin = slab_begin(earlier + 1), halo_end = halo_begin + static_cast<std::int64_t>(halo.size());
-    for (std::int64_t i = std::max(begin, halo_begin); i < std::min(end, halo_end); ++i) {
+    for (std::int64_t i = std::max(range.begin, halo_begin); i < std::min(range.end, halo_end); ++i) {
       ForceLine& from = halo[static_cast<std::size_t>(i - halo_begin)];
-      ForceLine& to = particles.force[static_cast<std::size_t>(i)];
+      ForceLine& to = force[i];
       for (int a = 0; a < 3; ++a) {
         to.f[a] += from.f[a];
         to.t[a] += from.t[a];
@@ -79,13 +158,12 @@ void System::add_halos(int slab) {
 }
 
 /// Body forces that differ from bead to bead; the fluid that moves with a bead slows all that acts on it.
-void System::apply_body_forces(int slab, int worker) {
+void System::apply_body_forces(int slab, int worker, BeadRange range) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
   Scratch& scratch = *scratch_[static_cast<std::size_t>(worker)];
   double* const* array = scratch.body_arrays;
-  const std::int64_t end = slab_begin(slab + 1);
-  for (std::int64_t begin = slab_begin(slab); begin < end; begin += kBatch) {
-    const std::int64_t count = std::min(kBatch, end - begin);
+  for (std::int64_t begin = range.begin; begin < range.end; begin += kBatch) {
+    const std::int64_t count = std::min(kBatch, range.end - begin);
     for (std::int64_t k = 0; k < count; ++k) {
       const std::size_t i = static_cast<std::size_t>(begin + k);
       const double* x = &particles.position[i].x;
@@ -119,7 +197,7 @@ void System::apply_body_forces(int slab, int worker) {
       state.ledger.body_force_work[f] += batch.power_sum * settings_.time_step;
     }
     for (std::int64_t k = 0; k < count; ++k) {
-      ForceLine& line = particles.force[static_cast<std::size_t>(begin + k)];
+      ForceLine& line = state.force[begin + k];
       for (int a = 0; a < 3; ++a) {
         line.f[a] += array[11 + a][k];
         line.t[a] += array[14 + a][k];
@@ -134,27 +212,30 @@ void System::apply_body_forces(int slab, int worker) {
   }
 }
 
-void System::finish_slab(int slab, int worker) {
-  add_halos(slab);
-  if (has_general_body_force_) apply_body_forces(slab, worker);
-  integrate(slab);
+void System::finish(int slab, int worker, BeadRange range) {
+  if (range.begin == range.end) return;
+  add_halos(slab, range);
+  if (has_general_body_force_) apply_body_forces(slab, worker, range);
+  integrate(slab, range);
 }
 
 /// Kick, drift, predict.
-void System::integrate(int slab) {
+void System::integrate(int slab, BeadRange range) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
   const IntegrateContext context{particles.position.data(),
                                  particles.motion.data(),
                                  particles.half.data(),
-                                 particles.force.data(),
+                                 state.force,
                                  particles.acceleration.data(),
                                  particles.reference.data(),
-                                 slab_begin(slab),
-                                 slab_begin(slab + 1),
+                                 range.begin,
+                                 range.end,
                                  settings_.time_step,
                                  {acceleration_[0], acceleration_[1], acceleration_[2]},
                                  largest_step_ * largest_step_};
-  state.result = wide_->integrate(context);
+  const IntegrateResult result = wide_->integrate(context);
+  state.result.rebuild = state.result.rebuild || result.rebuild;
+  if (result.runaway >= 0) state.result.runaway = result.runaway;
 }
 
 void System::advance() {
@@ -169,21 +250,18 @@ void System::advance() {
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) poses_[b] = pose_at(bodies[b].motion, now);
   if (observe) {
-    workers_->run(settings_.partitions, [this](int slab, int worker) { contacts(slab, worker); });
+    workers_->run(settings_.partitions, [this](int slab, int worker) { contacts(slab, worker, false); });
     workers_->run(settings_.partitions, [this](int slab, int worker) {
-      add_halos(slab);
-      if (has_general_body_force_) apply_body_forces(slab, worker);
+      add_halos(slab, beads_of(slab));
+      if (has_general_body_force_) apply_body_forces(slab, worker, beads_of(slab));
     });
     observe(*this);
-    workers_->run(settings_.partitions, [this](int slab, int) { integrate(slab); });
+    workers_->run(settings_.partitions, [this](int slab, int) { integrate(slab, beads_of(slab)); });
   } else {
-    workers_->run(settings_.partitions, [this](int slab, int worker) {
-      contacts(slab, worker);
-      if (follows_at_once(slab, worker)) finish_slab(slab, worker);
-    });
+    workers_->run(settings_.partitions, [this](int slab, int worker) { contacts(slab, worker, follows_at_once(slab, worker)); });
     if (workers_->count() > 1) {
       workers_->run(settings_.partitions, [this](int slab, int worker) {
-        if (!follows_at_once(slab, worker)) finish_slab(slab, worker);
+        if (!follows_at_once(slab, worker)) finish(slab, worker, beads_of(slab));
       });
     }
   }

@@ -17,9 +17,24 @@ PairListView PairList::view() {
   v.partner = partner.data();
   v.touching = touching.data();
   v.history_count = static_cast<std::int32_t>(history.size());
-  for (std::size_t h = 0; h < history.size(); ++h) v.history[h] = history[h].data();
+  for (std::size_t h = 0; h < history.size(); ++h) {
+    v.history[h] = history[h].data();
+    v.next[h] = next[h].data();
+  }
   return v;
 }
+
+std::int64_t PairList::contact_count() const { return std::count(touching.begin(), touching.end(), 1); }
+
+void PairList::make_room(PairListView& v) {
+  const std::size_t needed = static_cast<std::size_t>(v.written + kBatch);
+  for (std::size_t h = 0; h < next.size(); ++h) {
+    if (next[h].size() < needed) next[h].resize(needed + needed / 8);
+    v.next[h] = next[h].data();
+  }
+}
+
+void PairList::end_sweep() { history.swap(next); }
 
 System::System(Settings settings, Layout layout, std::vector<PairPhysics> physics, int material_count)
     : settings_(std::move(settings)),
@@ -61,7 +76,10 @@ void System::prepare() {
     auto slab = std::make_unique<SlabState>();
     slab->ledger = empty;
     slab->lists.resize(physics_.size());
-    for (PairList& list : slab->lists) list.history.resize(slots);
+    for (PairList& list : slab->lists) {
+      list.history.resize(slots);
+      list.next.resize(slots);
+    }
     slab->walls.resize(bodies.size());
     slab->impact.resize(bodies.size());
     slab->shear.resize(bodies.size());
@@ -104,10 +122,18 @@ void System::prepare() {
   const std::size_t beads = particles.position.size();
   spare_motion_.resize(beads);
   spare_position_.resize(beads);
+  spare_acceleration_.resize(beads);
+  spare_reference_.resize(beads);
   spare_id_.resize(beads);
   spare_material_.resize(beads);
   reaches_.resize(beads);
   for (auto& c : wall_coordinates_) c.resize(beads);
+  list_count_ = 0;
+  for (std::size_t p = 0; p < physics_.size(); ++p) {
+    if (physics_[p].wall) continue;
+    last_list_ = p;
+    ++list_count_;
+  }
   equality_.assign(physics_.size(), Equality{});
   for (std::size_t p = 0; p < physics_.size(); ++p) {
     Equality e{true, -1, 0, {}};
@@ -263,16 +289,17 @@ std::uint64_t System::state_hash() const {
   struct Entry {
     std::uint32_t a, b;
     const PairList* list;
-    std::size_t slot;
+    std::size_t contact;
     bool flip;
   };
   std::vector<Entry> entries;
   for (const auto& slab : slabs_) {
     for (const PairList& list : slab->lists) {
+      std::size_t contact = 0;
       for (std::size_t s = 0; s < list.touching.size(); ++s) {
         if (!list.touching[s]) continue;
         const std::uint32_t i = particles.id[list.owner[s]], j = particles.id[list.partner[s]];
-        entries.push_back({std::min(i, j), std::max(i, j), &list, s, i > j});
+        entries.push_back({std::min(i, j), std::max(i, j), &list, contact++, i > j});
       }
     }
   }
@@ -280,7 +307,8 @@ std::uint64_t System::state_hash() const {
   for (const Entry& e : entries) {
     hash.add(&e.a, sizeof e.a);
     hash.add(&e.b, sizeof e.b);
-    for (std::size_t h = 0; h < e.list->history.size(); ++h) hash.add((e.flip ? layout_.history_sign[h] : 1) * e.list->history[h][e.slot]);
+    for (std::size_t h = 0; h < e.list->history.size(); ++h)
+      hash.add((e.flip ? layout_.history_sign[h] : 1) * e.list->history[h][e.contact]);
   }
   for (std::size_t body = 0; body < bodies.size(); ++body) {
     std::vector<std::pair<std::uint32_t, std::vector<double>>> contacts;
@@ -305,7 +333,11 @@ std::size_t System::memory_bytes() const {
   const std::size_t n = particles.position.size();
   std::size_t bytes = n * (2 * sizeof(PositionLine) + 5 * sizeof(MotionLine) + 2 * sizeof(PositionLine) + 4 * sizeof(double) + 14 + 5);
   for (const auto& slab : slabs_) {
-    for (const PairList& list : slab->lists) bytes += list.owner.capacity() * (9 + 8 * list.history.size());
+    for (const PairList& list : slab->lists) {
+      bytes += list.owner.capacity() * 9;
+      for (const auto& h : list.history) bytes += 8 * h.capacity();
+      for (const auto& h : list.next) bytes += 8 * h.capacity();
+    }
     bytes += slab->halo.capacity() * sizeof(ForceLine);
     for (const WallSlab& wall : slab->walls) {
       bytes += wall.bead.capacity() * 12 + wall.candidates.capacity() * 4 +

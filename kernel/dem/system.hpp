@@ -25,8 +25,12 @@ namespace millscope::dem {
 struct PairList {
   std::vector<std::uint32_t> owner, partner;
   std::vector<std::uint8_t> touching;
-  std::vector<std::vector<double>> history;
+  std::vector<std::vector<double>> history;  ///< [number][contact]: of the touching slots, in their order; may have room to spare
+  std::vector<std::vector<double>> next;     ///< the same of the step that is being made
   PairListView view();
+  std::int64_t contact_count() const;
+  void make_room(PairListView& view);  ///< in `next` for one more batch
+  void end_sweep();                    ///< `next` becomes `history`
 };
 
 /// A contact that lasts, at a wall: its history is found again by bead, feature and the nearest normal.
@@ -44,7 +48,9 @@ struct WallSlab {
   std::vector<std::uint32_t> bead;  ///< bead index
   std::vector<std::int64_t> first;  ///< bead.size() + 1
   std::vector<std::uint32_t> candidates;
-  WallContacts active, next;
+  WallContacts active, next;  ///< of the last step and of this one
+  std::size_t swept = 0;      ///< beads of `bead` that this step has been through
+  std::size_t matched = 0;    ///< contacts of `active` that it has passed
 };
 
 struct Body {
@@ -137,16 +143,36 @@ class System {
   void build_pairs(int slab);
   void extract_wall_history();
   void build_walls();
-  void contacts(int slab, int worker);
-  void walls(int slab, int worker, std::size_t body);
-  void integrate(int slab);
-  void apply_body_forces(int slab, int worker);
-  void finish_slab(int slab, int worker);  ///< phase B
-  void find_first_references();
+  struct SlotRange {
+    std::int64_t first, last;
+  };
+  void contacts(int slab, int worker, bool finish_too);
+  std::int64_t pair_batch(int slab, int worker, std::size_t physics, SlotRange slots, PairListView& list);
+  void size_ring(int slab);
+  struct WallChunk {
+    int slab, worker;
+    std::size_t body;
+    std::int64_t begin, count;  ///< of WallSlab::bead
+    std::size_t base;           ///< its first contact in WallSlab::next
+  };
+  void begin_walls(int slab);
+  void walls(int slab, int worker, std::int64_t end);
+  void find_wall_contacts(WallChunk& chunk);
+  std::int64_t gather_wall_batch(const WallChunk& chunk, std::size_t physics);
+  void scatter_wall_batch(const WallChunk& chunk, std::size_t physics, std::int64_t count);
+  void end_walls(int slab);
+  struct BeadRange {
+    std::int64_t begin, end;
+  };
+  BeadRange beads_of(int slab) const { return {slab_begin(slab), slab_begin(slab + 1)}; }
+  void integrate(int slab, BeadRange range);
+  void apply_body_forces(int slab, int worker, BeadRange range);
+  void finish(int slab, int worker, BeadRange range);  ///< phase B
+  void prepare_sweeps();
   bool follows_at_once(int slab, int worker) const {
     return first_reference_[static_cast<std::size_t>(slab)] >= workers_->first(worker, settings_.partitions);
   }
-  void add_halos(int slab);
+  void add_halos(int slab, BeadRange range);
   [[noreturn]] void complain(std::int64_t bead, const char* what) const;
   int pair_index(int a, int b, bool wall) const;
   std::int64_t slab_begin(int slab) const { return slab * particles.count() / settings_.partitions; }
@@ -171,6 +197,8 @@ class System {
   double wall_moved_ = 0;    ///< bound on its displacement since the rebuild, m
   double largest_step_ = 0;  ///< displacement in one step that no sound run reaches, m
   bool has_general_body_force_ = false;
+  std::size_t last_list_ = 0;                 ///< the last pair of materials of beads in `physics_`
+  int list_count_ = 0;                        ///< how many there are
   std::vector<int> first_reference_;          ///< per slab: the earliest slab with a pair that reaches into it
   std::vector<std::uint8_t> normal_channel_;  ///< per channel: its work counts as impact, not shear
 
@@ -195,6 +223,8 @@ class System {
   // the other halves of swaps, kept from rebuild to rebuild
   AlignedVector<MotionLine> spare_motion_;
   AlignedVector<PositionLine> spare_position_;
+  AlignedVector<AccelerationLine> spare_acceleration_;
+  AlignedVector<ReferenceLine> spare_reference_;
   std::vector<std::uint32_t> spare_id_;
   std::vector<std::uint8_t> spare_material_;
   std::vector<double> wall_coordinates_[4];  ///< x, y, z in a body's frame, and reach, of every bead

@@ -10,19 +10,23 @@ namespace {
 inline double root(double a) { return __builtin_sqrt(a); }
 
 template <bool kPeriodic>
-std::int64_t search_slots(const GatherContext& g, const PairListView& list, std::int64_t first, std::int64_t last, BatchArrays& b) {
+std::int64_t search_slots(const GatherContext& g, PairListView& list, std::int64_t first, std::int64_t last, BatchArrays& b) {
   const Box4 box = box4(g.box);
   const double* __restrict x = reinterpret_cast<const double*>(g.position);
   const std::uint32_t* __restrict owner = list.owner;
   const std::uint32_t* __restrict partner = list.partner;
   std::uint8_t* __restrict touching = list.touching;
   std::uint32_t* __restrict slot = b.slot;
+  std::uint32_t* __restrict source = b.source;
   std::uint8_t* __restrict fresh = b.fresh;
   const double reach = g.reach;
   std::int64_t n = 0;
+  std::uint32_t read = static_cast<std::uint32_t>(list.read);
   const auto keep = [&](std::int64_t s, std::int64_t hit) {
     slot[n] = static_cast<std::uint32_t>(s);
+    source[n] = read;
     fresh[n] = static_cast<std::uint8_t>(touching[s] ^ 1);
+    read += touching[s];
     touching[s] = static_cast<std::uint8_t>(hit);
     n += hit;
   };
@@ -31,7 +35,18 @@ std::int64_t search_slots(const GatherContext& g, const PairListView& list, std:
     return kPeriodic ? minimum_image(d, box) : d;
   };
   std::int64_t s = first;
+  std::int64_t ahead = g.ahead;
   for (; s + 4 <= last; s += 4) {
+    if (ahead < g.ahead_end) {
+      __builtin_prefetch(g.position + ahead, 0, 2);
+      __builtin_prefetch(g.motion + ahead, 0, 2);
+      __builtin_prefetch(g.motion + ahead + 1, 0, 2);
+      if (g.ahead_force) {
+        __builtin_prefetch(g.ahead_force + (ahead - g.ahead), 1, 2);
+        __builtin_prefetch(g.ahead_force + (ahead - g.ahead) + 1, 1, 2);
+      }
+      ahead += 2;
+    }
     Four d[4] = {difference(s), difference(s + 1), difference(s + 2), difference(s + 3)};
     transpose(d[0], d[1], d[2], d[3]);
     const Four limit = d[3] + four(reach);
@@ -43,10 +58,11 @@ std::int64_t search_slots(const GatherContext& g, const PairListView& list, std:
     const double limit = d[3] + reach;
     keep(s, d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < limit * limit);
   }
+  list.read = read;
   return n;
 }
 
-std::int64_t search(const GatherContext& g, const PairListView& list, std::int64_t first, std::int64_t last, BatchArrays& b) {
+std::int64_t search(const GatherContext& g, PairListView& list, std::int64_t first, std::int64_t last, BatchArrays& b) {
   return box4(g.box).any ? search_slots<true>(g, list, first, last, b) : search_slots<false>(g, list, first, last, b);
 }
 
@@ -167,8 +183,8 @@ void gather_history(const PairListView& list, std::int64_t count, std::int64_t p
     const double* __restrict from = list.history[h];
     double* __restrict to = b.history[h];
     const std::uint8_t* __restrict fresh = b.fresh;
-    const std::uint32_t* __restrict slot = b.slot;
-    for (std::int64_t k = 0; k < count; ++k) to[k] = fresh[k] ? 0.0 : from[slot[k]];
+    const std::uint32_t* __restrict source = b.source;
+    for (std::int64_t k = 0; k < count; ++k) to[k] = fresh[k] ? 0.0 : from[source[k]];
     for (std::int64_t k = count; k < padded; ++k) to[k] = 0.0;
   }
 }
@@ -216,6 +232,9 @@ void gather(const GatherContext& g, const PairListView& list, std::int64_t count
     kinematics<false>(padded, 0.0, b);
   }
   gather_history(list, count, padded, b);
+  for (std::int32_t h = 0; h < list.history_count; ++h) {  // those of the next batch, about as many
+    for (std::int64_t k = 0; k < count; k += 8) __builtin_prefetch(list.history[h] + list.read + k, 0, 2);
+  }
   pad(count, padded, b);
 }
 
@@ -271,8 +290,8 @@ void scatter_lines(const ScatterContext& s, std::int64_t count, const BatchArray
     const int lanes = count - k < 4 ? static_cast<int>(count - k) : 4;
     for (int c = 0; c < lanes; ++c) {
       const std::int64_t i = b.owner[k + c], j = b.partner[k + c];
-      ForceLine* to_i = s.force + i;
-      ForceLine* to_j = j < s.slab_end ? s.force + j : s.halo + (j - s.slab_end);
+      ForceLine* to_i = &s.force[i];
+      ForceLine* to_j = j < s.slab_end ? &s.force[j] : s.halo + (j - s.slab_end);
       store4(to_i->f, load4(to_i->f) + f[c]);
       store4(to_i->t, load4(to_i->t) + ti[c]);
       store4(to_j->f, load4(to_j->f) - f[c]);
@@ -291,32 +310,35 @@ void scatter(const ScatterContext& s, const PairListView& list, std::int64_t cou
   }
   for (std::int32_t h = 0; h < list.history_count; ++h) {
     const double* __restrict from = b.history[h];
-    double* __restrict to = list.history[h];
-    const std::uint32_t* __restrict slot = b.slot;
-    for (std::int64_t k = 0; k < count; ++k) to[slot[k]] = from[k];
+    double* __restrict to = list.next[h] + list.written;
+    for (std::int64_t k = 0; k < count; ++k) to[k] = from[k];
   }
 }
 
 IntegrateResult integrate(const IntegrateContext& c) {
+  constexpr std::int64_t kFetchAhead = 24;  // beads: longer than a line takes to come from memory
   IntegrateResult result{false, -1};
   const Four dt = four(c.time_step), half_dt = four(0.5 * c.time_step);
   const Four g = {c.acceleration[0], c.acceleration[1], c.acceleration[2], 0.0};
   const Four keep = {1.0, 1.0, 1.0, 0.0};
   for (std::int64_t i = c.begin; i < c.end; ++i) {
+    __builtin_prefetch(c.half + i + kFetchAhead, 1, 2);
+    __builtin_prefetch(c.last + i + kFetchAhead, 1, 2);
+    __builtin_prefetch(c.reference + i + kFetchAhead, 0, 2);
     MotionLine& motion = c.motion[i];
     MotionLine& half = c.half[i];
     ForceLine& force = c.force[i];
     const Four a = (load4(force.f) * four(motion.inverse_mass) + g) * keep;
     const Four alpha = load4(force.t) * four(motion.inverse_inertia) * keep;
-    ForceLine& last = c.last[i];
-    const Four next_a = a + (a - load4(last.f)), next_alpha = alpha + (alpha - load4(last.t));
-    store4(last.f, a);
-    store4(last.t, alpha);
+    AccelerationLine& last = c.last[i];
+    const Four next_a = a + (a - load4_single(last.linear)), next_alpha = alpha + (alpha - load4_single(last.angular));
+    store4_single(last.linear, a);
+    store4_single(last.angular, alpha);
     const Four v = load4(half.v) + dt * a;
     const Four w = load4(half.w) + dt * alpha;
     const Four step = dt * v * keep;
     const Four x = load4(&c.position[i]) + step;
-    const Four moved = (x - load4(&c.reference[i])) * keep;
+    const Four moved = (x - load4_single(&c.reference[i].x)) * keep;
     const Four step2 = step * step, moved2 = moved * moved;
     store4(half.v, v);
     store4(half.w, w);
@@ -325,7 +347,7 @@ IntegrateResult integrate(const IntegrateContext& c) {
     store4(&c.position[i], x);
     store4(force.f, four(0.0));
     store4(force.t, four(0.0));
-    if (!(moved2[0] + moved2[1] + moved2[2] <= c.reference[i].radius)) result.rebuild = true;
+    if (!(moved2[0] + moved2[1] + moved2[2] <= static_cast<double>(c.reference[i].allowed2))) result.rebuild = true;
     if (!(step2[0] + step2[1] + step2[2] <= c.largest_step2)) result.runaway = i;
   }
   return result;

@@ -15,11 +15,14 @@ struct GatherContext {
   bool spins;     ///< also fill spin_i, spin_j (interactions need them)
   double radius;  ///< when equal
   double mass;    ///< m*, when equal
+  /// Beads that the batches to come will touch first: `search` asks for their lines in passing.
+  std::int64_t ahead, ahead_end;
+  const ForceLine* ahead_force;  ///< where the force of bead `ahead` stands; nullptr: those lines are in the cache already
 };
 
 struct ScatterContext {
-  ForceLine* force;  ///< of all beads; the slab writes its own only
-  ForceLine* halo;   ///< of beads from `slab_end` on
+  ForceWindow force;
+  ForceLine* halo;  ///< of beads from `slab_end` on
   std::int64_t slab_end;
   bool equal;  ///< torque_i serves both
 };
@@ -28,9 +31,9 @@ struct IntegrateContext {
   PositionLine* position;
   MotionLine* motion;
   MotionLine* half;
-  ForceLine* force;
-  ForceLine* last;                ///< accelerations of the last step, replaced
-  const PositionLine* reference;  ///< centre at the last rebuild; `radius` holds the square of the allowed displacement
+  ForceWindow force;
+  AccelerationLine* last;  ///< of the last step, replaced
+  const ReferenceLine* reference;
   std::int64_t begin, end;
   double time_step;
   double acceleration[3];  ///< uniform, m/s²
@@ -45,8 +48,8 @@ struct IntegrateResult {
 
 struct WideTable {
   const char* name;
-  /// Finds the pairs of slots [first, last) that are within reach; fills owner, partner, slot, fresh. Returns their number.
-  std::int64_t (*search)(const GatherContext&, const PairListView&, std::int64_t first, std::int64_t last, BatchArrays&);
+  /// Finds the pairs of slots [first, last) that are within reach; fills slot, source, fresh. Returns their number.
+  std::int64_t (*search)(const GatherContext&, PairListView&, std::int64_t first, std::int64_t last, BatchArrays&);
   /// Fills overlap, normal, velocity, radius, mass (padded), history.
   void (*gather)(const GatherContext&, const PairListView&, std::int64_t count, BatchArrays&);
   /// Adds force × arms (and moments when `with_moments`) to the beads, stores histories.

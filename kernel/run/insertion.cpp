@@ -269,7 +269,8 @@ void insert_beads(Assembly& a) {
     line.inverse_mass = 1 / mass;
     line.inverse_inertia = 1 / (0.4 * mass * radius * radius);
     p.motion[i] = p.half[i] = line;
-    p.force[i] = p.acceleration[i] = dem::ForceLine{};
+    p.force[i] = dem::ForceLine{};
+    p.acceleration[i] = dem::AccelerationLine{};
     p.id[i] = static_cast<std::uint32_t>(i);
     p.material[i] = static_cast<std::uint8_t>(std::find(a.materials.begin(), a.materials.end(), bead.material) - a.materials.begin());
   }

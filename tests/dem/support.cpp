@@ -76,11 +76,11 @@ void place(Assembly& a, const std::vector<Bead>& beads) {
     dem::MotionLine line{};
     line.inverse_mass = 1 / m;
     line.inverse_inertia = 1 / (0.4 * m * b.radius * b.radius);
-    dem::ForceLine acceleration{};
+    dem::AccelerationLine acceleration{};
     for (std::size_t k = 0; k < 3; ++k) {
       line.v[k] = b.velocity[k];
       line.w[k] = b.spin[k];
-      acceleration.f[k] = a.gravity[k];
+      acceleration.linear[k] = static_cast<float>(a.gravity[k]);
     }
     p.motion[i] = p.half[i] = line;
     for (std::size_t k = 0; k < 3; ++k) p.half[i].v[k] -= h * a.gravity[k];
@@ -100,14 +100,14 @@ void start(Assembly& a, const std::vector<Bead>& beads) {
 void start_in_contact(Assembly& a, const std::vector<Bead>& beads) {
   start(a, beads);
   a.system->advance();
-  std::vector<dem::ForceLine> first(beads.size());
+  std::vector<dem::AccelerationLine> first(beads.size());
   for (std::size_t i = 0; i < beads.size(); ++i) first[a.system->particles.id[i]] = a.system->particles.acceleration[i];
   place(a, beads);
   dem::Particles& p = a.system->particles;
   for (std::size_t i = 0; i < beads.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      p.half[i].v[k] = beads[i].velocity[k] - 0.5 * a.time_step * first[i].f[k];
-      p.half[i].w[k] = beads[i].spin[k] - 0.5 * a.time_step * first[i].t[k];
+      p.half[i].v[k] = beads[i].velocity[k] - 0.5 * a.time_step * static_cast<double>(first[i].linear[k]);
+      p.half[i].w[k] = beads[i].spin[k] - 0.5 * a.time_step * static_cast<double>(first[i].angular[k]);
     }
     p.acceleration[i] = first[i];
   }
