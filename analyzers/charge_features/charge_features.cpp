@@ -65,7 +65,9 @@ class ChargeFeatures {
         flight_(flight_options(p, context)),
         flight_stride_(even_stride(context.largest_id, p.integer("flight_beads"))),
         low_(context.mill_low + shape_.end_bands),
-        high_(context.mill_high - shape_.end_bands) {}
+        high_(context.mill_high - shape_.end_bands) {
+    flight_.keep_cut = true;
+  }
 
   std::vector<ArrayInfo> arrays() const {
     const auto n = static_cast<std::uint64_t>(shape_.cells.count), a = static_cast<std::uint64_t>(shape_.angles.count);

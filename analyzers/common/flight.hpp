@@ -20,6 +20,7 @@ struct FlightOptions {
   double tolerance;       ///< of gravity
   double window;          ///< s
   double least_duration;  ///< s; shorter arcs are left out
+  bool keep_cut = false;  ///< arcs that the start or the end of the track cuts need half of that only
 };
 
 inline constexpr Parameter kFlightTolerance =
@@ -32,7 +33,7 @@ inline constexpr Parameter kLeastFlight =
 /// The three options above; refuses where gravity is unknown.
 inline FlightOptions flight_options(const Parameters& p, const AnalyzerContext& context) {
   if (!(context.gravity > 0)) throw Refusal("gravity is unknown, so free flight cannot be told from other motion");
-  return {context.gravity, p.number("flight_tolerance"), p.number("flight_window"), p.number("least_flight")};
+  return {context.gravity, p.number("flight_tolerance"), p.number("flight_window"), p.number("least_flight"), false};
 }
 
 /// Samples first … last of a track.
@@ -62,7 +63,10 @@ class FlightFinder {
       flying = free;
     }
     separate();
-    std::erase_if(arcs_, [&](const Arc& arc) { return track.time(arc.last) - track.time(arc.first) < options_.least_duration; });
+    std::erase_if(arcs_, [&](const Arc& arc) {
+      const bool whole = !options_.keep_cut || (arc.launch_seen && arc.landing_seen);
+      return track.time(arc.last) - track.time(arc.first) < (whole ? 1 : 0.5) * options_.least_duration;
+    });
     return arcs_;
   }
 
