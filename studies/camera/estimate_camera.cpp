@@ -1,0 +1,96 @@
+#include "studies/camera/estimate_camera.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kernel/config/error.hpp"
+#include "studies/camera/estimate_parts.hpp"
+
+namespace millscope::studies {
+namespace {
+
+constexpr std::size_t kFewest = 200;
+
+/// Middle of what a coordinate covers, without its outermost hundredths.
+double middle_of(const Recording& recording, std::size_t axis) {
+  std::vector<double> all;
+  for (const Run& run : recording.runs) all.insert(all.end(), run.position[axis].begin(), run.position[axis].end());
+  std::sort(all.begin(), all.end());
+  return 0.5 * (all[all.size() / 100] + all[all.size() - 1 - all.size() / 100]);
+}
+
+camera::Point middle_of(const Recording& recording, const std::optional<MillFrame>& frame) {
+  camera::Point middle{middle_of(recording, 0), middle_of(recording, 1), middle_of(recording, 2)};
+  if (frame) {
+    middle[0] = frame->axis[0];
+    middle[1] = frame->axis[1];
+    if (frame->high > frame->low) middle[2] = 0.5 * (frame->low + frame->high);
+  }
+  return middle;
+}
+
+double median_interval(const Recording& recording) {
+  std::vector<double> d;
+  for (const Run& run : recording.runs) {
+    for (std::size_t i = 1; i < run.size(); ++i) d.push_back(run.time[i] - run.time[i - 1]);
+  }
+  std::nth_element(d.begin(), d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2), d.end());
+  return d[d.size() / 2];
+}
+
+/// Share that the reader has set aside as too far off.
+Estimated outlier_share(const Recording& recording) {
+  double bad = 0, all = 0;
+  for (const Run& run : recording.runs) {
+    bad += static_cast<double>(run.report.outliers + run.report.outside);
+    all += static_cast<double>(run.report.outliers + run.report.outside + run.report.used);
+  }
+  return {bad / all, std::sqrt(std::max(bad, 1.0)) / all};
+}
+
+}  // namespace
+
+double CameraLosses::kept(double distance, double speed) const {
+  if (!found) return 1;
+  return 0.5 * std::erfc(-(at_rest.value - per_distance.value * distance - per_speed.value * speed) / std::numbers::sqrt2);
+}
+
+double camera::distance_of(const Run& run, std::size_t i, const camera::Point& middle) {
+  return std::hypot(run.position[0][i] - middle[0], run.position[1][i] - middle[1], run.position[2][i] - middle[2]);
+}
+
+CameraEstimate estimate_camera(const Recording& recording, const EstimateOptions& options) {
+  CameraEstimate e;
+  for (const Run& run : recording.runs) e.locations += run.size();
+  if (e.locations < kFewest) {
+    throw config::UserError(fmt::format("{}: {} locations are too few to tell the camera from; {} at least are needed",
+                                        recording.file.string(), e.locations, kFewest));
+  }
+  const std::optional<MillFrame> frame = options.frame ? options.frame : recording.frame;
+  if (frame) e.axis = frame->axis;
+  e.middle = middle_of(recording, frame);
+
+  const double usual = median_interval(recording), pause = 30 * usual;
+  const std::vector<camera::RateWindow> windows = camera::rate_windows(recording, e.middle, pause);
+  camera::RateModel model = camera::estimate_rate(windows);
+  camera::express_as_cut(model.loss, recording, e.middle, windows);
+  e.loss = model.loss;
+  // So long that chance would make a hundredth of such a pause in the whole recording, even at the lowest rate but a few.
+  const double limit = std::max(2 * pause, std::log(100 * static_cast<double>(e.locations)) / model.lowest_rate);
+  e.gaps = camera::estimate_gaps(recording, limit);
+  // Locations that a coarse clock puts at one time are one row more of the file, which the reader sets aside.
+  double duplicates = 0;
+  for (const Run& run : recording.runs) duplicates += static_cast<double>(run.report.duplicates);
+  const double lost = 1 + duplicates / static_cast<double>(e.locations);
+  e.sampling.rate = {lost * model.rate.value, lost * model.rate.error};
+  camera::estimate_intervals(e.sampling, recording, model, pause);
+  e.noise = camera::estimate_camera_noise(recording, e.middle, 6 * usual, options.most_stretches);
+  e.outliers = outlier_share(recording);
+  for (const camera::RateWindow& w : windows) e.seconds += w.seconds;
+  return e;
+}
+
+}  // namespace millscope::studies

@@ -1,0 +1,40 @@
+// Parts of estimate_camera; for the files of this room only.
+#pragma once
+
+#include "studies/camera/estimate_camera.hpp"
+
+namespace millscope::studies::camera {
+
+using Point = std::array<double, 3>;
+
+/// Distance of point i of a run from the rig's middle.
+double distance_of(const Run& run, std::size_t i, const Point& middle);
+
+CameraNoise estimate_camera_noise(const Recording& recording, const Point& middle, double pause, std::size_t most_stretches);
+
+/// A short span of a trajectory: how many locations came, and how far and fast the bead was.
+struct RateWindow {
+  double seconds;
+  double count;
+  double distance;    ///< m
+  double speed;       ///< m/s
+  std::size_t group;  ///< of neighbouring windows that are not independent
+};
+
+struct RateModel {
+  Estimated rate;
+  CameraLosses loss;
+  double lowest_rate = 0;  ///< that one window in two hundred falls below, 1/s
+};
+
+/// Windows of all runs; pauses longer than `pause` are left out.
+std::vector<RateWindow> rate_windows(const Recording& recording, const Point& middle, double pause);
+RateModel estimate_rate(const std::vector<RateWindow>& windows);
+/// Fills the parameters of the cut from the spreads that the recording has, or from a scale of its own.
+void express_as_cut(CameraLosses& loss, const Recording& recording, const Point& middle, const std::vector<RateWindow>& windows);
+
+CameraGaps estimate_gaps(const Recording& recording, double limit);
+/// Evenness and dead time from the intervals shorter than `pause`, given the rate and the losses.
+void estimate_intervals(CameraSampling& sampling, const Recording& recording, const RateModel& model, double pause);
+
+}  // namespace millscope::studies::camera

@@ -1,0 +1,29 @@
+// Maximum likelihood with errors that hold also where the model is not quite the truth.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace millscope::studies::camera {
+
+/// One parameter of a likelihood.
+struct FitParameter {
+  double start, low, high;
+};
+
+struct Fit {
+  std::vector<double> value;
+  std::vector<std::vector<double>> covariance;
+  double log_likelihood = 0;
+  double error(std::size_t i) const;  ///< standard error; infinite where the data do not determine the parameter
+};
+
+/// Log-likelihoods of independent groups of data at a point; the groups' number and order never change.
+using LogLikelihood = std::function<std::vector<double>(const std::vector<double>&)>;
+
+/// Maximises the sum over groups with NLopt's BOBYQA, then H⁻¹ G H⁻¹ with H the curvature of the sum and G = Σ g gᵀ over the groups'
+/// gradients (Huber 1967; White 1982). Parameters should be of order one (logarithms, scaled numbers).
+Fit maximise(const LogLikelihood& groups, const std::vector<FitParameter>& parameters);
+
+}  // namespace millscope::studies::camera

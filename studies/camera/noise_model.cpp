@@ -1,0 +1,112 @@
+#include "studies/camera/noise_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace millscope::studies::camera {
+namespace {
+
+/// From a bed turning as one body to impacts, in steps of a factor of two and a half, m/s^1.5.
+constexpr std::array<double, 8> kLadder{0.02, 0.05, 0.125, 0.3, 0.8, 2.0, 5.0, 12.5};
+
+using State = std::array<double, 3>;  ///< x, v, c
+
+/// Symmetric 3×3.
+struct Covariance {
+  double xx = 0, xv = 0, xc = 0, vv = 0, vc = 0, cc = 0;
+
+  void advance(const Steps& steps, std::size_t i, double strength, double correlated) {
+    const double time = steps.memory, slowed = steps.slowed[i], kept = steps.kept[i], reach = time * (1 - slowed), q = strength * strength;
+    xx += reach * (2 * xv + reach * vv) + q * time * time * (steps.dt[i] - 0.5 * time * (3 - slowed * (4 - slowed)));
+    xv = slowed * (xv + reach * vv) + 0.5 * q * reach * reach;
+    vv = slowed * slowed * vv + 0.5 * q * time * (1 - slowed * slowed);
+    xc = kept * (xc + reach * vc);
+    vc *= kept * slowed;
+    cc = kept * kept * cc + correlated * correlated * (1 - kept * kept);
+  }
+};
+
+constexpr std::size_t kSeries = 5;  ///< the data and the powers 0 to 3 of time
+
+/// Sums over the innovations of the data (series 0) and of the functions that are removed from them.
+class Removal {
+ public:
+  void add(const std::array<double, kSeries>& e, double variance) {
+    log_variance_ += std::log(variance);
+    for (std::size_t j = 0; j < kSeries; ++j) {
+      for (std::size_t k = 0; k <= j; ++k) sums_[j][k] += e[j] * e[k] / variance;
+    }
+  }
+
+  /// Restricted likelihood. Cholesky from the last function down to the data: the last pivot is what the functions leave of the data.
+  double log_likelihood(std::size_t count) {
+    double log_determinant = 0;
+    for (std::size_t pivot = kSeries - 1; pivot > 0; --pivot) {
+      log_determinant += std::log(sums_[pivot][pivot]);
+      for (std::size_t j = 0; j < pivot; ++j) {
+        const double share = sums_[pivot][j] / sums_[pivot][pivot];
+        for (std::size_t k = 0; k <= j; ++k) sums_[j][k] -= share * sums_[pivot][k];
+      }
+    }
+    const double free = static_cast<double>(count) - static_cast<double>(kSeries - 1);
+    return -0.5 * (log_variance_ + log_determinant + sums_[0][0] + free * std::log(2 * std::numbers::pi));
+  }
+
+ private:
+  std::array<std::array<double, kSeries>, kSeries> sums_{};  ///< lower triangle
+  double log_variance_ = 0;
+};
+
+}  // namespace
+
+Steps::Steps(const Stretch& stretch, double correlation_time, double memory_time, double growth) : memory(memory_time) {
+  for (std::size_t i = 0; i < stretch.time.size(); ++i) {
+    dt.push_back(i > 0 ? stretch.time[i] - stretch.time[i - 1] : 0.0);
+    kept.push_back(std::exp(-dt[i] / correlation_time));
+    slowed.push_back(std::exp(-dt[i] / memory));
+    factor.push_back(1 + growth * stretch.distance[i]);
+  }
+}
+
+double stretch_likelihood(const Stretch& s, std::size_t axis, const Steps& steps, const NoiseStrength& noise, double strength) {
+  // The same filter runs over the data and over the powers of time; generalised least squares removes the powers.
+  std::array<State, kSeries> state{};
+  Covariance p;
+  p.cc = noise.correlated * noise.correlated;
+  p.vv = 0.5 * strength * strength * steps.memory;
+  Removal removal;
+  const double half = 0.5 * s.time.back();
+  for (std::size_t i = 0; i < s.time.size(); ++i) {
+    const double f = steps.factor[i];
+    if (i > 0) {
+      const double kept = steps.kept[i], slowed = steps.slowed[i], reach = steps.memory * (1 - slowed);
+      p.advance(steps, i, strength, noise.correlated);
+      for (State& x : state) x = {x[0] + reach * x[1], slowed * x[1], kept * x[2]};
+    }
+    const double ux = p.xx + f * p.xc, uv = p.xv + f * p.vc, uc = p.xc + f * p.cc;
+    const double variance = ux + f * uc + f * f * noise.white * noise.white, t = s.time[i] / half - 1;
+    const std::array<double, kSeries> data{s.value[axis][i] - s.value[axis][0], 1.0, t, t * t, t * t * t};
+    std::array<double, kSeries> e;
+    for (std::size_t k = 0; k < kSeries; ++k) {
+      e[k] = data[k] - state[k][0] - f * state[k][2];
+      const double gain = e[k] / variance;
+      state[k] = {state[k][0] + ux * gain, state[k][1] + uv * gain, state[k][2] + uc * gain};
+    }
+    p = {p.xx - ux * ux / variance, p.xv - ux * uv / variance, p.xc - ux * uc / variance,
+         p.vv - uv * uv / variance, p.vc - uv * uc / variance, p.cc - uc * uc / variance};
+    removal.add(e, variance);
+  }
+  return removal.log_likelihood(s.time.size());
+}
+
+double stretch_likelihood(const Stretch& s, std::size_t axis, const Steps& steps, const NoiseStrength& noise) {
+  std::array<double, kLadder.size()> log{};
+  for (std::size_t k = 0; k < kLadder.size(); ++k) log[k] = stretch_likelihood(s, axis, steps, noise, kLadder[k]);
+  const double best = *std::max_element(log.begin(), log.end());
+  double sum = 0;
+  for (const double l : log) sum += std::exp(l - best);
+  return best + std::log(sum / static_cast<double>(kLadder.size()));
+}
+
+}  // namespace millscope::studies::camera
