@@ -26,7 +26,7 @@ constexpr Parameter kParameters[] = {
     kLeastFlight,
     number_parameter("trim", "s", 0.01, 0, 1, "Left out at each end of an arc, where the spline still feels the collision."),
     integer_parameter("least_points", 8, 6, 10000, "Arcs with fewer points are left out and counted."),
-    number_parameter("exact", "m", 3e-6, 1e-9, 1, "Accuracy of a point beyond its stated variance; simulated positions have no other."),
+    number_parameter("exact", "m", 1e-6, 1e-9, 1, "Accuracy of a point beyond its stated variance; simulated positions have no other."),
     number_parameter("roughest", "1", 2, 0.1, 1000, "Arcs whose residuals are larger than this many times their noise are left out."),
     integer_parameter("beads", 4000, 1, 1e9, "Arcs are looked for in at most about this many beads, evenly by id."),
 };
