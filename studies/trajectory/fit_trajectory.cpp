@@ -52,9 +52,10 @@ void set_noise(const Run& run, const TrajectoryOptions& options, Trajectory& tra
 /// Fits the splines of one span after another.
 class Fitter {
  public:
-  Fitter(const Run& run, const std::vector<Span>& spans, SplineKind kind, const Trajectory& trajectory) : run_(run), kind_(kind) {
+  Fitter(const Run& run, const std::vector<Span>& spans, SplineKind kind, const Trajectory& trajectory)
+      : run_(run), kind_(kind), correlation_(trajectory.noise_correlation) {
     // To a spline that is wider than a few points, noise with a correlation of φ looks like white noise (1 + φ)/(1 − φ) times as strong.
-    const double phi = trajectory.noise_correlation;
+    const double phi = correlation_;
     const double inflation = kind == SplineKind::smoothing ? std::sqrt((1 + phi) / (1 - phi)) : 1;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       noise_[axis] = trajectory.noise[axis] * inflation;
@@ -62,17 +63,28 @@ class Fitter {
     }
   }
 
+  /// The spline of a span; `points()` are its knots.
   const Spline& fit(const Span& span) {
-    const Points points = points_of(run_, span);
-    if (kind_ == SplineKind::smoothing) smooth_adaptively(points, noise_, roughness_, spline_);
-    if (kind_ == SplineKind::cubic) interpolate(points, noise_, spline_);
+    points_ = points_of(run_, span);
+    if (kind_ == SplineKind::smoothing) {
+      smooth_adaptively(points_, noise_, roughness_, spline_);
+      return spline_;
+    }
+    averaged_ = average(points_, kClose * median_interval(points_), correlation_);
+    points_ = averaged_.points();
+    interpolate(averaged_, noise_, spline_);
     return spline_;
   }
+  const Points& points() const { return points_; }
 
  private:
+  static constexpr double kClose = 0.5;  // median intervals
   const Run& run_;
   SplineKind kind_;
+  double correlation_;
   Lanes noise_{}, roughness_{};
+  Points points_{};
+  Averaged averaged_;
   Spline spline_;
 };
 
@@ -126,13 +138,15 @@ Trajectory fit_trajectory(const Run& run, const TrajectoryOptions& options) {
   }
   Fitter fitter(moved, spans, options.kind, trajectory);
   for (const Span& span : spans) {
-    const double first = moved.time[span.first], last = moved.time[span.last - 1];
+    const Spline& spline = fitter.fit(span);
+    const Points& knots = fitter.points();
+    const double first = knots.time[0], last = knots.time[knots.count - 1];
     Piece piece = empty_piece(first, last, options.step);
-    if (piece.size() == 0) {
+    if (piece.size() == 0 || knots.count < 2) {
       trajectory.points_left_out += span.size();
       continue;
     }
-    sample(moved.time.data() + span.first, fitter.fit(span), piece);
+    sample(knots.time, spline, piece);
     weigh(piece, first, last, options, trajectory);
     trajectory.covered += last - first;
     trajectory.pieces.push_back(std::move(piece));

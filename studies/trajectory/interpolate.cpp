@@ -85,16 +85,37 @@ Row row_of(const Slopes& slopes, std::size_t i) {
   return row;
 }
 
-double product(const Row& a, const Row& b) {
+double product(const Row& a, const Row& b, const std::vector<double>& variance) {
   const std::size_t first = std::max(a.first, b.first), last = std::min(a.first + a.size, b.first + b.size);
   double sum = 0;
-  for (std::size_t j = first; j < last; ++j) sum += a.weight[j - a.first] * b.weight[j - b.first];
+  for (std::size_t j = first; j < last; ++j) sum += a.weight[j - a.first] * b.weight[j - b.first] * variance[j];
   return sum;
 }
 
 }  // namespace
 
-void interpolate(const Points& points, const Lanes& noise, Spline& spline) {
+Averaged average(const Points& points, double interval, double correlation) {
+  Averaged averaged;
+  for (std::size_t first = 0, last = 0; first < points.count; first = last) {
+    while (last < points.count && points.time[last] - points.time[first] < interval) ++last;
+    last = std::max(last, first + 1);
+    const double count = static_cast<double>(last - first);
+    const auto mean = [&](const double* values) {
+      double sum = 0;
+      for (std::size_t i = first; i < last; ++i) sum += values[i] - values[first];
+      return values[first] + sum / count;
+    };
+    averaged.time.push_back(mean(points.time));
+    for (std::size_t axis = 0; axis < 3; ++axis) averaged.position[axis].push_back(mean(points.position[axis]));
+    double variance = 1, power = 1;  // of the mean of correlated values: 1/n + 2/n Σ (1 − k/n) φ^k
+    for (double k = 1; k < count; ++k) variance += 2 * (1 - k / count) * (power *= correlation);
+    averaged.variance.push_back(variance / count);
+  }
+  return averaged;
+}
+
+void interpolate(const Averaged& averaged, const Lanes& noise, Spline& spline) {
+  const Points points = averaged.points();
   const std::size_t count = points.count;
   const Slopes slopes(points.time, count);
   spline.knots.assign(count, {});
@@ -103,19 +124,20 @@ void interpolate(const Points& points, const Lanes& noise, Spline& spline) {
     for (std::size_t i = 0; i < count; ++i) spline.knots[i].x[axis] = points.position[axis][i];
     slopes.solve(points.position[axis], axis, spline.knots);
   }
+  const std::vector<double>& variance = averaged.variance;
   const double sum = noise[0] * noise[0] + noise[1] * noise[1] + noise[2] * noise[2];
   Row here = row_of(slopes, 0);
   for (std::size_t i = 0; i < count; ++i) {
-    const double mixed = here.at(i), velocity = product(here, here);
+    const double mixed = here.at(i) * variance[i], velocity = product(here, here, variance);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double squared = noise[axis] * noise[axis];
-      spline.knots[i].xx[axis] = squared;
+      spline.knots[i].xx[axis] = squared * variance[i];
       spline.knots[i].xv[axis] = squared * mixed;
       spline.knots[i].vv[axis] = squared * velocity;
     }
     if (i + 1 == count) break;
     const Row next = row_of(slopes, i + 1);
-    spline.between[i] = {0, sum * next.at(i), sum * here.at(i + 1), sum * product(here, next), 0};
+    spline.between[i] = {0, sum * next.at(i) * variance[i], sum * here.at(i + 1) * variance[i + 1], sum * product(here, next, variance), 0};
     here = next;
   }
 }

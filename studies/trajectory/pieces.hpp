@@ -46,8 +46,22 @@ struct Spline {
   std::vector<Between> between;  ///< one less
 };
 
+/// Points of which those that lie close together are averaged.
+struct Averaged {
+  std::vector<double> time;
+  std::array<std::vector<double>, 3> position;
+  std::vector<double> variance;  ///< of each, where that of a single point is 1
+  Points points() const { return {time.data(), {position[0].data(), position[1].data(), position[2].data()}, time.size()}; }
+};
+
+/// Averages groups of consecutive points within `interval` (s), in time and position. `correlation`: of the noise from point to point.
+Averaged average(const Points& points, double interval, double correlation);
+
 /// Natural cubic splines through the points; variances are what noise of standard deviation `noise` (m) does to them.
-void interpolate(const Points& points, const Lanes& noise, Spline& spline);
+void interpolate(const Averaged& averaged, const Lanes& noise, Spline& spline);
+
+/// Between consecutive points, s, from at most some thousand of them.
+double median_interval(const Points& points);
 
 /// How rough an interval turned out: the sum of squares that the data put there, and what its roughness lets expect.
 struct Evidence {

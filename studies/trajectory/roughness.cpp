@@ -36,13 +36,6 @@ std::vector<Span> sample_of(const std::vector<Span>& spans) {
   return chosen;
 }
 
-double median_interval(const Points& points) {
-  std::vector<double> some;
-  const std::size_t stride = points.count / 1000 + 1;
-  for (std::size_t i = 0; i + 1 < points.count; i += stride) some.push_back(points.time[i + 1] - points.time[i]);
-  return quantile(some, 0.5);
-}
-
 /// Two-sided exponential window over the intervals: decay[i] lies between the middles of intervals i − 1 and i.
 void spread(const std::vector<double>& decay, std::vector<double>& values) {
   const std::size_t n = values.size();
@@ -60,6 +53,13 @@ void spread(const std::vector<double>& decay, std::vector<double>& values) {
 }
 
 }  // namespace
+
+double median_interval(const Points& points) {
+  std::vector<double> some;
+  const std::size_t stride = points.count / 1000 + 1;
+  for (std::size_t i = 0; i + 1 < points.count; i += stride) some.push_back(points.time[i + 1] - points.time[i]);
+  return quantile(some, 0.5);
+}
 
 double likely_roughness(const Run& run, std::size_t axis, const std::vector<Span>& spans, double noise) {
   const std::vector<Span> sample = sample_of(spans);

@@ -1,6 +1,7 @@
 // From measured points to positions and velocities at even times, with what the noise leaves uncertain; never across a gap.
 //
-// Two ways: `cubic`, an interpolating cubic spline per coordinate (Chagas 2015), and `smoothing`, a cubic smoothing spline whose strength
+// Two ways: `cubic`, an interpolating cubic spline per coordinate (Chagas 2015; points nearer to each other than half the median interval
+// are averaged first, lest it swings between them), and `smoothing`, a cubic smoothing spline whose strength
 // follows the noise and, along the way, the motion. A simulated bead that a camera has seen goes through the same code.
 #pragma once
 
