@@ -139,10 +139,20 @@ std::array<AxisSource, 3> read_axes(const Node& section, const std::optional<Nod
 
 MillFrame read_frame(const Node& section) {
   section.expect({"axis", "ends"});
+  // [x, y] with a unit each, or bare numbers with one unit behind them: [x, y, mm].
   const auto pair = [](const Node& node, const char* example) {
     const auto items = node.items();
-    if (items.size() != 2) node.fail(fmt::format("wants two lengths, e.g. {}", example));
-    return std::array<double, 2>{config::read_number(items[0], "m"), config::read_number(items[1], "m")};
+    const bool unit_behind = items.size() == 3 && !config::read_quantity(items[0]).has_unit && !config::read_quantity(items[1]).has_unit;
+    if (items.size() != 2 && !unit_behind) node.fail(fmt::format("wants two lengths, e.g. {}", example));
+    std::array<double, 2> values{config::read_number(items[0], "m"), config::read_number(items[1], "m")};
+    if (!unit_behind) return values;
+    try {
+      const ColumnUnit unit = column_unit(kX, items[2].text());
+      for (double& value : values) value = value * unit.multiplier / unit.divisor;
+    } catch (const std::invalid_argument& error) {
+      items[2].fail(fmt::format("is '{}': {}", items[2].text(), error.what()));
+    }
+    return values;
   };
   MillFrame frame;
   frame.axis = pair(section.at("axis", "x and y of the mill's axis, e.g. [-2 mm, 13 mm]"), "[-2 mm, 13 mm]");

@@ -14,7 +14,7 @@
 namespace millscope::studies {
 namespace {
 
-constexpr std::size_t kWindow = 60, kShortest = 20, kWindows = 30;
+constexpr std::size_t kWindow = 60, kShortest = 20, kWindows = 40;
 constexpr double kLargestCorrelation = 0.9;
 constexpr double kLeastNoise = 1e-7;  // m
 
@@ -74,15 +74,29 @@ void improve(const double* t, const double* y, std::size_t count, bool fixed, Gu
   }
 }
 
-std::vector<Span> windows_of(const std::vector<Span>& spans) {
-  std::vector<Span> windows;
-  for (const std::size_t length : {kWindow, kShortest}) {  // short windows only where there are no long ones
-    for (const Span& span : spans) {
-      for (std::size_t first = span.first; first + length <= span.last; first += length) windows.push_back({first, first + length});
+/// Some points of a run.
+struct Window {
+  const Run* run;
+  Span span;
+  void improve(std::size_t axis, bool fixed, Guess& guess) const {
+    const Points points = points_of(*run, span);
+    studies::improve(points.time, points.position[axis], points.count, fixed, guess);
+  }
+};
+
+/// Spread evenly over all runs; short ones only where there are hardly any long ones.
+std::vector<Window> windows_of(std::span<const Run> runs, double gap_limit) {
+  std::vector<Window> windows;
+  for (const std::size_t length : {kWindow, kShortest}) {
+    for (const Run& run : runs) {
+      for (const Span& span : unbroken(run, gap_limit)) {
+        for (std::size_t first = span.first; first + length <= span.last; first += length)
+          windows.push_back({&run, {first, first + length}});
+      }
     }
     if (windows.size() >= 5) break;
   }
-  std::vector<Span> chosen;
+  std::vector<Window> chosen;
   const std::size_t count = std::min(kWindows, windows.size());
   for (std::size_t k = 0; k < count; ++k) chosen.push_back(windows[k * windows.size() / count]);
   return chosen;
@@ -90,19 +104,23 @@ std::vector<Span> windows_of(const std::vector<Span>& spans) {
 
 }  // namespace
 
-NoiseEstimate estimate_noise_model(const Run& run, double gap_limit) {
+NoiseEstimate estimate_noise_model(std::span<const Run> runs, double gap_limit) {
   NoiseEstimate estimate;
-  estimate.standard_deviation = difference_noise(run, gap_limit);
-  const std::vector<Span> windows = windows_of(unbroken(run, gap_limit));
+  for (const Run& run : runs) {
+    const auto noise = difference_noise(run, gap_limit);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      estimate.standard_deviation[axis] = std::max(estimate.standard_deviation[axis], noise[axis]);
+  }
+  const std::vector<Window> windows = windows_of(runs, gap_limit);
   if (windows.empty()) return estimate;
   std::array<std::vector<Guess>, 3> guesses;
   std::vector<double> correlations;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::vector<double> found;
     const double start = 2 * std::log(std::max(estimate.standard_deviation[axis], kLeastNoise));
-    for (const Span& w : windows) {
+    for (const Window& window : windows) {
       Guess guess{start, 0.1, std::log(0.1)};
-      improve(run.time.data() + w.first, run.position[axis].data() + w.first, w.size(), false, guess);
+      window.improve(axis, false, guess);
       guesses[axis].push_back(guess);
       found.push_back(guess.correlation);
     }
@@ -114,13 +132,15 @@ NoiseEstimate estimate_noise_model(const Run& run, double gap_limit) {
     for (std::size_t k = 0; k < windows.size(); ++k) {
       Guess guess = guesses[axis][k];
       guess.correlation = estimate.correlation;
-      improve(run.time.data() + windows[k].first, run.position[axis].data() + windows[k].first, windows[k].size(), true, guess);
+      windows[k].improve(axis, true, guess);
       found.push_back(guess.log_noise / 2);
     }
     estimate.standard_deviation[axis] = std::exp(quantile(found, 0.5));
   }
   return estimate;
 }
+
+NoiseEstimate estimate_noise_model(const Run& run, double gap_limit) { return estimate_noise_model(std::span(&run, 1), gap_limit); }
 
 std::array<double, 3> estimate_noise(const Run& run, double gap_limit) { return estimate_noise_model(run, gap_limit).standard_deviation; }
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,8 @@ struct NoiseEstimate {
   double correlation = 0;                             ///< from one point to the next, 0 … 0.9
 };
 NoiseEstimate estimate_noise_model(const Run& run, double gap_limit);
+/// The same from all runs of one tracker together: steadier, for TrajectoryOptions::noise and noise_correlation.
+NoiseEstimate estimate_noise_model(std::span<const Run> runs, double gap_limit);
 
 /// The standard deviations alone; m.
 std::array<double, 3> estimate_noise(const Run& run, double gap_limit);

@@ -72,3 +72,11 @@ TEST_CASE("too few points have a noise all the same, or none") {
   for (auto& component : run.position) component.resize(2);
   CHECK(estimate_noise(run, 0.05)[0] == 0);
 }
+
+TEST_CASE("several runs together give one steadier noise") {
+  std::vector<Run> runs;
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) runs.push_back(see(Motion(), {.correlation = 0.3, .duration = 10, .seed = seed}));
+  const NoiseEstimate found = estimate_noise_model(runs, 0.05);
+  CHECK(found.correlation == Approx(0.3).margin(0.06));
+  for (const double each : found.standard_deviation) CHECK(each == Approx(0.7e-3).epsilon(0.08));
+}

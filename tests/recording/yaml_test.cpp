@@ -131,6 +131,10 @@ TEST_CASE("where the mill stands is taken as it is given") {
   CHECK(recording.frame->axis[0] == Approx(0.0014));
   CHECK(recording.frame->axis[1] == Approx(-0.0009));
   CHECK(recording.frame->high == Approx(0.06));
+  const Recording bare = folder.read("files: a.txt\nframe: {axis: [1.4, -0.9, mm], ends: [0, 6, cm]}\n");
+  CHECK(bare.frame->axis == recording.frame->axis);
+  CHECK(bare.frame->high == Approx(0.06));
+  CHECK_THAT(folder.why("files: a.txt\nframe: {axis: [1, 2, s]}\n"), Contains("r.yaml:2:") && Contains("length"));
   CHECK_FALSE(folder.read("files: a.txt\n").frame);
   CHECK_THAT(folder.why("files: a.txt\nframe: {axis: [0, 0], ends: [60 mm, 0]}\n"), Contains("must rise"));
 }
@@ -152,4 +156,30 @@ TEST_CASE("what is wrong is named with its line") {
   CHECK_THAT(folder.why("files: a.txt\ncondition: {power: {value: 7 W}}\n"), Contains("missing key 'sem'"));
   CHECK_THAT(folder.why("files: a.txt\nencoder: pulses.csv\n"), Contains("must be one of none"));
   CHECK_THAT(folder.why("files: a.txt\ngap_limit: 0\n"), Contains("gap_limit"));
+}
+
+TEST_CASE("the examples that come with millscope are read") {
+  const Scratch scratch;
+  const std::filesystem::path examples = std::filesystem::path(MILLSCOPE_SOURCE_DIR) / "configs" / "recordings";
+  for (const char* name : {"ctrack.yaml", "table.yaml"}) std::filesystem::copy_file(examples / name, scratch / name);
+  std::string rows;
+  for (int k = 0; k < 200; ++k) rows += ctrack_row(5 * k, 100 * std::cos(0.02 * k), 100 * std::sin(0.02 * k), 30);
+  for (const char* name : {"run1.a", "run2.a"}) scratch.file(name, ctrack_head() + rows);
+  const Recording runs = read_recording(scratch / "ctrack.yaml");
+  REQUIRE(runs.runs.size() == 2);
+  CHECK(runs.runs[0].size() == 200);
+  CHECK(*runs.condition.angular_velocity < 0);
+
+  std::string table;
+  for (int k = 0; k < 200; ++k) {
+    table += std::to_string(0.005 * k) + ",0.5,30," + std::to_string(100 * std::cos(0.02 * k)) + "," +
+             std::to_string(100 * std::sin(0.02 * k)) + ",tracer\n";
+  }
+  scratch.file("tracer.csv", table);
+  const Run run = read_recording(scratch / "table.yaml").runs[0];
+  REQUIRE(run.size() == 200);
+  CHECK(run.position[0][100] == Approx(0.1 * std::cos(2.0)));
+  CHECK(run.position[1][100] == Approx(0.1 * std::sin(2.0)));
+  CHECK(run.position[2][100] == Approx(0.03));
+  CHECK(run.spread[100] == Approx(0.5e-3));
 }
