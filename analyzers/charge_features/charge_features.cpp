@@ -62,7 +62,8 @@ class ChargeFeatures {
 
   ChargeFeatures(const Parameters& p, const AnalyzerContext& context)
       : shape_(shape_of(p, context)),
-        flight_(flight_options(p, context)),
+        flights_known_(context.gravity > 0),
+        flight_(flights_known_ ? flight_options(p, context) : FlightOptions{}),
         flight_stride_(even_stride(context.largest_id, p.integer("flight_beads"))),
         low_(context.mill_low + shape_.end_bands),
         high_(context.mill_high - shape_.end_bands) {
@@ -86,6 +87,7 @@ class ChargeFeatures {
     for (std::int64_t s = block.first[0]; s < block.first[block.frame_count]; ++s) {
       if (block.weight[s] > 0) add_sample(block, s, sums);
     }
+    if (!flights_known_) return;
     FlightFinder finder(flight_);
     for_each_track(block, flight_stride_, [&](const Track& track) { add_flights(block, track, finder.find(block, track), sums); });
   }
@@ -96,7 +98,7 @@ class ChargeFeatures {
     add_centre(results, fields, centre);
     add_shell(results, centre ? find_shell_features(fields, *centre) : ShellFeatures{});
     add_head_and_mass(results, fields);
-    add_flight_angles(results, fields);
+    if (flights_known_) add_flight_angles(results, fields);
     add_regions(results, fields, centre);
     add_profiles(results, fields);
   }
@@ -250,11 +252,12 @@ class ChargeFeatures {
       const double* cell = fields.array(kMap) + kMapMoments * static_cast<std::int64_t>(i);
       flight[i] = ratio(cell[kCellFlight], cell[kCellWatched]);
     }
-    results.add("flight_fraction", "1", flight.data(), {n, n}, "Fraction of a cell's time that beads are in free flight.",
-                {"y_edges", "x_edges"});
+    if (flights_known_)
+      results.add("flight_fraction", "1", flight.data(), {n, n}, "Fraction of a cell's time that beads are in free flight.",
+                  {"y_edges", "x_edges"});
     add_share(results, "en_masse", regions[kEnMasse].time, regions[kEnMasse].speed, all);
     add_share(results, "cascading", regions[kCascading].time, regions[kCascading].speed, all);
-    add_share(results, "cataracting", regions[kCataracting].time, regions[kCataracting].speed, all);
+    if (flights_known_) add_share(results, "cataracting", regions[kCataracting].time, regions[kCataracting].speed, all);
     if (centre) add_share(results, "eye", regions[kEye].time, regions[kEye].speed, all);
     if (shape_.lifters > 0) add_share(results, "pocket", regions[kPocket].time, regions[kPocket].speed, all);
     const double* bands = fields.array(kEndBands);
@@ -290,6 +293,7 @@ class ChargeFeatures {
   }
 
   FieldShape shape_;
+  bool flights_known_;  ///< false: gravity is unknown, so flights cannot be told from other motion and are left out
   FlightOptions flight_;
   std::int64_t flight_stride_;
   double low_, high_;

@@ -16,11 +16,11 @@
 namespace millscope::analyzers {
 
 struct FlightOptions {
-  double gravity;         ///< m/s², along −y
-  double tolerance;       ///< of gravity
-  double window;          ///< s
-  double least_duration;  ///< s; shorter arcs are left out
-  bool keep_cut = false;  ///< arcs that the start or the end of the track cuts need half of that only
+  double gravity = 0;         ///< m/s², along −y
+  double tolerance = 0;       ///< of gravity
+  double window = 0;          ///< s
+  double least_duration = 0;  ///< s; shorter arcs are left out
+  bool keep_cut = false;      ///< arcs that the start or the end of the track cuts need half of that only
 };
 
 inline constexpr Parameter kFlightTolerance =

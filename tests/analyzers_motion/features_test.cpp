@@ -173,8 +173,17 @@ TEST_CASE("what features cannot do without is refused with the remedy") {
   CHECK_THROWS_WITH(Analyzer("charge_features", c), Catch::Contains("speed"));
   c = mill(kOmega);
   c.gravity = 0;
-  CHECK_THROWS_WITH(Analyzer("charge_features", c), Catch::Contains("gravity"));
+  CHECK_THROWS_WITH(Analyzer("free_flight", c), Catch::Contains("gravity"));
   c = mill(kOmega);
   c.is_periodic = 1;
   CHECK_THROWS_WITH(Analyzer("charge_features", c, "end_band=0.01"), Catch::Contains("periodic"));
+}
+
+TEST_CASE("without gravity flights are left out, and the rest stays") {
+  AnalyzerContext c = mill(kOmega);
+  c.gravity = 0;
+  const Motion motion = davis_charge(kDavis, 200, 0.06, 0.148);
+  const Outcome o = Analyzer("charge_features", c).of(all_beads(motion, 200, even_times(200, 0.005), even_weights(200, 0.005), kOmega));
+  CHECK(std::isfinite(number(o, "departure_shoulder")));
+  for (const char* name : {"cataracting_share", "flight_fraction", "impact_toe"}) CHECK(o.count(name) == 0);
 }
