@@ -58,6 +58,12 @@ void build(hid_t file, const BeadTable& table, const fs::path& path) {
   };
   make_named("wall_work", table.wall_names);
   make_named("dissipation", table.dissipation_names);
+  if (!table.impact_pairs.empty()) {
+    hdf5::make_column<std::uint64_t>(file, {"impacts", "1", {table.impact_pairs.size(), table.impact_edges.size() - 1}, 64}, path);
+    const Handle set(H5Dopen2(file, "impacts", H5P_DEFAULT), H5Dclose);
+    hdf5::set_attribute(set, "pairs", table.impact_pairs);
+    write_fixed(file, "impact_energy_edge", std::span<const double>(table.impact_edges), "J");
+  }
   for (std::size_t k = 0; k < kBeadColumns.size(); ++k) {
     hdf5::make_column<float>(file, {kBeadColumns[k], kBeadUnits[k], {table.id.size(), 3}, 1, true}, path);
   }
@@ -86,17 +92,19 @@ struct FrameWriter::Impl {
   std::vector<Column> scalars;  // wall_angle, angular_velocity
   std::vector<Column> beads;    // kBeadColumns
   std::vector<Column> ledger;   // wall_work, dissipation: 0 or 1 column each
+  std::vector<Column> impacts;  // 0 or 1 column
   std::size_t bead_count = 0, wall_count = 0, dissipation_count = 0;
   double last_time = 0;
   std::vector<float> rounded;
 
-  static std::unique_ptr<Impl> open(const fs::path& path, std::size_t bead_count, std::size_t walls, std::size_t dissipations);
+  static std::unique_ptr<Impl> open(const fs::path& path, std::size_t bead_count, std::size_t walls, std::size_t dissipations,
+                                    bool with_impacts);
   void append_beads(Column& column, std::span<const double> values);
   bool close();
 };
 
 std::unique_ptr<FrameWriter::Impl> FrameWriter::Impl::open(const fs::path& path, std::size_t bead_count, std::size_t walls,
-                                                           std::size_t dissipations) {
+                                                           std::size_t dissipations, bool with_impacts) {
   auto impl = std::make_unique<Impl>(path);
   impl->bead_count = bead_count;
   impl->wall_count = walls;
@@ -105,6 +113,7 @@ std::unique_ptr<FrameWriter::Impl> FrameWriter::Impl::open(const fs::path& path,
   for (const char* name : kBeadColumns) impl->beads.push_back(impl->file.column(name));
   if (walls > 0) impl->ledger.push_back(impl->file.column("wall_work"));
   if (dissipations > 0) impl->ledger.push_back(impl->file.column("dissipation"));
+  if (with_impacts) impl->impacts.push_back(impl->file.column("impacts"));
   impl->file.flush();
   return impl;
 }
@@ -119,6 +128,7 @@ bool FrameWriter::Impl::close() {
   scalars.clear();
   beads.clear();
   ledger.clear();
+  impacts.clear();
   time = Column();
   return file.close();
 }
@@ -136,11 +146,13 @@ FrameWriter FrameWriter::create(const fs::path& path, const BeadTable& table) {
     throw std::logic_error("FrameWriter: the bead table is empty or its arrays differ in length");
   }
   GrowingFile::create(path, [&](hid_t file) { build(file, table, path); });
-  return FrameWriter(Impl::open(path, count, table.wall_names.size(), table.dissipation_names.size()));
+  if (!table.impact_pairs.empty() && table.impact_edges.size() < 2) throw std::logic_error("FrameWriter: impacts need bins");
+  return FrameWriter(Impl::open(path, count, table.wall_names.size(), table.dissipation_names.size(), !table.impact_pairs.empty()));
 }
 
 FrameWriter FrameWriter::resume(const fs::path& path, std::size_t bead_count, double time) {
   std::size_t widths[2] = {0, 0};
+  bool with_impacts = false;
   double last_time = 0;
   GrowingFile::reopen(path, [&](hid_t file) {
     hdf5::require_schema(file, path, "millscope frames", kFramesSchema);
@@ -148,17 +160,18 @@ FrameWriter FrameWriter::resume(const fs::path& path, std::size_t bead_count, do
     const std::vector<double> times = open_column(file, "time", path).read_doubles();
     const auto kept = static_cast<hsize_t>(std::upper_bound(times.begin(), times.end(), time) - times.begin());
     if (kept > 0) last_time = times[kept - 1];
-    std::vector<const char*> names{"time", "wall_angle", "angular_velocity", "wall_work", "dissipation"};
+    std::vector<const char*> names{"time", "wall_angle", "angular_velocity", "wall_work", "dissipation", "impacts"};
     names.insert(names.end(), kBeadColumns.begin(), kBeadColumns.end());
     for (const char* name : names) {
-      if (!has(file, name) && std::string_view("wall_work dissipation").find(name) != std::string_view::npos) continue;
+      if (!has(file, name) && std::string_view("wall_work dissipation impacts").find(name) != std::string_view::npos) continue;
       Column column = open_column(file, name, path);
       column.truncate(kept);
       if (std::string_view(name) == "wall_work") widths[0] = column.row_size();
       if (std::string_view(name) == "dissipation") widths[1] = column.row_size();
+      if (std::string_view(name) == "impacts") with_impacts = true;
     }
   });
-  FrameWriter writer(Impl::open(path, bead_count, widths[0], widths[1]));
+  FrameWriter writer(Impl::open(path, bead_count, widths[0], widths[1], with_impacts));
   writer.impl_->last_time = last_time;
   return writer;
 }
@@ -167,7 +180,8 @@ void FrameWriter::append(const FrameView& frame) {
   Impl& f = *impl_;
   const std::size_t size = 3 * f.bead_count;
   if (frame.position.size() != size || frame.velocity.size() != size || frame.spin.size() != size ||
-      frame.wall_work.size() != f.wall_count || frame.dissipation.size() != f.dissipation_count) {
+      frame.wall_work.size() != f.wall_count || frame.dissipation.size() != f.dissipation_count ||
+      (!f.impacts.empty() && frame.impacts.size() != f.impacts.front().row_size())) {
     throw std::logic_error("FrameWriter: the frame's arrays do not have the lengths of the bead table");
   }
   if (f.time.rows() > 0 && !(frame.time > f.last_time)) throw std::logic_error("FrameWriter: times must increase");
@@ -180,6 +194,8 @@ void FrameWriter::append(const FrameView& frame) {
   f.scalars[1].append(&frame.angular_velocity, 1);
   if (f.wall_count > 0) f.ledger.front().append(frame.wall_work.data(), 1);
   if (f.dissipation_count > 0) f.ledger.back().append(frame.dissipation.data(), 1);
+  // A file of an earlier version, which is continued, may have no counts of impacts.
+  if (!f.impacts.empty()) f.impacts.front().append(frame.impacts.data(), 1);
   f.file.flush();
   f.time.append(&frame.time, 1);  // last: what `time` lists is complete
   f.file.flush();

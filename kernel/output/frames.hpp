@@ -24,18 +24,21 @@ struct BeadTable {
   std::vector<std::string> material_names;
   std::vector<std::string> wall_names;         ///< columns of FrameView::wall_work
   std::vector<std::string> dissipation_names;  ///< columns of FrameView::dissipation, e.g. "glass~liner.normal"
+  std::vector<std::string> impact_pairs{};     ///< rows of FrameView::impacts; empty: not written
+  std::vector<double> impact_edges{};          ///< J, [bins + 1]
 };
 
 /// One instant. Bead arrays are ordered as BeadTable::id; [N,3] is x0 y0 z0 x1 y1 z1 …
 struct FrameView {
-  double time = 0;                      ///< s
-  double wall_angle = 0;                ///< rad, about z, since the start
-  double angular_velocity = 0;          ///< Ω, rad/s
-  std::span<const double> wall_work;    ///< [walls] J given to the charge since the start
-  std::span<const double> dissipation;  ///< [dissipation_names] J since the start
-  std::span<const double> position;     ///< [N,3] m
-  std::span<const double> velocity;     ///< [N,3] m/s
-  std::span<const double> spin;         ///< [N,3] rad/s
+  double time = 0;                           ///< s
+  double wall_angle = 0;                     ///< rad, about z, since the start
+  double angular_velocity = 0;               ///< Ω, rad/s
+  std::span<const double> wall_work;         ///< [walls] J given to the charge since the start
+  std::span<const double> dissipation;       ///< [dissipation_names] J since the start
+  std::span<const std::uint64_t> impacts{};  ///< [impact_pairs, bins] first touches since the start
+  std::span<const double> position;          ///< [N,3] m
+  std::span<const double> velocity;          ///< [N,3] m/s
+  std::span<const double> spin;              ///< [N,3] rad/s
 };
 
 /// Writes frames.h5 (docs/format.md). The number of beads is fixed by the table. Throws config::UserError when the disk is full or

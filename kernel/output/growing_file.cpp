@@ -33,6 +33,12 @@ Column::Column(Handle set, fs::path path) : set_(std::move(set)), path_(std::mov
   check(H5Sget_simple_extent_dims(space, extent_.data(), nullptr), path_, "reading a dataset's shape");
 }
 
+hsize_t Column::row_size() const {
+  hsize_t size = 1;
+  for (std::size_t axis = 1; axis < extent_.size(); ++axis) size *= extent_[axis];
+  return size;
+}
+
 void Column::append_raw(hid_t type, const void* values, hsize_t count) {
   if (count == 0) return;
   std::vector<hsize_t> start(extent_.size(), 0), block = extent_;

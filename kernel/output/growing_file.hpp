@@ -20,8 +20,8 @@ class Column {
   Column(Handle set, std::filesystem::path path);
 
   hsize_t rows() const { return extent_.front(); }
-  /// Values per row of a column [rows, size].
-  hsize_t row_size() const { return extent_.back(); }
+  /// Values per row.
+  hsize_t row_size() const;
   /// Appends `count` rows from `values` (of the type T that the dataset was made with).
   template <class T>
   void append(const T* values, hsize_t count) {

@@ -92,7 +92,9 @@ Recorder::Recorder(const Assembly& a, std::filesystem::path directory, std::opti
       for (const dem::Body& b : a.system->bodies) table.wall_names.push_back(b.name);
       for (const dem::PairPhysics& pair : a.system->physics()) {
         for (const std::string& channel : a.system->layout().channels) table.dissipation_names.push_back(pair.name + ":" + channel);
+        table.impact_pairs.push_back(pair.name);
       }
+      for (int b = 0; b <= dem::ImpactBins::kCount; ++b) table.impact_edges.push_back(dem::ImpactBins::lower_edge(b));
       frames_ = output::FrameWriter::create(path, table);
     }
   }
@@ -170,8 +172,12 @@ void Recorder::gather(const dem::System& system) {
 void Recorder::write_frame(const dem::System& system) {
   const dem::Ledger ledger = system.ledger();
   std::vector<double> work, dissipation;
+  std::vector<std::uint64_t> impacts;
   for (const dem::BodyLedger& b : ledger.bodies) work.push_back(b.work);
-  for (const dem::PairLedger& p : ledger.pairs) dissipation.insert(dissipation.end(), p.dissipated.begin(), p.dissipated.end());
+  for (const dem::PairLedger& p : ledger.pairs) {
+    dissipation.insert(dissipation.end(), p.dissipated.begin(), p.dissipated.end());
+    for (const std::int64_t count : p.spectrum) impacts.push_back(static_cast<std::uint64_t>(count));
+  }
   output::FrameView view;
   view.time = system.time();
   const int body = a_.wall_body_of_mill();
@@ -182,6 +188,7 @@ void Recorder::write_frame(const dem::System& system) {
   }
   view.wall_work = work;
   view.dissipation = dissipation;
+  view.impacts = impacts;
   view.position = position_;
   view.velocity = velocity_;
   view.spin = spin_;

@@ -10,8 +10,9 @@ using Catch::Contains;
 
 namespace {
 
-const std::vector<std::string> kAll{"time",     "wall_angle", "angular_velocity", "wall_work",  "dissipation",    "position",
-                                    "velocity", "spin",       "beads/id",         "beads/mass", "beads/material", "beads/radius"};
+const std::vector<std::string> kAll{
+    "time", "wall_angle", "angular_velocity", "wall_work",      "dissipation",  "position", "velocity",
+    "spin", "beads/id",   "beads/mass",       "beads/material", "beads/radius", "impacts",  "impact_energy_edge"};
 
 void write(FrameWriter& writer, Story& story, int from, int to) {
   for (int k = from; k < to; ++k) writer.append(story.frame(k));

@@ -30,7 +30,10 @@ TEST_CASE("frames read back as they were written, while the run goes on") {
   CHECK(reader.scalars().wall_work.size() == 10);
   CHECK(reader.scalars().wall_work[9] == 0.1 * 4);
   CHECK(reader.scalars().dissipation_names == std::vector<std::string>{"glass~glass.normal"});
-  CHECK(reader.scalars().impacts.empty());
+  CHECK(reader.scalars().impact_pairs == std::vector<std::string>{"glass~glass", "glass~liner"});
+  CHECK(reader.scalars().impact_edges == std::vector<double>{1e-6, 1e-5, 1e-4, 1e-3});
+  CHECK(reader.scalars().impacts.size() == 5 * 6);
+  CHECK(reader.scalars().impacts[29] == 28);
   std::vector<float> position(2 * 21), velocity(2 * 21);
   reader.read(BeadField::position, 3, 2, position);
   reader.read(BeadField::velocity, 3, 2, velocity);

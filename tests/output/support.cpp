@@ -58,7 +58,15 @@ Story::Story(std::size_t beads, std::size_t walls) : work_(walls), position_(3 *
 millscope::output::BeadTable Story::table() const {
   std::vector<std::string> walls;
   for (std::size_t k = 0; k < work_.size(); ++k) walls.push_back("wall" + std::to_string(k));
-  return {id_, radius_, mass_, material_, {"glass", "steel"}, walls, {"glass~glass.normal"}};
+  return {id_,
+          radius_,
+          mass_,
+          material_,
+          {"glass", "steel"},
+          walls,
+          {"glass~glass.normal"},
+          {"glass~glass", "glass~liner"},
+          {1e-6, 1e-5, 1e-4, 1e-3}};
 }
 
 millscope::output::FrameView Story::frame(int k) {
@@ -74,6 +82,9 @@ millscope::output::FrameView Story::frame(int k) {
   frame.angular_velocity = -6.1;
   frame.wall_work = work_;
   frame.dissipation = {position_.data(), 1};
+  impacts_.assign(6, static_cast<std::uint64_t>(k));
+  impacts_[5] = 7 * static_cast<std::uint64_t>(k);
+  frame.impacts = impacts_;
   frame.position = position_;
   frame.velocity = velocity_;
   frame.spin = spin_;

@@ -44,6 +44,7 @@ class Story {
 
  private:
   std::vector<std::uint32_t> id_, material_;
+  std::vector<std::uint64_t> impacts_;
   std::vector<double> radius_, mass_, work_, position_, velocity_, spin_;
 };
 
