@@ -171,6 +171,10 @@ ResultSet run_analyzers(FrameSource& source, const std::vector<AnalyzerInstance>
   const Blocks blocks = gather(source, instances, layout, options);
   ResultSet results;
   results.meta.context = source.context();
+  // These point into the source, which the results outlive.
+  results.meta.context.channel_count = results.meta.context.impact_pair_count = results.meta.context.impact_bin_count = 0;
+  results.meta.context.channel_name = results.meta.context.impact_pair = nullptr;
+  results.meta.context.impact_energy_edge = nullptr;
   results.meta.seed = options.seed;
   results.meta.draws = static_cast<std::uint32_t>(options.draws);
   results.meta.blocks = blocks.table.spans;

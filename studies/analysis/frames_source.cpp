@@ -63,6 +63,12 @@ FramesSource::FramesSource(output::FrameReader reader, AnalyzerContext context, 
   if (!s.wall_work.empty()) context_.has |= kHasWallWork;
   if (!s.dissipation.empty()) context_.has |= kHasDissipation;
   if (!s.impacts.empty()) context_.has |= kHasImpacts;
+  context_.channel_count = static_cast<std::int64_t>(channels_.size());
+  context_.channel_name = channels_.data();
+  context_.impact_pair_count = static_cast<std::int64_t>(pairs_.size());
+  context_.impact_bin_count = s.impact_edges.empty() ? 0 : static_cast<std::int64_t>(s.impact_edges.size()) - 1;
+  context_.impact_pair = pairs_.data();
+  context_.impact_energy_edge = s.impact_edges.data();
   context_.start = s.time[begin_];
   context_.end = s.time[end_ - 1];
   context_.omega = 0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "kernel/config/case.hpp"
@@ -83,6 +84,11 @@ void know_charge(const config::Case& c, const std::optional<config::Vessel>& ves
   if (!c.fill.count && !c.fill.mass && !c.fill.filling) return;
   context.charge_count = static_cast<double>(config::bead_count(c, vessel));
   context.charge_mass = context.charge_count * mass;
+  if (!vessel) return;
+  // J = V_b/(V_m (1 − φ)) (Chagas 2015, Eq. 3.2)
+  const double shell = std::numbers::pi / 4 * vessel->diameter * vessel->diameter * vessel->length;
+  context.porosity = c.fill.porosity;
+  context.filling = c.fill.filling ? *c.fill.filling : context.charge_count * volume / (shell * (1 - c.fill.porosity));
 }
 
 }  // namespace

@@ -37,6 +37,8 @@ AnalyzerContext context_of(const Condition& c, const std::optional<MillFrame>& f
   const double diameter = c.bead_diameter.value_or(c.tracer.diameter.value_or(0));
   context.bead_radius = 0.5 * diameter;
   context.bead_density = c.bead_density.value_or(c.tracer.density.value_or(0));
+  context.filling = c.filling.value_or(0);
+  context.porosity = c.porosity.value_or(0);
   const double length = context.mill_high - context.mill_low;
   if (c.filling && c.porosity && context.mill_radius > 0 && length > 0 && context.bead_density > 0) {
     // M = (1 − φ) J V ρ (Chagas 2015, Eq. 4.1), V of the bare shell

@@ -18,7 +18,7 @@ struct ContextField {
   const char* unit;
   double AnalyzerContext::*number;
 };
-inline constexpr std::array<ContextField, 11> kContextFields{{{"mill_radius", "m", &AnalyzerContext::mill_radius},
+inline constexpr std::array<ContextField, 13> kContextFields{{{"mill_radius", "m", &AnalyzerContext::mill_radius},
                                                               {"mill_low", "m", &AnalyzerContext::mill_low},
                                                               {"mill_high", "m", &AnalyzerContext::mill_high},
                                                               {"omega", "rad/s", &AnalyzerContext::omega},
@@ -27,6 +27,8 @@ inline constexpr std::array<ContextField, 11> kContextFields{{{"mill_radius", "m
                                                               {"charge_count", "1", &AnalyzerContext::charge_count},
                                                               {"bead_radius", "m", &AnalyzerContext::bead_radius},
                                                               {"bead_density", "kg/m^3", &AnalyzerContext::bead_density},
+                                                              {"filling", "1", &AnalyzerContext::filling},
+                                                              {"porosity", "1", &AnalyzerContext::porosity},
                                                               {"start", "s", &AnalyzerContext::start},
                                                               {"end", "s", &AnalyzerContext::end}}};
 
