@@ -258,7 +258,7 @@ class ChargeFeatures {
     add_share(results, "en_masse", regions[kEnMasse].time, regions[kEnMasse].speed, all);
     add_share(results, "cascading", regions[kCascading].time, regions[kCascading].speed, all);
     if (flights_known_) add_share(results, "cataracting", regions[kCataracting].time, regions[kCataracting].speed, all);
-    if (centre) add_share(results, "eye", regions[kEye].time, regions[kEye].speed, all);
+    add_share(results, "eye", centre ? regions[kEye].time : kNaN, regions[kEye].speed, all);
     if (shape_.lifters > 0) add_share(results, "pocket", regions[kPocket].time, regions[kPocket].speed, all);
     const double* bands = fields.array(kEndBands);
     if (shape_.end_bands > 0) add_share(results, "end_band", bands[kShareTime], bands[kShareSpeed], all);

@@ -215,7 +215,7 @@ class FreeFlight {
       if (below < 0.5 * all && below + counts[i] >= 0.5 * all) median = angles_.edge(i) + angles_.width() * (0.5 * all - below) / counts[i];
       below += counts[i];
     }
-    results.add((what + "s_seen").c_str(), "1", all, ("Arcs that were seen to " + verb + ".").c_str());
+    results.add((what + (what.back() == 'h' ? "es" : "s") + "_seen").c_str(), "1", all, ("Arcs that were seen to " + verb + ".").c_str());
     results.add((what + "_density").c_str(), "1/rad", density.data(), {kAngleBins},
                 ("Distribution of the angles at which arcs " + verb + ".").c_str(), {"angle_edges_deg"});
     results.add((what + "_median").c_str(), "deg", kDegrees * median, ("Median angle at which arcs " + verb + ".").c_str());
