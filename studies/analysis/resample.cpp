@@ -113,7 +113,7 @@ Uncertainty uncertainty(double value, std::span<const float> draws, std::span<co
     u.scale = std::sqrt(n / (n - 1) * widening);
     u.sem = u.scale * std::sqrt(spread.variance);
     const double skewness = influence.cubes / (6 * std::pow(influence.squares, 1.5));
-    const double shift = std::clamp(skewness * (1 + 2 * t * t), -t, t);
+    const double shift = std::clamp(skewness * (1 + 2 * t * t), -t / 2, t / 2);
     u.low = value + u.sem * (shift - t);
     u.high = value + u.sem * (shift + t);
     u.effective_blocks = std::min(n, freedom + 1) / widening;

@@ -4,7 +4,8 @@
 //   s² = n/(n−1) Var_b(θ_b)                   the bootstrap's variance of a mean is short by (n−1)/n
 //   U_i = θ_(·) − θ_(−i)                      influence of block i: θ with it left out, against the mean of those
 //   ρ: lag-1 correlation of U, unbiased by (1 + 3 ρ)/n;  g² = (1 + ρ)/(1 − ρ), at least 1;  sem = g s
-//   interval  θ + sem (a (1 + 2 t²) ± t),     a = ΣU³/(6 (ΣU²)^{3/2}): skewness (Johnson 1978), t: Student's 95 % point with ν freedom
+//   interval  θ + sem (a (1 + 2 t²) ± t),     a = ΣU³/(6 (ΣU²)^{3/2}): skewness (Johnson 1978), t: Student's 95 % point with ν freedom;
+//                                            the shift is at most t/2
 //   1/ν = ½ (ΣU⁴/(ΣU²)² − 3/n + 2/(n−1)), at most n − 1: blocks without influence give no freedom
 //
 // Blocks of three autocorrelation times are still correlated with their neighbours by 0.2; without g the intervals hold 80 % instead of 90

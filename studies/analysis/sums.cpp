@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <set>
 
@@ -174,23 +175,27 @@ void finish_values(const AnalyzerInstance& instance, const SumLayout::Part& part
   struct Filler {
     const std::vector<ResultArray>& like;
     std::span<double> values;
-    std::size_t array = 0, at = 0;
+    std::size_t array = 0, at = 0;  // where the next result is expected
     bool differs = false;
+
+    void add(const Result& r) {
+      std::size_t size = 1;
+      for (std::uint32_t d = 0; d < r.rank; ++d) size *= r.shape[d];
+      // A result that was passed over does not exist for these sums: it stays undefined.
+      std::size_t found = array, place = at;
+      while (found < like.size() && like[found].name != r.name) place += like[found++].size();
+      if (found == like.size()) return;  // one that the whole of the data does not give
+      differs = differs || like[found].size() != size;
+      if (differs) return;
+      std::copy_n(r.values, size, values.begin() + static_cast<std::ptrdiff_t>(place));
+      array = found + 1;
+      at = place + size;
+    }
   } filler{like, values};
-  ResultSink sink{&filler, [](void* host, const Result* r) {
-                    Filler& f = *static_cast<Filler*>(host);
-                    std::size_t size = 1;
-                    for (std::uint32_t d = 0; d < r->rank; ++d) size *= r->shape[d];
-                    f.differs = f.differs || f.array >= f.like.size() || f.like[f.array].name != r->name || f.like[f.array].size() != size;
-                    if (f.differs) return;
-                    std::copy_n(r->values, size, f.values.begin() + static_cast<std::ptrdiff_t>(f.at));
-                    f.at += size;
-                    ++f.array;
-                  }};
+  std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
+  ResultSink sink{&filler, [](void* host, const Result* r) { static_cast<Filler*>(host)->add(*r); }};
   call_finish(instance, part, sums, sink);
-  if (filler.differs || filler.array != like.size()) {
-    blame(instance, "gives other results for other sums: which results there are, and their shapes, must not depend on the data");
-  }
+  if (filler.differs) blame(instance, "gives results of other shapes for other sums: shapes must not depend on the data");
 }
 
 }  // namespace millscope::studies

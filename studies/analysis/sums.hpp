@@ -42,8 +42,8 @@ SumTable merge_blocks(SumTable&& chunks, double least);
 
 /// What an analyzer makes of its part of a row.
 std::vector<ResultArray> finish_arrays(const AnalyzerInstance& instance, const SumLayout::Part& part, const double* sums);
-/// The same as plain values, one after the other, into `values`, which has room for all of `like`. Throws UserError when the results
-/// are not those of `like`.
+/// The same as plain values, one after the other, into `values`, which has room for all of `like`; NaN for results that these sums do not
+/// give. Throws UserError when a shape differs.
 void finish_values(const AnalyzerInstance& instance, const SumLayout::Part& part, const double* sums, const std::vector<ResultArray>& like,
                    std::span<double> values);
 

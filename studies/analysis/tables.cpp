@@ -102,6 +102,15 @@ void write_table(const fs::path& file, const ResultSet& results, const Table& ta
   out.commit();
 }
 
+std::string number_line(const ResultArray& a, std::size_t width, std::uint8_t doubtful) {
+  const bool known = std::isfinite(a.sem[0]) && a.sem[0] > 0;
+  const std::string sem = known ? fmt::format("+- {:.2g}", a.sem[0]) : "";
+  const std::string interval = known ? fmt::format("[{:.5g}, {:.5g}]", a.low[0], a.high[0]) : "";
+  const std::string doubts = flag_text(doubtful), unit = a.unit == "1" ? "" : a.unit;
+  return fmt::format("  {:<{}}  {:>11.5g} {:<11}  {:<24} {}{}\n", a.name, width, a.value[0], sem, interval, unit,
+                     doubts.empty() ? "" : "  (" + doubts + ")");
+}
+
 }  // namespace
 
 std::string flag_text(std::uint8_t flags) {
@@ -154,19 +163,33 @@ Json summary_json(const ResultSet& results) {
   return j;
 }
 
-std::string number_table(const ResultSet& results) {
-  std::size_t width = 4;
-  for (const ResultArray& a : results.arrays) {
-    if (is_number(a)) width = std::max(width, a.analyzer.size() + a.name.size() + 1);
-  }
-  std::string page = fmt::format("{:<{}}  {:>11}  {:>9}  {:>23}  {}\n", "result", width, "value", "+- sem", "90 % interval", "unit");
+std::string number_table(const ResultSet& results, std::size_t most) {
+  struct Shown {
+    std::vector<const ResultArray*> rows;
+    std::size_t more = 0, undefined = 0;
+  };
+  std::map<std::string, Shown> analyzers;
+  std::size_t width = 6;
   for (const ResultArray& a : results.arrays) {
     if (!is_number(a)) continue;
-    const std::string interval = std::isfinite(a.low[0]) ? fmt::format("{:.5g} … {:.5g}", a.low[0], a.high[0]) : "-";
-    const std::string sem = std::isfinite(a.sem[0]) ? fmt::format("{:.2g}", a.sem[0]) : "-";
-    const std::string doubts = flag_text(a.flags[0]);
-    page += fmt::format("{:<{}}  {:>11.5g}  {:>9}  {:>23}  {}{}\n", a.analyzer + "." + a.name, width, a.value[0], sem, interval, a.unit,
-                        doubts.empty() ? "" : "  (" + doubts + ")");
+    Shown& shown = analyzers[a.analyzer];
+    if (!std::isfinite(a.value[0])) {
+      ++shown.undefined;
+    } else if (shown.rows.size() >= most) {
+      ++shown.more;
+    } else {
+      shown.rows.push_back(&a);
+      width = std::max(width, a.name.size());
+    }
+  }
+  // What all share is said once, above the table.
+  const std::uint8_t common = results.meta.blocks.size() < 10 ? kFewBlocks | kNoUncertainty : 0;
+  std::string page;
+  for (const auto& [name, shown] : analyzers) {
+    page += fmt::format("{}\n", name);
+    for (const ResultArray* a : shown.rows) page += number_line(*a, width, static_cast<std::uint8_t>(a->flags[0] & ~common));
+    if (shown.more > 0) page += fmt::format("  and {} more\n", shown.more);
+    if (shown.undefined > 0) page += fmt::format("  {} undefined in these data\n", shown.undefined);
   }
   return page;
 }

@@ -18,8 +18,9 @@ std::vector<std::filesystem::path> write_tables(const std::filesystem::path& dir
 /// Provenance, notes and all single numbers with their uncertainty: results.json.
 nlohmann::ordered_json summary_json(const ResultSet& results);
 
-/// The single numbers as lines of a page: name, value ± sem, interval, unit, what is doubtful.
-std::string number_table(const ResultSet& results);
+/// The first `most` single numbers of each analyzer as a page: value ± sem, interval, unit, what is doubtful. Those that are undefined are
+/// counted.
+std::string number_table(const ResultSet& results, std::size_t most);
 
 /// "few blocks, correlated"; "" when nothing is doubtful.
 std::string flag_text(std::uint8_t flags);

@@ -139,7 +139,7 @@ double autocorrelation_time(const EvenSeries& series) {
 
 double circulation_time(const EvenSeries& series) {
   const Moments m = moments_of(series);
-  const double band = std::sqrt(m.variance) / 3;
+  const double band = std::sqrt(m.variance) / 2;
   double sum = 0;
   std::size_t count = 0;
   for (const auto& row : series.rows) {

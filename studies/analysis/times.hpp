@@ -39,7 +39,7 @@ EvenSeries even_series(const std::vector<BasicSeries>& stretches, std::size_t ba
 /// for the mean that was taken from the data (Wolff 2004); s. Pairs across gaps count at their lag. NaN: fewer than 8 values.
 double autocorrelation_time(const EvenSeries& series);
 
-/// Mean time of one circulation: from one crossing of the mean upwards to the next, a third of the standard deviation being passed on
+/// Mean time of one circulation: from one crossing of the mean upwards to the next, half a standard deviation being passed on
 /// both sides; s. 0: fewer than three.
 double circulation_time(const EvenSeries& series);
 

@@ -172,8 +172,8 @@ const FrameBlock& TrajectorySource::load(std::size_t number, Scratch& scratch) c
     block.velocity[axis] = a.velocity[axis].data() + from;
     block.location_position[axis] = t.location_position[axis].data() + chunk.location_first;
   }
-  block.radius = a.radius.data() + from;
-  block.mass = a.mass.data() + from;
+  block.radius = t.diameter > 0 ? a.radius.data() + from : nullptr;
+  block.mass = t.diameter > 0 && t.density > 0 ? a.mass.data() + from : nullptr;
   block.position_variance = exact_ ? nullptr : a.position_variance.data() + from;
   block.velocity_variance = exact_ ? nullptr : a.velocity_variance.data() + from;
   block.location_count = static_cast<std::int64_t>(chunk.location_last - chunk.location_first);

@@ -1,0 +1,111 @@
+#include "studies/analysis/recorded_mill.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "kernel/config/error.hpp"
+#include "studies/inspect/mill_motion.hpp"
+
+namespace millscope::studies {
+namespace {
+
+using config::UserError;
+
+/// What recording.yaml and the geometry say; 0 where they say nothing.
+AnalyzerContext stated(const Recording& recording, const std::optional<MillOfCase>& mill) {
+  const Condition& c = recording.condition;
+  AnalyzerContext context{};
+  context.is_recording = 1;
+  context.gravity = 9.81;
+  if (mill) {
+    context.mill_radius = mill->context.mill_radius;
+    context.mill_low = mill->context.mill_low;
+    context.mill_high = mill->context.mill_high;
+  }
+  if (c.mill_diameter) context.mill_radius = 0.5 * *c.mill_diameter;
+  if (c.mill_length && !(mill && mill->context.mill_high > mill->context.mill_low)) {
+    context.mill_low = 0;
+    context.mill_high = *c.mill_length;
+  }
+  if (recording.frame && recording.frame->high > recording.frame->low) {
+    context.mill_low = recording.frame->low;
+    context.mill_high = recording.frame->high;
+  }
+  context.omega = c.angular_velocity.value_or(0);
+  context.bead_radius = 0.5 * c.bead_diameter.value_or(c.tracer.diameter.value_or(0));
+  context.bead_density = c.bead_density.value_or(c.tracer.density.value_or(0));
+  context.filling = c.filling.value_or(0);
+  context.porosity = c.porosity.value_or(0);
+  return context;
+}
+
+/// M = (1 − φ) J V ρ (Chagas 2015, Eq. 4.1), V of the bare shell.
+void weigh_charge(const Condition& c, AnalyzerContext& context) {
+  const double length = context.mill_high - context.mill_low;
+  if (!c.filling || !c.porosity || !(context.mill_radius > 0) || !(length > 0) || !(context.bead_density > 0)) return;
+  const double solids = (1 - *c.porosity) * *c.filling * std::numbers::pi * context.mill_radius * context.mill_radius * length;
+  const double bead = 4.0 / 3.0 * std::numbers::pi * std::pow(context.bead_radius, 3);
+  context.charge_mass = solids * context.bead_density;
+  if (bead > 0) context.charge_count = solids / bead;
+}
+
+std::string interval_text(const Finding& finding, double factor) {
+  const Estimate& e = *finding.estimate;
+  if (finding.bound == Bound::at_least) return fmt::format("at least {:.4g}", factor * e.low);
+  return fmt::format("{:.4g} [{:.4g}, {:.4g}]", factor * e.value, factor * e.low, factor * e.high);
+}
+
+void find_axis(const Recording& recording, const MillMotion& motion, RecordedMill& known) {
+  if (motion.sense == 0 || !motion.axis[0].estimate || !motion.axis[1].estimate) {
+    throw UserError(fmt::format(
+        "{}: the mill's axis is neither given nor to be found ({}); write it into a recording.yaml, e.g. 'frame: {{axis: [0, 0, mm]}}'",
+        recording.file.string(), motion.axis[0].note));
+  }
+  known.axis = motion.centre();
+  known.notes.push_back(fmt::format("the mill's axis was found at x = {} mm, y = {} mm; every place is relative to it",
+                                    interval_text(motion.axis[0], 1e3), interval_text(motion.axis[1], 1e3)));
+}
+
+void find_speed(const Recording& recording, const MillMotion& motion, RecordedMill& known) {
+  const std::optional<double>& speed = recording.condition.speed;
+  if (motion.sense == 0 || (!speed && !motion.speed.estimate)) {
+    known.notes.push_back(
+        fmt::format("the turning {} of the mill is neither given nor to be found ({})", speed ? "sense" : "speed", motion.speed.note));
+    return;
+  }
+  known.context.omega = motion.sense * (speed ? *speed : motion.speed.estimate->value);
+  const std::string found = speed ? "" : fmt::format(" at {} rpm", interval_text(motion.speed, 30 / std::numbers::pi));
+  known.notes.push_back(fmt::format("the mill was found to turn {}{}", motion.sense > 0 ? "counter-clockwise" : "clockwise", found));
+}
+
+void find_radius(const MillMotion& motion, RecordedMill& known) {
+  if (!motion.path_radius.estimate) {
+    known.notes.push_back(fmt::format("the radius of the mill is neither given nor to be found ({})", motion.path_radius.note));
+    return;
+  }
+  const bool bead_known = known.context.bead_radius > 0;
+  known.context.mill_radius = motion.path_radius.estimate->value + known.context.bead_radius;
+  known.notes.push_back(fmt::format("the shell's radius is taken for {:.4g} mm: {} mm was found for the tracer's path along the shell, {}",
+                                    1e3 * known.context.mill_radius, interval_text(motion.path_radius, 1e3),
+                                    bead_known ? "and a bead's radius added" : "and the bead's radius, which would add to it, is unknown"));
+}
+
+}  // namespace
+
+RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCase>& mill) {
+  RecordedMill known;
+  known.context = stated(recording, mill);
+  if (recording.frame) known.axis = recording.frame->axis;
+  if (!recording.frame || known.context.omega == 0 || !(known.context.mill_radius > 0)) {
+    const MillMotion motion = estimate_motion(recording);
+    if (!recording.frame) find_axis(recording, motion, known);
+    if (known.context.omega == 0) find_speed(recording, motion, known);
+    if (!(known.context.mill_radius > 0)) find_radius(motion, known);
+  }
+  weigh_charge(recording.condition, known.context);
+  return known;
+}
+
+}  // namespace millscope::studies

@@ -1,0 +1,22 @@
+// What is known of a recording's mill: what recording.yaml says, and of the rest what the tracer itself shows.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studies/analysis/mill.hpp"
+#include "studies/recording/recording.hpp"
+
+namespace millscope::studies {
+
+struct RecordedMill {
+  std::array<double, 2> axis{0, 0};  ///< x, y in the frame of the file, m
+  AnalyzerContext context{};
+  std::vector<std::string> notes;  ///< what was estimated, with its interval
+};
+
+/// `mill`: of the geometry that the condition names. Throws config::UserError where the axis is neither given nor to be found.
+RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCase>& mill);
+
+}  // namespace millscope::studies

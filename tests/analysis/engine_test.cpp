@@ -1,0 +1,280 @@
+#include "studies/analysis/engine.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "analysis/support.hpp"
+#include "studies/analysis/times.hpp"
+
+using namespace analysis_test;
+using namespace millscope::studies;
+using Catch::Contains;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+/// One bead that follows given coordinates; two stretches, with the shared frames between chunks that the contract promises.
+class MadeUp : public FrameSource {
+ public:
+  explicit MadeUp(std::uint64_t seed, std::size_t frames = 4000) {
+    context_.has = kHasVelocity | kHasWallWork;
+    context_.largest_id = 1;
+    for (std::size_t k = 0; k < 2; ++k) {
+      Stretch& s = stretches_[k];
+      s.x = autoregressive(frames, 0.8, seed + k);
+      s.y = autoregressive(frames, 0.8, seed + k + 100);
+      for (std::size_t i = 0; i < frames; ++i) s.work.push_back(2.0 * 0.01 * static_cast<double>(i));
+    }
+    cut(0, 1);
+  }
+  const AnalyzerContext& context() const override { return context_; }
+  std::size_t chunk_count() const override { return chunks_.size(); }
+  std::size_t stretch(std::size_t chunk) const override { return chunks_[chunk].stretch; }
+  std::string description() const override { return "made up"; }
+  void want(std::uint64_t) override {}
+  std::unique_ptr<Scratch> make_scratch() const override { return std::make_unique<Buffers>(); }
+
+  void cut(double duration, std::size_t most) override {
+    chunks_.clear();
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::size_t n = stretches_[k].x.size();
+      double parts = static_cast<double>(std::max<std::size_t>(1, most / 2));
+      if (duration > 0) parts = std::max(1.0, std::min(parts, std::floor(0.01 * static_cast<double>(n) / duration)));
+      for (std::size_t p = 0; p < static_cast<std::size_t>(parts); ++p) {
+        chunks_.push_back({k, p * n / static_cast<std::size_t>(parts), (p + 1) * n / static_cast<std::size_t>(parts)});
+      }
+    }
+  }
+  std::vector<BasicSeries> survey() const override {
+    std::vector<BasicSeries> all(2);
+    const auto scratch = make_scratch();
+    for (std::size_t c = 0; c < chunks_.size(); ++c) all[chunks_[c].stretch].append(basics_of(load(c, *scratch)));
+    return all;
+  }
+  const FrameBlock& load(std::size_t number, FrameSource::Scratch& scratch) const override {
+    Buffers& b = static_cast<Buffers&>(scratch);
+    const Chunk& chunk = chunks_[number];
+    const Stretch& s = stretches_[chunk.stretch];
+    const std::size_t lead = chunk.first > 0 ? 1 : 0, begin = chunk.first - lead, n = chunk.last - begin;
+    b.time.clear();
+    for (std::size_t i = begin; i < chunk.last; ++i) b.time.push_back(0.01 * static_cast<double>(i));
+    b.weight.assign(n, 0.01);
+    if (lead > 0) b.weight[0] = 0;
+    b.zero.assign(n, 0.0);
+    b.piece.assign(n, 0);
+    b.id.assign(n, static_cast<std::int64_t>(chunk.stretch));
+    b.first.resize(n + 1);
+    for (std::size_t i = 0; i <= n; ++i) b.first[i] = static_cast<std::int64_t>(i);
+    b.block = {};
+    b.block.has = context_.has;
+    b.block.duration = 0.01 * static_cast<double>(chunk.last - chunk.first);
+    b.block.frame_count = static_cast<std::int64_t>(n);
+    b.block.time = b.time.data();
+    b.block.piece = b.piece.data();
+    b.block.first = b.first.data();
+    b.block.weight = b.weight.data();
+    b.block.id = b.id.data();
+    b.block.position[0] = s.x.data() + begin;
+    b.block.position[1] = s.y.data() + begin;
+    b.block.position[2] = b.zero.data();
+    for (auto& v : b.block.velocity) v = b.zero.data();
+    b.block.wall_work = s.work.data() + begin;
+    return b.block;
+  }
+
+ private:
+  struct Buffers : FrameSource::Scratch {
+    FrameBlock block{};
+    std::vector<double> time, weight, zero;
+    std::vector<std::int32_t> piece;
+    std::vector<std::int64_t> id, first;
+  };
+  struct Stretch {
+    std::vector<double> x, y, work;
+  };
+  struct Chunk {
+    std::size_t stretch, first, last;
+  };
+  AnalyzerContext context_{};
+  Stretch stretches_[2];
+  std::vector<Chunk> chunks_;
+};
+
+/// Means of x and y, a histogram of x, and the power of the walls.
+struct Means {
+  static constexpr std::uint64_t kNeeds = kHasVelocity;
+  Means(const Parameters&, const AnalyzerContext&) {}
+  std::vector<ArrayInfo> arrays() const { return {additive("sums", "mixed", {5}), additive("bins", "s", {4})}; }
+  void accumulate(const FrameBlock& b, double* const* sums) const {
+    for (std::int64_t i = 0; i < b.frame_count; ++i) {
+      sums[0][0] += b.weight[i];
+      sums[0][1] += b.weight[i] * b.position[0][i];
+      sums[0][2] += b.weight[i] * b.position[1][i];
+      if (i > 0) sums[0][3] += b.wall_work[i] - b.wall_work[i - 1], sums[0][4] += b.time[i] - b.time[i - 1];
+      sums[1][std::clamp(static_cast<int>(b.position[0][i] + 2), 0, 3)] += b.weight[i];
+    }
+  }
+  void finish(const double* const* s, Results& r) const {
+    const double edges[] = {-2, -1, 0, 1, 2};
+    double share[4];
+    for (int k = 0; k < 4; ++k) share[k] = s[1][k] / s[0][0];
+    r.add("edges", "m", edges, {5}, "Edges.");
+    r.add("mean_x", "m", s[0][1] / s[0][0], "Mean x.");
+    r.add("mean_y", "m", s[0][2] / s[0][0], "Mean y.");
+    r.add("seconds", "s", s[0][0], "Time.");
+    r.add("power", "W", s[0][3] / s[0][4], "Power.");
+    r.add("share", "1", share, {4}, "Shares.", {"edges"});
+  }
+};
+
+/// Twice the mean of x; refuses its axis, or gives a result only sometimes, when told so by its name.
+struct Twice {
+  static constexpr std::uint64_t kNeeds = 0;
+  Twice(const Parameters&, const AnalyzerContext&) {}
+  std::vector<ArrayInfo> arrays() const { return {additive("sums", "mixed", {2})}; }
+  void accumulate(const FrameBlock& b, double* const* sums) const {
+    for (std::int64_t i = 0; i < b.frame_count; ++i) {
+      sums[0][0] += b.weight[i];
+      sums[0][1] += 2 * b.weight[i] * b.position[0][i];
+    }
+  }
+  void finish(const double* const* s, Results& r) const { r.add("twice_x", "m", s[0][1] / s[0][0], "Twice the mean x."); }
+};
+
+struct WrongAxis : Twice {
+  using Twice::Twice;
+  void finish(const double* const* s, Results& r) const { r.add("row", "m", s[0], {2}, "A row.", {"nowhere"}); }
+};
+
+struct Sometimes : Twice {
+  using Twice::Twice;
+  void finish(const double* const* s, Results& r) const {
+    if (s[0][1] > 0) r.add("positive", "m", s[0][1], "Only where positive.");
+    r.add("always", "s", s[0][0], "Time.");
+  }
+};
+
+struct Refuses : Twice {
+  using Twice::Twice;
+  void accumulate(const FrameBlock&, double* const*) const { throw Refusal("the beads are of the wrong colour; paint them"); }
+};
+
+EngineOptions with_threads(int threads) {
+  EngineOptions options;
+  options.threads = threads;
+  return options;
+}
+
+std::vector<AnalyzerInstance> both(const AnalyzerContext& context) {
+  std::vector<AnalyzerInstance> instances;
+  instances.push_back(local_instance<Means>("means", context));
+  instances.push_back(local_instance<Twice>("twice", context));
+  return instances;
+}
+
+std::size_t entry(const ResultSet& r, const std::string& name) {
+  for (std::size_t i = 0; i < r.covariance_entries.size(); ++i) {
+    if (entry_name(r, r.covariance_entries[i]) == name) return i;
+  }
+  FAIL("no entry " << name);
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("the number of threads changes no bit of the results") {
+  MadeUp source(1);
+  const std::vector<AnalyzerInstance> instances = both(source.context());
+  const ResultSet one = run_analyzers(source, instances, with_threads(1));
+  const ResultSet four = run_analyzers(source, instances, with_threads(4));
+  REQUIRE(one.arrays.size() == four.arrays.size());
+  for (std::size_t i = 0; i < one.arrays.size(); ++i) {
+    CHECK(one.arrays[i].value == four.arrays[i].value);
+    CHECK(one.arrays[i].sem == four.arrays[i].sem);
+    CHECK(one.arrays[i].draws == four.arrays[i].draws);
+  }
+  CHECK(one.covariance == four.covariance);
+}
+
+TEST_CASE("blocks join without loss and stay within their stretch") {
+  MadeUp source(2);
+  const ResultSet r = run_analyzers(source, both(source.context()), with_threads(2));
+  CHECK_THAT(r.find("means", "seconds")->value[0], WithinRel(80.0, 1e-12));
+  CHECK_THAT(r.find("means", "power")->value[0], WithinRel(2.0, 1e-9));  // work is lost where frames are not shared
+  CHECK(r.meta.blocks.size() >= 40);
+  CHECK(r.meta.blocks.size() <= 64);
+  for (const ResultBlock& b : r.meta.blocks) CHECK(b.duration >= 3 * 0.045);
+  CHECK(r.meta.blocks.front().stretch == 0);
+  CHECK(r.meta.blocks.back().stretch == 1);
+  const ResultArray& edges = *r.find("means", "edges");
+  CHECK(edges.is_axis);
+  CHECK(edges.sem.empty());
+  CHECK(r.axis(*r.find("means", "share"), 0) == &edges);
+}
+
+TEST_CASE("results of one run have a joint covariance") {
+  MadeUp source(3);
+  const ResultSet r = run_analyzers(source, both(source.context()), with_threads(2));
+  const std::size_t n = r.covariance_entries.size();
+  CHECK(n == 4 + 4 + 1);  // mean_x, mean_y, seconds, power, share[4], twice_x
+  const auto at = [&](std::size_t i, std::size_t j) { return r.covariance[i * n + j]; };
+  const std::size_t x = entry(r, "means.mean_x"), y = entry(r, "means.mean_y"), twice = entry(r, "twice.twice_x");
+  CHECK_THAT(std::sqrt(at(x, x)), WithinRel(r.find("means", "mean_x")->sem[0], 1e-4));
+  CHECK_THAT(at(x, twice), WithinRel(2 * at(x, x), 1e-4));
+  CHECK_THAT(at(x, y) / std::sqrt(at(x, x) * at(y, y)), WithinAbs(0, 0.45));
+  // Shares sum to one: their covariances sum to zero.
+  double sum = 0, scale = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      const double c = at(entry(r, "means.share[" + std::to_string(i) + "]"), entry(r, "means.share[" + std::to_string(j) + "]"));
+      sum += c;
+      scale += std::fabs(c);
+    }
+  }
+  CHECK(std::fabs(sum) < 0.25 * scale);  // exact but for the different widening of each share
+  CHECK(r.covariance_rank >= 5);
+  CHECK(r.covariance_rank <= n);
+}
+
+TEST_CASE("intervals of a whole analysis hold with 90 %") {
+  int hits = 0;
+  constexpr int kTrials = 120;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    MadeUp source(1000 + 7 * static_cast<std::uint64_t>(trial), 1500);
+    std::vector<AnalyzerInstance> instances;
+    instances.push_back(local_instance<Means>("means", source.context()));
+    const ResultSet r = run_analyzers(source, instances, with_threads(1));
+    for (const char* name : {"mean_x", "mean_y"}) {
+      const ResultArray& a = *r.find("means", name);
+      hits += a.low[0] <= 0 && a.high[0] >= 0 ? 1 : 0;
+    }
+  }
+  const double coverage = hits / (2.0 * kTrials);
+  CHECK(coverage >= 0.85);
+  CHECK(coverage <= 0.95);
+}
+
+TEST_CASE("a plugin that errs is named, one that gives a result only sometimes is endured") {
+  MadeUp source(4);
+  const auto alone = [&](AnalyzerInstance instance) {
+    std::vector<AnalyzerInstance> instances;
+    instances.push_back(std::move(instance));
+    return run_analyzers(source, instances, with_threads(2));
+  };
+  CHECK_THAT(refusal([&] { alone(local_instance<WrongAxis>("wrong", source.context())); }),
+             Contains("'wrong'") && Contains("axis 'nowhere'"));
+  CHECK_THAT(refusal([&] { alone(local_instance<Refuses>("no", source.context())); }), Contains("wrong colour"));
+  const ResultSet r = alone(local_instance<Sometimes>("some", source.context()));
+  CHECK(r.find("some", "always") != nullptr);
+  CHECK_THAT(r.find("some", "always")->value[0], WithinRel(80.0, 1e-9));
+}
+
+TEST_CASE("a span shorter than two blocks has results without uncertainty, and says so") {
+  MadeUp source(5, 10);
+  const ResultSet r = run_analyzers(source, both(source.context()), with_threads(1));
+  CHECK(std::isfinite(r.find("means", "mean_x")->value[0]));
+  REQUIRE_FALSE(r.meta.notes.empty());
+  CHECK_THAT(r.meta.notes.front(), Contains("blocks of at least three autocorrelation times"));
+  CHECK((r.find("means", "mean_x")->flags[0] & kFewBlocks) != 0);
+}

@@ -1,0 +1,129 @@
+#include "studies/analysis/resample.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "analysis/support.hpp"
+#include "studies/analysis/results.hpp"
+
+using namespace analysis_test;
+using namespace millscope::studies;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+constexpr std::size_t kDraws = 200;
+
+/// A mean over blocks (sum and weight of each) with its uncertainty, the way the host makes it.
+Uncertainty of_mean(const std::vector<double>& sums, const std::vector<double>& weights, std::uint64_t seed) {
+  const std::size_t n = sums.size();
+  const double all = std::accumulate(sums.begin(), sums.end(), 0.0), weight = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const double value = all / weight;
+  const std::vector<std::uint32_t> counts = draw_counts(n, kDraws, seed);
+  std::vector<float> draws, left_out;
+  for (std::size_t b = 0; b < kDraws; ++b) {
+    double s = 0, w = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      s += counts[b * n + i] * sums[i];
+      w += counts[b * n + i] * weights[i];
+    }
+    draws.push_back(static_cast<float>(s / w - value));
+  }
+  for (std::size_t i = 0; i < n; ++i) left_out.push_back(static_cast<float>((all - sums[i]) / (weight - weights[i]) - value));
+  std::vector<std::uint8_t> follows(n, 1);
+  follows[0] = 0;
+  return uncertainty(value, draws, left_out, follows);
+}
+
+/// Fraction of 400 intervals that hold the truth, for blocks of `length` values of f(x).
+template <class F>
+double coverage(std::size_t blocks, std::size_t length, double phi, double truth, F&& f) {
+  int hits = 0;
+  constexpr int kTrials = 400;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const std::vector<double> x = autoregressive(blocks * length, phi, 1000 + static_cast<std::uint64_t>(trial));
+    std::vector<double> sums(blocks, 0.0);
+    for (std::size_t i = 0; i < x.size(); ++i) sums[i / length] += f(x[i]);
+    const Uncertainty u = of_mean(sums, std::vector<double>(blocks, static_cast<double>(length)), 7);
+    hits += u.low <= truth && truth <= u.high ? 1 : 0;
+  }
+  return static_cast<double>(hits) / kTrials;
+}
+
+double itself(double x) { return x; }
+
+}  // namespace
+
+TEST_CASE("intervals hold with 90 % where blocks are three autocorrelation times") {
+  constexpr double phi = 0.9;  // 9.5 steps
+  CHECK_THAT(coverage(20, 29, phi, 0, itself), WithinAbs(0.90, 0.05));
+  CHECK_THAT(coverage(64, 29, phi, 0, itself), WithinAbs(0.90, 0.05));
+  // A skewed quantity: exp(x) has the mean √e.
+  CHECK_THAT(coverage(64, 29, phi, std::exp(0.5), [](double x) { return std::exp(x); }), WithinAbs(0.90, 0.05));
+  // An event that is seen in one block of three.
+  CHECK_THAT(coverage(40, 29, phi, 0.5 * std::erfc(1.8 / std::sqrt(2)), [](double x) { return x > 1.8 ? 1.0 : 0.0; }),
+             WithinAbs(0.90, 0.06));
+}
+
+TEST_CASE("a memory longer than the blocks widens the interval and says so") {
+  constexpr double phi = 0.9;
+  CHECK_THAT(coverage(64, 10, phi, 0, itself), WithinAbs(0.90, 0.05));  // blocks of one autocorrelation time
+  const std::vector<double> x = autoregressive(640, phi, 3);
+  std::vector<double> sums(64, 0.0);
+  for (std::size_t i = 0; i < x.size(); ++i) sums[i / 10] += x[i];
+  const Uncertainty u = of_mean(sums, std::vector<double>(64, 10.0), 1);
+  CHECK((u.flags & kCorrelated) != 0);
+  CHECK(u.effective_blocks < 40);
+  CHECK(u.effective_blocks > 8);
+}
+
+TEST_CASE("the standard error of independent blocks is the textbook's") {
+  const std::vector<double> sums = autoregressive(50, 0.0, 5);
+  const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) / 50;
+  double square = 0;
+  for (const double s : sums) square += (s - mean) * (s - mean);
+  const Uncertainty u = of_mean(sums, std::vector<double>(50, 1.0), 1);
+  CHECK_THAT(u.sem, WithinRel(std::sqrt(square / 49 / 50), 0.2));
+  CHECK(u.low < mean);
+  CHECK(u.high > mean);
+  CHECK((u.flags & kFewBlocks) == 0);
+}
+
+TEST_CASE("few blocks, a single block and constants are told apart") {
+  const Uncertainty few = of_mean({1, 2, 4, 3, 2}, {1, 1, 1, 1, 1}, 1);
+  CHECK((few.flags & kFewBlocks) != 0);
+  CHECK(std::isfinite(few.sem));
+  const Uncertainty one = of_mean({1}, {1}, 1);
+  CHECK((one.flags & kNoUncertainty) != 0);
+  CHECK(std::isnan(one.sem));
+  const Uncertainty constant = of_mean(std::vector<double>(20, 3.0), std::vector<double>(20, 1.5), 1);
+  CHECK(constant.sem == 0);
+  CHECK(constant.low == 2.0);
+  CHECK(constant.flags == 0);
+  // A cell that one block alone has seen: its mean says nothing of others.
+  std::vector<double> sums(20, 0.0), weights(20, 0.0);
+  sums[7] = 3;
+  weights[7] = 1;
+  const Uncertainty single = of_mean(sums, weights, 1);
+  CHECK(std::isnan(single.sem));
+  CHECK((single.flags & kOftenUndefined) != 0);
+  CHECK(single.effective_blocks == 1);
+}
+
+TEST_CASE("draws are the same everywhere and hold every block as often as chance says") {
+  const std::vector<std::uint32_t> counts = draw_counts(10, 2000, 1);
+  CHECK(counts == draw_counts(10, 2000, 1));
+  CHECK(counts != draw_counts(10, 2000, 2));
+  std::vector<double> total(10, 0.0);
+  for (std::size_t b = 0; b < 2000; ++b) {
+    std::uint32_t sum = 0;
+    for (std::size_t i = 0; i < 10; ++i) {
+      sum += counts[10 * b + i];
+      total[i] += counts[10 * b + i];
+    }
+    REQUIRE(sum == 10);
+  }
+  for (const double t : total) CHECK_THAT(t, WithinAbs(2000, 5 * std::sqrt(1800.0)));
+}

@@ -1,0 +1,129 @@
+#include "studies/analysis/results.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "analysis/support.hpp"
+#include "studies/analysis/tables.hpp"
+
+using namespace analysis_test;
+using namespace millscope::studies;
+using Catch::Contains;
+
+namespace {
+
+std::string slurp(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+ResultSet some_results() {
+  ResultSet r;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  r.meta.source = "simulation";
+  r.meta.name = "Drum";
+  r.meta.description = "µ mill";
+  r.meta.context.mill_radius = 0.15;
+  r.meta.context.omega = -6;
+  r.meta.context.is_recording = 1;
+  r.meta.draws = 3;
+  r.meta.block_duration = 0.5;
+  r.meta.blocks = {{0, 0.5, 0.5, 0}, {0.5, 1, 0.5, 0}, {0, 0.4, 0.4, 1}};
+  r.meta.times = {{"x", 0.1, 7, true}, {"z", nan, nan, false}};
+  r.meta.inputs = {{"frames.h5", "0123456789abcdef"}};
+  r.meta.notes = {"a note"};
+  r.meta.left_out = {"slip: no"};
+  r.meta.provenance["version"] = "0.1.0";
+  ResultArray edges{"b_grid", "edges", "m", "Edges.", {3}, {""}, true, {0, 0.5, 1}, {}, {}, {}, {}, {}, {}};
+  ResultArray map{"b_grid",
+                  "map",
+                  "1",
+                  "A map, with a \"comma\".",
+                  {2, 2},
+                  {"edges", "edges"},
+                  false,
+                  {1, nan, 3, 4},
+                  {0.1, nan, 0.3, 0.4},
+                  {0.8, nan, 2, 3},
+                  {1.2, nan, 4, 5},
+                  {12, 1, 13, 14},
+                  {0, 9, 2, 0},
+                  std::vector<float>(12, 0.25F)};
+  ResultArray number{"a_power", "power", "W", "Power.", {}, {}, false, {29.8}, {0.3}, {29.3}, {30.3}, {40}, {2}, {0.1F, -0.2F, 0.1F}};
+  r.arrays = {edges, map, number};
+  r.covariance_entries = {{2, 0}};
+  r.covariance = {0.09};
+  r.covariance_rank = 1;
+  return r;
+}
+
+}  // namespace
+
+TEST_CASE("results read back as they were written") {
+  const Scratch scratch;
+  const ResultSet r = some_results();
+  write_results(scratch / "results.h5", r);
+  const ResultSet back = read_results(scratch.path);
+  CHECK(back.meta.name == r.meta.name);
+  CHECK(back.meta.description == r.meta.description);
+  CHECK(back.meta.context.mill_radius == 0.15);
+  CHECK(back.meta.context.omega == -6);
+  CHECK(back.meta.context.is_recording == 1);
+  REQUIRE(back.meta.blocks.size() == 3);
+  CHECK(back.meta.blocks[2].stretch == 1);
+  CHECK(back.meta.times[0].sets_the_block);
+  CHECK(std::isnan(back.meta.times[1].time));
+  CHECK(back.meta.inputs[0].hash == "0123456789abcdef");
+  CHECK(back.meta.notes == r.meta.notes);
+  CHECK(back.meta.left_out == r.meta.left_out);
+  CHECK(back.meta.provenance["version"] == "0.1.0");
+  REQUIRE(back.arrays.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(back.arrays[i].name == r.arrays[i].name);
+    CHECK(back.arrays[i].analyzer == r.arrays[i].analyzer);
+    CHECK(back.arrays[i].shape == r.arrays[i].shape);
+    CHECK(back.arrays[i].axes == r.arrays[i].axes);
+    CHECK(back.arrays[i].flags == r.arrays[i].flags);
+    CHECK(back.arrays[i].draws == r.arrays[i].draws);
+    CHECK(back.arrays[i].doc == r.arrays[i].doc);
+  }
+  CHECK(back.arrays[1].value[3] == 4);
+  CHECK(std::isnan(back.arrays[1].sem[1]));
+  CHECK(back.axis(back.arrays[1], 1) == &back.arrays[0]);
+  CHECK(back.covariance == r.covariance);
+  CHECK(entry_name(back, back.covariance_entries[0]) == "a_power.power");
+  CHECK(entry_name(back, {1, 2}) == "b_grid.map[2]");
+}
+
+TEST_CASE("results are never overwritten unasked, and damaged ones are refused") {
+  const Scratch scratch;
+  const ResultSet r = some_results();
+  const fs::path file = scratch / "results.h5";
+  write_results(file, r);
+  CHECK_THAT(refusal([&] { write_results(file, r); }), Contains("exists already"));
+  write_results(file, r, true);
+  CHECK_FALSE(fs::exists(scratch / "results.h5.tmp"));
+  CHECK_THAT(refusal([&] { read_results(scratch / "nowhere"); }), Contains("there is no such file"));
+  const std::string bytes = slurp(file);
+  spill(scratch / "cut.h5", bytes.substr(0, bytes.size() / 2));
+  CHECK_THAT(refusal([&] { read_results(scratch / "cut.h5"); }), Contains("cut.h5"));
+  Drum().write(scratch / "run");
+  CHECK_THAT(refusal([&] { read_results(scratch / "run" / "frames.h5"); }), Contains("'format' is 'millscope frames'"));
+}
+
+TEST_CASE("tables hold every value with the bounds of its cell") {
+  const Scratch scratch;
+  const auto files = write_tables(scratch.path, some_results());
+  REQUIRE(files.size() == 2);
+  const std::string numbers = slurp(scratch / "numbers.csv");
+  CHECK_THAT(numbers, Contains("a_power,power,W,29.8,0.3,29.3,30.3,40,correlated blocks,Power.\n"));
+  const std::string map = slurp(scratch / "b_grid.edges.edges.csv");
+  CHECK_THAT(map, Contains("edges_from [m],edges_to [m],edges_from [m],edges_to [m],map [1],map_sem,map_low,map_high\n"));
+  CHECK_THAT(map, Contains("\n0.5,1,0,0.5,3,0.3,2,4\n"));
+  CHECK_THAT(map, Contains("\n0,0.5,0.5,1,,,,\n"));  // undefined
+  const auto json = summary_json(some_results());
+  CHECK(json["numbers"]["a_power"]["power"]["value"] == 29.8);
+  CHECK(json["blocks"] == 3);
+  CHECK_THAT(number_table(some_results(), 5), Contains("+- 0.3") && Contains("[29.3, 30.3]"));
+}
