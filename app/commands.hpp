@@ -21,6 +21,7 @@ using Arguments = std::vector<std::string>;
 int run(const Arguments& arguments);
 int resume(const Arguments& arguments);
 int check(const Arguments& arguments);
+int analyze(const Arguments& arguments);
 int describe(const Arguments& arguments);
 int plugins(const Arguments& arguments);
 int schema(const Arguments& arguments);
@@ -38,8 +39,8 @@ class Options {
   void positional(const std::string& name, const std::string& what, bool takes_all = false);
   /// --plugin-dir, --instruction-set: what every command that loads plugins has.
   void with_plugins();
-  /// --set path=value.
-  void with_overrides();
+  /// --set path=value. `what`: what it replaces, with an example.
+  void with_overrides(const char* what = "replace a value of the case (may be repeated), e.g. --set time.end_s=2");
 
   /// False when --help was asked for and printed. Throws UserError for what does not parse, with the nearest option.
   bool parse(const Arguments& arguments);
@@ -48,6 +49,7 @@ class Options {
   std::string text(const std::string& name) const;  ///< throws UserError when it was not given
   std::vector<std::string> list(const std::string& name) const;
   int integer(const std::string& name) const { return values_[name].as<int>(); }
+  double number(const std::string& name) const { return values_[name].as<double>(); }
   host::Registry registry() const;
 
  private:

@@ -25,6 +25,7 @@ constexpr Command kCommands[] = {
     {"run", "simulate a case", run},
     {"resume", "continue a run from its newest checkpoint", resume},
     {"check", "check a case and predict its cost", check},
+    {"analyze", "measure a simulation or a recording", analyze},
     {"describe", "what a plugin does and which parameters it takes", describe},
     {"plugins", "list the plugins", plugins},
     {"schema", "JSON Schema of case files, for editors", schema},

@@ -31,9 +31,8 @@ void Options::with_plugins() {
         "force the builds for an x86-64 level (default: the best that this machine runs)");
 }
 
-void Options::with_overrides() {
-  add()("set", po::value<std::vector<std::string>>()->value_name("path.to.key=value"),
-        "replace a value of the case (may be repeated), e.g. --set time.end_s=2");
+void Options::with_overrides(const char* what) {
+  add()("set", po::value<std::vector<std::string>>()->value_name("path.to.key=value"), what);
 }
 
 bool Options::parse(const Arguments& arguments) {

@@ -1,0 +1,151 @@
+// analyze: a simulation or a recording through the analyzers.
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "app/commands.hpp"
+#include "kernel/output/file.hpp"
+#include "kernel/output/summary.hpp"
+#include "studies/analysis/analysis.hpp"
+#include "studies/analysis/tables.hpp"
+
+namespace millscope::app {
+namespace {
+
+namespace po = boost::program_options;
+namespace fs = std::filesystem;
+using config::UserError;
+constexpr std::size_t kShownNumbers = 8;  // of each analyzer
+
+using Clock = std::chrono::steady_clock;
+
+/// One line that is rewritten, with the time left; nothing where stderr is no terminal.
+class Line {
+ public:
+  explicit Line(bool quiet) : shown_(!quiet && isatty(STDERR_FILENO) != 0) {}
+  ~Line() { clear(); }
+  void update(const char* doing, double fraction) {
+    const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+    if (!shown_ || elapsed < next_) return;
+    next_ = elapsed + 0.3;
+    drawn_ = true;
+    const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0;
+    fmt::print(stderr, "\r\033[K{} {:.0f} %, ETA {:.0f} s", doing, 100 * fraction, left);
+    std::fflush(stderr);
+  }
+  void clear() {
+    if (drawn_) fmt::print(stderr, "\r\033[K");
+    drawn_ = false;
+  }
+
+ private:
+  bool shown_, drawn_ = false;
+  double next_ = 0.5;
+  Clock::time_point start_ = Clock::now();
+};
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    if (comma > at) words.push_back(text.substr(at, comma - at));
+    at = comma + 1;
+  }
+  return words;
+}
+
+/// Where the results go unless -o says it: beside the data they are of.
+fs::path default_output(const fs::path& source) {
+  fs::path plain = source;
+  while (!plain.has_filename() && plain.has_parent_path() && plain != plain.parent_path()) plain = plain.parent_path();
+  if (fs::is_directory(plain)) return plain.string() + "-analysis";
+  if (plain.extension() == ".gz") plain = plain.stem();
+  return fs::path(plain.stem().string() + "-analysis");
+}
+
+std::optional<double> seconds(const Options& options, const char* name) {
+  if (!options.has(name)) return std::nullopt;
+  const double value = options.number(name);
+  if (!std::isfinite(value)) throw UserError(fmt::format("--{}: give a time in s", name));
+  return value;
+}
+
+/// Makes OUT and refuses what is there, before the work begins.
+void prepare(const fs::path& output, bool force) {
+  std::error_code ignored;
+  if (fs::exists(output, ignored) && !fs::is_directory(output, ignored)) {
+    throw UserError(fmt::format("{}: is a file, a directory is needed; choose another -o", output.string()));
+  }
+  if (!force) output::refuse_existing(output / "results.h5");
+  fs::create_directories(output / "tables");
+}
+
+void print_report(const studies::ResultSet& results, const fs::path& output, bool all) {
+  const studies::ResultMeta& meta = results.meta;
+  fmt::print("{}\n{} block{} of {:.3g} s, {} resamples; intervals hold with 90 %\n\n", meta.description, meta.blocks.size(),
+             meta.blocks.size() == 1 ? "" : "s", meta.block_duration, meta.draws);
+  fmt::print("{}\n", studies::number_table(results, all ? results.arrays.size() : kShownNumbers));
+  for (const std::string& note : meta.notes) fmt::print("note: {}\n", note);
+  for (const std::string& reason : meta.left_out) fmt::print("left out: {}\n", reason);
+  fmt::print("joint covariance of {} values, rank {}\n", results.covariance_entries.size(), results.covariance_rank);
+  fmt::print("results in {}: results.h5, results.json, tables/*.csv\n", output.string());
+}
+
+}  // namespace
+
+int analyze(const Arguments& arguments) {
+  Options options(
+      "analyze SIM_OUT|recording.yaml|FILE [-o OUT]",
+      "Runs analyzers over a simulation or a recording. Writes results.h5 (values, uncertainty, joint covariance), results.json, tables "
+      "and pictures into OUT.",
+      "millscope analyze demo-out -o demo-analysis --set analyzers.pept_grid.cells_x=30");
+  options.positional("SOURCE", "directory of 'millscope run', recording.yaml, or a bare file of locations");
+  options.add()("output,o", po::value<std::string>()->value_name("OUT"), "directory for the results (default: SOURCE-analysis)");
+  options.add()("force", "replace the results in OUT");
+  options.add()("analyzers", po::value<std::string>()->value_name("a,b"), "only these; default: all whose needs the data meet");
+  options.add()("settings", po::value<std::string>()->value_name("FILE.yaml"), "analyzers, their parameters, resampling and trajectory");
+  options.add()("tracer", po::value<std::string>()->value_name("ID,ID"),
+                "follow these beads of tracks.h5, or 'all', as a camera would, instead of looking at every bead");
+  options.add()("from", po::value<double>()->value_name("s"), "leave out what is earlier");
+  options.add()("to", po::value<double>()->value_name("s"), "leave out what is later");
+  options.add()("threads", po::value<int>()->value_name("N"), "threads (default: all cores); no influence on results");
+  options.add()("all", "print every number, not the first eight of each analyzer");
+  options.add()("quiet,q", "print nothing but errors");
+  options.with_overrides("replace a setting (may be repeated), e.g. --set analyzers.pept_grid.cells_x=40, --set resampling.draws=400");
+  options.with_plugins();
+  if (!options.parse(arguments)) return kDone;
+
+  studies::AnalysisRequest request;
+  request.path = options.text("SOURCE");
+  request.overrides = options.list("set");
+  if (options.has("tracer")) request.tracers = split(options.text("tracer"));
+  request.command_line = command_line;
+  if (options.has("settings")) request.settings = options.text("settings");
+  if (options.has("analyzers")) request.only = split(options.text("analyzers"));
+  request.from = seconds(options, "from");
+  request.to = seconds(options, "to");
+  if (options.has("threads")) {
+    request.threads = options.integer("threads");
+    if (request.threads < 1 || request.threads > 1024) throw UserError(fmt::format("--threads {}: give 1 to 1024", request.threads));
+  }
+  const bool quiet = options.has("quiet");
+  const fs::path output = options.has("output") ? fs::path(options.text("output")) : default_output(request.path);
+  const bool force = options.has("force");
+  if (!force) output::refuse_existing(output / "results.h5");  // before the work begins
+
+  Line line(quiet);
+  request.progress = [&line](const char* doing, double fraction) { line.update(doing, fraction); };
+  const studies::ResultSet results = studies::analyze(request, options.registry());
+  prepare(output, force);
+  studies::write_tables(output / "tables", results);
+  output::write_json(output / "results.json", studies::summary_json(results));
+  studies::write_results(output / "results.h5", results, force);
+  line.clear();
+  if (!quiet) print_report(results, output, options.has("all"));
+  return kDone;
+}
+
+}  // namespace millscope::app
