@@ -76,8 +76,11 @@ std::string camera_text(const CameraEstimate& e, const std::string& source) {
                  "  outliers:    # share {}; how far they lie is not known\n    kind: outliers\n    fraction: {:.3g}\n", text(e.outliers),
                  e.outliers.value);
   if (e.axis) {
-    fmt::format_to(std::back_inserter(out), "  frame:\n    kind: frame_error\n    offset_x: {:.3g} mm\n    offset_y: {:.3g} mm\n",
-                   1e3 * (*e.axis)[0], 1e3 * (*e.axis)[1]);
+    const auto& [x, y] = *e.axis;
+    fmt::format_to(
+        std::back_inserter(out),
+        "  frame:   # the mill's axis stands at ({}, {}) mm\n    kind: frame_error\n    offset_x: {:.3g} mm\n    offset_y: {:.3g} mm\n",
+        text(x, 1e-3), text(y, 1e-3), 1e3 * x.value, 1e3 * y.value);
   } else {
     out += "  # frame: where the mill's axis lies in the camera's frame is not known\n";
   }

@@ -8,6 +8,7 @@
 
 #include "kernel/config/error.hpp"
 #include "studies/camera/estimate_parts.hpp"
+#include "studies/inspect/mill_motion.hpp"
 
 namespace millscope::studies {
 namespace {
@@ -22,14 +23,20 @@ double middle_of(const Recording& recording, std::size_t axis) {
   return 0.5 * (all[all.size() / 100] + all[all.size() - 1 - all.size() / 100]);
 }
 
-camera::Point middle_of(const Recording& recording, const std::optional<MillFrame>& frame) {
-  camera::Point middle{middle_of(recording, 0), middle_of(recording, 1), middle_of(recording, 2)};
-  if (frame) {
-    middle[0] = frame->axis[0];
-    middle[1] = frame->axis[1];
-    if (frame->high > frame->low) middle[2] = 0.5 * (frame->low + frame->high);
-  }
-  return middle;
+/// As the user says, else from the beads that ride along the shell.
+std::optional<std::array<Estimated, 2>> axis_of(const Recording& recording, const std::optional<MillFrame>& frame) {
+  if (frame) return std::array<Estimated, 2>{Estimated{frame->axis[0], 0}, Estimated{frame->axis[1], 0}};
+  const MillMotion motion = estimate_motion(recording);
+  if (motion.sense == 0 || !motion.axis[0].estimate || !motion.axis[1].estimate) return std::nullopt;
+  const auto with_error = [](const Estimate& x) { return Estimated{x.value, (x.high - x.low) / (2 * 1.645)}; };  // of a 90 % interval
+  return std::array<Estimated, 2>{with_error(*motion.axis[0].estimate), with_error(*motion.axis[1].estimate)};
+}
+
+camera::Point middle_of(const Recording& recording, const std::optional<std::array<Estimated, 2>>& axis,
+                        const std::optional<MillFrame>& frame) {
+  const bool ends = frame && frame->high > frame->low;
+  return {axis ? (*axis)[0].value : middle_of(recording, 0), axis ? (*axis)[1].value : middle_of(recording, 1),
+          ends ? 0.5 * (frame->low + frame->high) : middle_of(recording, 2)};
 }
 
 double median_interval(const Recording& recording) {
@@ -70,8 +77,8 @@ CameraEstimate estimate_camera(const Recording& recording, const EstimateOptions
                                         recording.file.string(), e.locations, kFewest));
   }
   const std::optional<MillFrame> frame = options.frame ? options.frame : recording.frame;
-  if (frame) e.axis = frame->axis;
-  e.middle = middle_of(recording, frame);
+  e.axis = axis_of(recording, frame);
+  e.middle = middle_of(recording, e.axis, frame);
 
   const double usual = median_interval(recording), pause = 30 * usual;
   const std::vector<camera::RateWindow> windows = camera::rate_windows(recording, e.middle, pause);

@@ -23,7 +23,7 @@ struct Estimated {
 struct CameraSampling {
   Estimated rate;         ///< 1/s
   Estimated shape{1, 0};  ///< evenness; 1: Poisson
-  double dead_time = 0;   ///< s, shortest interval less the resolution of the file
+  double dead_time = 0;   ///< s
 };
 
 /// σ(d) = (1 + growth d) (white, correlated) at distance d from the rig's middle.
@@ -60,15 +60,15 @@ struct CameraEstimate {
   CameraNoise noise;
   CameraLosses loss;
   CameraGaps gaps;
-  Estimated outliers;                         ///< share of the locations
-  std::optional<std::array<double, 2>> axis;  ///< of the mill in the camera's frame, m; nothing: not known
-  std::array<double, 3> middle{};             ///< that distances are counted from, in the camera's frame, m
-  double seconds = 0;                         ///< of sight
+  Estimated outliers;                            ///< share of the locations
+  std::optional<std::array<Estimated, 2>> axis;  ///< of the mill in the camera's frame, m; nothing: not known
+  std::array<double, 3> middle{};                ///< that distances are counted from, in the camera's frame, m
+  double seconds = 0;                            ///< of sight
   std::size_t locations = 0;
 };
 
 struct EstimateOptions {
-  std::optional<MillFrame> frame;    ///< where the mill stands; default: the recording's, else the middle of the locations
+  std::optional<MillFrame> frame;    ///< where the mill stands; default: the recording's, else what its rides along the shell say
   std::size_t most_stretches = 300;  ///< for the noise: more cost more time
 };
 

@@ -14,6 +14,9 @@ namespace {
 constexpr double kLengthScale = 0.1;    // m, makes the growth a number of order one
 constexpr double kWhiteScale = 5e-4;    // m
 constexpr double kNoCorrelation = -20;  // ln of correlated/white
+/// Locations share events with their neighbours only: known beforehand is a correlation time of one and a half intervals (the scale is
+/// two), within a factor of two. A longer memory is told from the bead's own wandering by the data alone.
+constexpr double kUsualTime = -0.2877, kTimeDeviation = 0.7;
 /// Real motion is no Gaussian process: over recordings synthesized from simulated beads the estimates scatter about the truth by one and
 /// a half times what the likelihood says (docs/virtual_camera.md).
 constexpr double kCaution = 1.5;
@@ -71,8 +74,8 @@ struct Estimator {
     const Fit plain = fit(quiet, place_white, {{before.white[0], -6, 4}});
     point = before;
     point.ratio = std::max(point.ratio, -1.0);
-    // Locations share events with their neighbours only: a longer memory than a few intervals would be the bead's own.
-    shape = fit(quiet, place_all, {{point.white[0], -6, 4}, {point.ratio, -4, 2}, {point.time, std::log(0.1), std::log(4)}});
+    const FitParameter time{point.time, std::log(0.1), std::log(4), kUsualTime, kTimeDeviation};
+    shape = fit(quiet, place_all, {{point.white[0], -6, 4}, {point.ratio, -4, 2}, time});
     // Left out only where it explains nothing at all, or fades before the next location comes, which makes it white: leaving a weak one
     // out would make the whole too small. The scale of time is two intervals.
     const double lasts = std::exp(-0.5 / std::exp(point.time));

@@ -13,9 +13,19 @@ namespace {
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
+struct Problem {
+  const LogLikelihood& groups;
+  const std::vector<FitParameter>& parameters;
+
+  double operator()(const std::vector<double>& x) const {
+    double value = sum(groups(x));
+    for (std::size_t i = 0; i < x.size(); ++i) value -= 0.5 * std::pow((x[i] - parameters[i].prior) / parameters[i].deviation, 2);
+    return std::isfinite(value) ? value : -1e300;
+  }
+};
+
 double objective(unsigned count, const double* x, double*, void* data) {
-  const double value = sum((*static_cast<const LogLikelihood*>(data))(std::vector<double>(x, x + count)));
-  return std::isfinite(value) ? value : -1e300;
+  return (*static_cast<const Problem*>(data))(std::vector<double>(x, x + count));
 }
 
 /// A step in which the likelihood changes by an amount that rounding does not hide; away from the bounds.
@@ -49,6 +59,11 @@ Derivatives derivatives(const LogLikelihood& groups, const std::vector<FitParame
     }
   }
   d.scatter = gradient.transpose() * gradient;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double known = std::pow(parameters[static_cast<std::size_t>(i)].deviation, -2);
+    d.curvature(i, i) -= known;
+    d.scatter(i, i) += known;
+  }
   return d;
 }
 
@@ -90,7 +105,8 @@ Fit maximise(const LogLikelihood& groups, const std::vector<FitParameter>& param
   nlopt_set_lower_bounds(search.get(), low.data());
   nlopt_set_upper_bounds(search.get(), high.data());
   nlopt_set_initial_step(search.get(), step.data());
-  nlopt_set_max_objective(search.get(), objective, const_cast<LogLikelihood*>(&groups));
+  Problem problem{groups, parameters};
+  nlopt_set_max_objective(search.get(), objective, &problem);
   nlopt_set_xtol_abs1(search.get(), 1e-3);
   nlopt_set_maxeval(search.get(), 2000);
   nlopt_optimize(search.get(), fit.value.data(), &fit.log_likelihood);

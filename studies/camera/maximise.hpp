@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@ namespace millscope::studies::camera {
 /// One parameter of a likelihood.
 struct FitParameter {
   double start, low, high;
+  double prior = 0;                                            ///< what is known beforehand, and
+  double deviation = std::numeric_limits<double>::infinity();  ///< how well; infinite: nothing is
 };
 
 struct Fit {
@@ -22,8 +25,8 @@ struct Fit {
 /// Log-likelihoods of independent groups of data at a point; the groups' number and order never change.
 using LogLikelihood = std::function<std::vector<double>(const std::vector<double>&)>;
 
-/// Maximises the sum over groups with NLopt's BOBYQA, then H⁻¹ G H⁻¹ with H the curvature of the sum and G = Σ g gᵀ over the groups'
-/// gradients (Huber 1967; White 1982). Parameters should be of order one (logarithms, scaled numbers).
+/// Maximises the sum over groups, and what is known beforehand, with NLopt's BOBYQA, then H⁻¹ G H⁻¹ with H the curvature of the sum and G =
+/// Σ g gᵀ over the groups' gradients (Huber 1967; White 1982). Parameters should be of order one (logarithms, scaled numbers).
 Fit maximise(const LogLikelihood& groups, const std::vector<FitParameter>& parameters);
 
 }  // namespace millscope::studies::camera

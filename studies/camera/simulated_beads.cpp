@@ -1,0 +1,89 @@
+#include "studies/camera/simulated_beads.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "kernel/config/case.hpp"
+#include "studies/analysis/mill.hpp"
+#include "studies/camera/camera.hpp"
+
+namespace millscope::studies {
+namespace {
+
+using config::UserError;
+
+std::filesystem::path case_of(const std::filesystem::path& run) {
+  const std::filesystem::path file = run / "case.resolved.yaml";
+  if (std::filesystem::exists(file)) return file;
+  throw UserError(fmt::format("{}: is no directory of a run (it has no case.resolved.yaml); make one: millscope run CASE.yaml -o {}",
+                              run.string(), run.string()));
+}
+
+std::filesystem::path tracks_of(const std::filesystem::path& run) {
+  const std::filesystem::path file = run / "tracks.h5";
+  if (std::filesystem::exists(file)) return file;
+  throw UserError(fmt::format("{}: the run followed no bead (it has no tracks.h5); run the case again with --set output.tracks.beads=10",
+                              case_of(run).parent_path().string()));
+}
+
+Condition condition_of(const config::Case& c, const MillOfCase& mill, const std::filesystem::path& file) {
+  Condition condition;
+  const AnalyzerContext& context = mill.context;
+  if (context.omega != 0) {
+    condition.angular_velocity = context.omega;
+    condition.speed = std::fabs(context.omega);
+  }
+  condition.filling = c.fill.filling;
+  condition.porosity = c.fill.porosity;
+  condition.bead_diameter = 2 * context.bead_radius;
+  condition.bead_density = context.bead_density;
+  if (context.mill_radius > 0) condition.mill_diameter = 2 * context.mill_radius;
+  if (mill.period == 0 && context.mill_high > context.mill_low) condition.mill_length = context.mill_high - context.mill_low;
+  condition.geometry = file;
+  return condition;
+}
+
+std::optional<MeasuredPower> power_of(const std::filesystem::path& summary) {
+  std::ifstream in(summary);
+  if (!in) return std::nullopt;
+  const nlohmann::json j = nlohmann::json::parse(in, nullptr, false);
+  if (!j.is_object() || !j.contains("power_W")) return std::nullopt;
+  const nlohmann::json &value = j["power_W"]["com"], &error = j["power_W"]["com_sem"];
+  if (!value.is_number() || !error.is_number()) return std::nullopt;
+  return MeasuredPower{value.get<double>(), error.get<double>()};
+}
+
+}  // namespace
+
+SimulatedBeads::SimulatedBeads(std::filesystem::path run, const host::Registry& registry) : run_(std::move(run)), reader_(tracks_of(run_)) {
+  const std::filesystem::path file = case_of(run_);
+  const config::Case c = config::read_case(file.string());
+  const MillOfCase mill = read_mill_of_case(file, registry);
+  condition_ = condition_of(c, mill, file);
+  condition_.power = power_of(run_ / "summary.json");
+  context_ = {0, 0, mill.context.mill_radius, mill.context.mill_low, mill.context.mill_high, mill.context.omega};
+  analyze_from_ = c.time.analyze_from;
+  period_ = mill.period;
+}
+
+output::TrackSamples SimulatedBeads::path(std::size_t i, double from) const {
+  output::TrackSamples track = reader_.read(i);
+  if (period_ > 0) unwrap(track, 2, period_);
+  const auto first = std::lower_bound(track.time.begin(), track.time.end(), from) - track.time.begin();
+  track.time.erase(track.time.begin(), track.time.begin() + first);
+  for (auto& x : track.position) x.erase(x.begin(), x.begin() + first);
+  return track;
+}
+
+TrackContext SimulatedBeads::context(std::size_t i, std::uint64_t seed) const {
+  TrackContext context = context_;
+  context.seed = bead_seed(seed, tracks()[i].bead);
+  context.bead_radius = 0.5 * tracks()[i].diameter;
+  return context;
+}
+
+}  // namespace millscope::studies
