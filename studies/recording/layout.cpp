@@ -87,15 +87,15 @@ Top top_of(std::string_view text, const Description& description) {
   return top;
 }
 
-/// Eight columns of which the sixth and seventh are 0, below the tracker's nine lines or without them.
+/// The tracker's nine lines, or eight columns of which the sixth and seventh are 0.
 bool looks_like_ctrack(const Top& top) {
-  const Words words = split(top.row, ' ');
-  if (top.separator != ' ' || words.size() != 8) return false;
   const bool headed = std::any_of(top.head.begin(), top.head.end(), [](std::string_view line) {
-    return line.starts_with("Separation") || line.find("events/slice") != std::string_view::npos;
+    return line.starts_with("Separation=") || line.find("events/slice") != std::string_view::npos;
   });
+  if (headed) return true;
+  const Words words = split(top.row, ' ');
   const auto zero = [](std::string_view word) { return word.find_first_not_of("0.") == std::string_view::npos; };
-  return headed || (zero(words[5]) && zero(words[6]));
+  return top.separator == ' ' && words.size() == 8 && zero(words[5]) && zero(words[6]);
 }
 
 /// "x_mm", "x (mm)", "x [mm]", "x/mm" → "x" and "mm".

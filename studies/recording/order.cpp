@@ -11,9 +11,14 @@ namespace {
 constexpr std::size_t kLeastRows = 5;  // a shorter stretch of earlier times is disorder, which is sorted
 constexpr double kSetBack = 1;         // s
 
-/// A row whose time lies more than a second from both neighbours, which agree with each other.
+/// Not a row whose time lies more than a second from both neighbours, which agree with each other, nor one a year away from the others.
 std::vector<char> true_times(const std::vector<double>& time) {
+  constexpr double kYear = 3.2e7;  // s
   std::vector<char> keep(time.size(), 1);
+  std::vector<double> some;
+  for (std::size_t i = 0; i < time.size(); i += time.size() / 10000 + 1) some.push_back(time[i]);
+  const double middle = quantile(some, 0.5);
+  for (std::size_t i = 0; i < time.size(); ++i) keep[i] = std::abs(time[i] - middle) < kYear;
   const auto apart = [&](std::size_t i, std::size_t j) { return std::abs(time[i] - time[j]); };
   for (std::size_t i = 1; i + 1 < time.size(); ++i) {
     const double around = apart(i - 1, i + 1);
@@ -42,16 +47,40 @@ std::vector<Stretch> stretches(const std::vector<double>& time) {
   return found;
 }
 
-/// Rows at which the clock was set back for good: a stretch begins that covers time which the part covers already.
-std::vector<std::size_t> resets(const std::vector<double>& time) {
+/// Whether the rows of a stretch, as far as they lie in time that the part covers, are mostly rows of the part over again.
+bool repeats(const Run& rows, std::size_t part_first, const Stretch& stretch) {
+  const auto earlier = [&](std::size_t i, std::size_t j) { return rows.time[i] < rows.time[j]; };
+  std::vector<std::size_t> known(stretch.first - part_first);
+  std::iota(known.begin(), known.end(), part_first);
+  std::sort(known.begin(), known.end(), earlier);
+  std::size_t covered = 0, same = 0;
+  for (std::size_t i = stretch.first; i < stretch.last; ++i) {
+    if (rows.time[i] > rows.time[known.back()]) continue;
+    ++covered;
+    const auto [low, high] = std::equal_range(known.begin(), known.end(), i, earlier);
+    same += std::any_of(low, high, [&](std::size_t j) {
+      return std::all_of(rows.position.begin(), rows.position.end(), [&](const auto& component) { return component[i] == component[j]; });
+    });
+  }
+  return 2 * same > covered;
+}
+
+/// Rows at which the clock was set back for good: a stretch begins that covers time which the part covers already, with other points.
+std::vector<std::size_t> resets(const Run& rows) {
   std::vector<std::size_t> found;
   std::vector<Stretch> part;
-  for (const Stretch& stretch : stretches(time)) {
+  Stretch hull;
+  for (const Stretch& stretch : stretches(rows.time)) {
     if (!stretch.is_long()) continue;
-    if (std::any_of(part.begin(), part.end(), [&](const Stretch& other) { return stretch.overlaps(other); })) {
+    const auto overlapped = [&](const Stretch& other) { return stretch.overlaps(other); };
+    const bool again = !part.empty() && stretch.overlaps(hull) && std::any_of(part.begin(), part.end(), overlapped);
+    if (again && !repeats(rows, hull.first, stretch)) {
       found.push_back(stretch.first);
       part.clear();
     }
+    if (part.empty()) hull = stretch;
+    hull.low = std::min(hull.low, stretch.low);
+    hull.high = std::max(hull.high, stretch.high);
     part.push_back(stretch);
   }
   return found;
@@ -106,7 +135,7 @@ std::vector<Run> order_rows(Rows rows, const RunReport& report) {
   whole.events = std::move(rows.events);
   whole.report = report;
   whole.report.false_times = keep_only(whole, true_times(whole.time));
-  std::vector<std::size_t> ends = resets(whole.time);
+  std::vector<std::size_t> ends = resets(whole);
   std::vector<Run> runs;
   if (ends.empty()) {
     runs.push_back(std::move(whole));

@@ -57,15 +57,17 @@ std::string hint(const Measured& m, const Condition& condition, const std::strin
   const auto say_length = [&](const Scale& l) { return fmt::format("x, y, z are probably in {}, not {}", l.unit, length_unit); };
   const auto say_time = [&](const Scale& t) { return fmt::format("t is probably in {}, not {}", t.unit, time_unit); };
   for (const Scale& l : kLengths) {
-    if (works(l, now_time))
+    if (l.si != length && works(l, now_time))
       return fmt::format("{}: say 'columns: {{x: {}, y: {}, z: {}, …}}' in a recording.yaml", say_length(l), l.unit, l.unit, l.unit);
   }
   for (const Scale& t : kTimes) {
-    if (works(now_length, t)) return fmt::format("{}: say 'columns: {{t: {}, …}}' in a recording.yaml", say_time(t), t.unit);
+    if (t.si != time && works(now_length, t))
+      return fmt::format("{}: say 'columns: {{t: {}, …}}' in a recording.yaml", say_time(t), t.unit);
   }
   for (const Scale& l : kLengths) {
     for (const Scale& t : kTimes) {
-      if (works(l, t)) return fmt::format("{}, and {}: say so under 'columns' in a recording.yaml", say_length(l), say_time(t));
+      if (l.si != length && t.si != time && works(l, t))
+        return fmt::format("{}, and {}: say so under 'columns' in a recording.yaml", say_length(l), say_time(t));
     }
   }
   return "check the columns and the units; no usual unit makes sense of them";

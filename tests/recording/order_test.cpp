@@ -68,17 +68,19 @@ TEST_CASE("a single false time is set aside") {
   const std::string text = circle_rows(400, [](int k, std::string row) {
     if (k == 100) return "987654.0" + row.substr(row.find(' '));
     if (k == 300) return "-9.0e5" + row.substr(row.find(' '));
+    if (k == 399) return "9.0e30" + row.substr(row.find(' '));
     return row;
   });
   const Run run = read_recording(scratch.file("glitch.txt", text)).runs[0];
-  CHECK(run.report.false_times == 2);
-  CHECK(run.report.used == 398);
-  CHECK(run.time.back() == Approx(1.995));
+  CHECK(run.report.false_times == 3);
+  CHECK(run.report.used == 397);
+  CHECK(run.time.back() == Approx(1.99));
 }
 
 TEST_CASE("a clock that was set back begins another run") {
   const Scratch scratch;
-  const std::string text = circle_rows(600) + circle_rows(500);
+  const std::string other = circle_rows(500, [](int, std::string row) { return row.replace(row.rfind(' '), 1, " 1"); });  // z + 100 mm
+  const std::string text = circle_rows(600) + other;
   const Recording recording = read_recording(scratch.file("twice.txt", text));
   REQUIRE(recording.runs.size() == 2);
   CHECK(recording.runs[0].name == "twice");
@@ -107,4 +109,23 @@ TEST_CASE("the same points twice are one run of duplicates") {
   const Run run = read_recording(scratch.file("double.txt", rows_in(order))).runs[0];
   CHECK(run.report.duplicates == 300);
   CHECK(run.size() == 300);
+}
+
+TEST_CASE("a block of rows that was written twice is duplicates, not another run") {
+  const Scratch scratch;
+  std::vector<int> order = ascending(1000);
+  const std::vector<int> block(order.begin() + 100, order.begin() + 300);
+  SECTION("far behind itself") { order.insert(order.begin() + 900, block.begin(), block.end()); }
+  SECTION("at the end") { order.insert(order.end(), block.begin(), block.end()); }
+  const Recording recording = read_recording(scratch.file("block.txt", rows_in(order)));
+  REQUIRE(recording.runs.size() == 1);
+  CHECK(recording.runs[0].report.duplicates == 200);
+  CHECK(recording.runs[0].size() == 1000);
+}
+
+TEST_CASE("a whole file written twice is one run") {
+  const Scratch scratch;
+  const Recording recording = read_recording(scratch.file("copy.txt", circle_rows(600) + circle_rows(600)));
+  REQUIRE(recording.runs.size() == 1);
+  CHECK(recording.runs[0].report.duplicates == 600);
 }
