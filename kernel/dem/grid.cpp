@@ -239,7 +239,8 @@ void System::build_pairs(int slab) {
   state.halo.assign(static_cast<std::size_t>(std::max<std::int64_t>(0, last_partner + 1 - end)), ForceLine{});
 }
 
-/// Brings values into the new order. Between steps the forces are zero and their lines are free: the largest of all serve as the other half.
+/// Brings values into the new order. Between steps the forces are zero and their lines are free: the largest of all serve as the other
+/// half.
 template <class Values>
 void System::permute(Values& values) {
   using Item = typename Values::value_type;

@@ -69,8 +69,7 @@ void System::build_walls() {
         coordinate[3][k] = reaches_[k].radius + 0.5 * law_reach;
       }
     });
-    const GeometryBeads beads{
-        n, {coordinate[0], coordinate[1], coordinate[2]}, coordinate[3]};
+    const GeometryBeads beads{n, {coordinate[0], coordinate[1], coordinate[2]}, coordinate[3]};
     near.clear();
     const CandidateSink sink{&near, [](void* host, std::int64_t bead, std::uint32_t feature) {
                                static_cast<decltype(near)*>(host)->emplace_back(static_cast<std::uint32_t>(bead), feature);
