@@ -15,6 +15,7 @@ namespace millscope::geometry {
 namespace {
 
 // Entries of the grid below kFirstList; from there on they are places in lists_, shifted by it.
+constexpr std::size_t kCellsAtOnce = 4096;  // FCL's objects for more would take more memory than all beads together
 constexpr std::uint32_t kUnknown = 0, kAsked = 1, kFar = 2, kFirstList = 3;
 
 fcl::Vector3d fcl_vector(const Point& p) { return {p.x, p.y, p.z}; }
@@ -126,17 +127,22 @@ void CandidateFinder::look_up(const GeometryBeads& beads) {
 }
 
 void CandidateFinder::resolve_unknown() {
-  if (unknown_.empty()) return;
+  for (std::size_t begin = 0; begin < unknown_.size(); begin += kCellsAtOnce) {
+    resolve({unknown_.data() + begin, std::min(kCellsAtOnce, unknown_.size() - begin)});
+  }
+}
+
+void CandidateFinder::resolve(std::span<const std::uint64_t> cells) {
   std::vector<Point> middles;
-  for (const std::uint64_t cell : unknown_) middles.push_back(grid_.middle_of(cell));
+  for (const std::uint64_t cell : cells) middles.push_back(grid_.middle_of(cell));
   const std::vector<Found> found = trees_->near_places(triangles_, middles, distance_ + grid_.half_diagonal());
-  if (lists_.size() + unknown_.size() + found.size() > 0xffff0000U)
+  if (lists_.size() + cells.size() + found.size() > 0xffff0000U)
     throw Refusal("mesh: the lists of near triangles exceed 16 GB: use a coarser mesh");
   std::size_t next = 0;
-  for (std::uint32_t c = 0; c < unknown_.size(); ++c) {
+  for (std::uint32_t c = 0; c < cells.size(); ++c) {
     const std::size_t begin = next;
     while (next < found.size() && found[next].cell == c) ++next;
-    grid_.entry(unknown_[c]) = next == begin ? kFar : static_cast<std::uint32_t>(lists_.size()) + kFirstList;
+    grid_.entry(cells[c]) = next == begin ? kFar : static_cast<std::uint32_t>(lists_.size()) + kFirstList;
     if (next == begin) continue;
     lists_.push_back(static_cast<std::uint32_t>(next - begin));
     for (std::size_t i = begin; i < next; ++i) lists_.push_back(found[i].triangle);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "geometry/mesh/cell_grid.hpp"
@@ -33,6 +34,7 @@ class CandidateFinder {
   void prepare(const GeometryBeads& beads, double margin);
   void look_up(const GeometryBeads& beads);
   void resolve_unknown();
+  void resolve(std::span<const std::uint64_t> cells);
   void send(const NearBead& near, const GeometryBeads& beads, double margin, const CandidateSink& sink);
 
   const Triangles& triangles_;

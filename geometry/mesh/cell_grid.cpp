@@ -7,8 +7,8 @@ namespace millscope::geometry {
 
 namespace {
 
-/// 16 MB of entries. Smaller cells give shorter lists, but most beads are far from the wall and each look-up of theirs should stay cheap.
-constexpr double kMaxCells = 4.0 * 1024 * 1024;
+/// 4 MB of entries. Smaller cells give shorter lists, but most beads are far from the wall and each look-up of theirs should stay cheap.
+constexpr double kMaxCells = 1024 * 1024;
 
 }  // namespace
 

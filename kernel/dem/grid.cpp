@@ -1,6 +1,7 @@
 // List rebuild, first half: wrap, check, sort the beads by cell, carry the histories of touching pairs over to the new order.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 #include "kernel/dem/slab.hpp"
@@ -16,12 +17,6 @@ double speed(const MotionLine& m) { return std::sqrt(m.v[0] * m.v[0] + m.v[1] * 
 ReferenceLine reference_of(const PositionLine& x, double skin) {
   const double hidden = 2e-7 * (std::abs(x.x) + std::abs(x.y) + std::abs(x.z)), allowed = std::max(0.0, skin - hidden);
   return {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z), static_cast<float>(allowed * allowed)};
-}
-
-/// Puts items first…last of `values` where the new order wants them.
-template <class Values>
-void move_items(const Values& values, Values& to, const std::vector<std::uint32_t>& new_index, std::int64_t first, std::int64_t last) {
-  for (std::size_t i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i) to[new_index[i]] = values[i];
 }
 
 }  // namespace
@@ -244,27 +239,44 @@ void System::build_pairs(int slab) {
   state.halo.assign(static_cast<std::size_t>(std::max<std::int64_t>(0, last_partner + 1 - end)), ForceLine{});
 }
 
+/// Brings values into the new order. Between steps the forces are zero and their lines are free: the largest of all serve as the other
+/// half.
+template <class Values>
+void System::permute(Values& values) {
+  using Item = typename Values::value_type;
+  static_assert(sizeof(Item) <= sizeof(ForceLine));
+  unsigned char* const there = reinterpret_cast<unsigned char*>(particles.force.data());
+  workers_->run(settings_.partitions, [&](int slab, int) {
+    const BeadRange beads = beads_of(slab);
+    for (std::size_t i = static_cast<std::size_t>(beads.begin); i < static_cast<std::size_t>(beads.end); ++i) {
+      std::memcpy(there + new_index_[i] * sizeof(Item), &values[i], sizeof(Item));
+    }
+  });
+  workers_->run(settings_.partitions, [&](int slab, int) {
+    const std::size_t begin = static_cast<std::size_t>(slab_begin(slab)), end = static_cast<std::size_t>(slab_begin(slab + 1));
+    std::memcpy(static_cast<void*>(values.data() + begin), there + begin * sizeof(Item), (end - begin) * sizeof(Item));
+  });
+}
+
 void System::rebuild() {
   sort_beads();
   extract_pair_history();
   extract_wall_history();
   Particles& p = particles;
-  const auto permute = [this](auto& values, auto& spare) {
-    workers_->run(settings_.partitions,
-                  [&](int slab, int) { move_items(values, spare, new_index_, slab_begin(slab), slab_begin(slab + 1)); });
-    values.swap(spare);
-  };
-  permute(p.acceleration, spare_acceleration_);
-  permute(p.motion, spare_motion_);
-  permute(p.half, spare_motion_);
-  permute(p.position, spare_position_);
-  permute(p.reference, spare_reference_);
-  permute(reaches_, spare_position_);
-  permute(p.id, spare_id_);
-  permute(p.material, spare_material_);
+  permute(p.acceleration);
+  permute(p.motion);
+  permute(p.half);
+  permute(p.position);
+  permute(p.reference);
+  permute(reaches_);
+  permute(p.id);
+  permute(p.material);
   workers_->run(settings_.partitions, [this](int slab, int) { build_pairs(slab); });
   prepare_sweeps();
   build_walls();
+  workers_->run(settings_.partitions, [&p, this](int slab, int) {
+    std::fill(p.force.begin() + slab_begin(slab), p.force.begin() + slab_begin(slab + 1), ForceLine{});
+  });
   ++rebuilds_;
   last_rebuild_step_ = step_;
   rebuild_needed_ = false;

@@ -119,15 +119,7 @@ void System::prepare() {
       throw config::UserError(line);
     }
   }
-  const std::size_t beads = particles.position.size();
-  spare_motion_.resize(beads);
-  spare_position_.resize(beads);
-  spare_acceleration_.resize(beads);
-  spare_reference_.resize(beads);
-  spare_id_.resize(beads);
-  spare_material_.resize(beads);
-  reaches_.resize(beads);
-  for (auto& c : wall_coordinates_) c.resize(beads);
+  reaches_.resize(particles.position.size());
   list_count_ = 0;
   for (std::size_t p = 0; p < physics_.size(); ++p) {
     if (physics_[p].wall) continue;
@@ -331,7 +323,7 @@ std::uint64_t System::state_hash() const {
 
 std::size_t System::memory_bytes() const {
   const std::size_t n = particles.position.size();
-  std::size_t bytes = n * (2 * sizeof(PositionLine) + 5 * sizeof(MotionLine) + 2 * sizeof(PositionLine) + 4 * sizeof(double) + 14 + 5);
+  std::size_t bytes = n * (2 * sizeof(PositionLine) + 3 * sizeof(MotionLine) + sizeof(AccelerationLine) + sizeof(ReferenceLine) + 13);
   for (const auto& slab : slabs_) {
     for (const PairList& list : slab->lists) {
       bytes += list.owner.capacity() * 9;

@@ -138,6 +138,8 @@ class System {
  private:
   void prepare();
   void rebuild();
+  template <class Values>
+  void permute(Values& values);
   void sort_beads();
   void extract_pair_history();
   void build_pairs(int slab);
@@ -220,14 +222,6 @@ class System {
   } grid_;
   AlignedVector<PositionLine> reaches_;  ///< centre; `radius`: radius + skin + half the largest law reach
   std::vector<std::uint32_t> new_index_;
-  // the other halves of swaps, kept from rebuild to rebuild
-  AlignedVector<MotionLine> spare_motion_;
-  AlignedVector<PositionLine> spare_position_;
-  AlignedVector<AccelerationLine> spare_acceleration_;
-  AlignedVector<ReferenceLine> spare_reference_;
-  std::vector<std::uint32_t> spare_id_;
-  std::vector<std::uint8_t> spare_material_;
-  std::vector<double> wall_coordinates_[4];  ///< x, y, z in a body's frame, and reach, of every bead
   std::vector<std::uint32_t> carried_start_;
   std::vector<std::uint32_t> carried_partner_;
   std::vector<double> carried_history_;

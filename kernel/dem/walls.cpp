@@ -56,18 +56,20 @@ void System::build_walls() {
   // The walls may move this far before the lists must be made anew.
   wall_moved_ = 0;
   wall_margin_ = wall_speed_ * 1.1 * settings_.skin_steps * settings_.time_step;
+  // x, y, z in the body's frame, and reach, of every bead. The lines of the forces are free between steps.
+  double* const lines = reinterpret_cast<double*>(particles.force.data());
+  double* const coordinate[4] = {lines, lines + n, lines + 2 * n, lines + 3 * n};
   for (std::size_t body_index = 0; body_index < bodies.size(); ++body_index) {
     const Body& body = bodies[body_index];
     const Pose pose = pose_at(body.motion, time());
     workers_->run(settings_.partitions, [&](int slab, int) {
       for (std::size_t k = static_cast<std::size_t>(slab_begin(slab)); k < static_cast<std::size_t>(slab_begin(slab + 1)); ++k) {
         const Row x = to_body(pose, centre(particles.position[k]));
-        for (std::size_t a = 0; a < 3; ++a) wall_coordinates_[a][k] = x[a];
-        wall_coordinates_[3][k] = reaches_[k].radius + 0.5 * law_reach;
+        for (std::size_t a = 0; a < 3; ++a) coordinate[a][k] = x[a];
+        coordinate[3][k] = reaches_[k].radius + 0.5 * law_reach;
       }
     });
-    const GeometryBeads beads{
-        n, {wall_coordinates_[0].data(), wall_coordinates_[1].data(), wall_coordinates_[2].data()}, wall_coordinates_[3].data()};
+    const GeometryBeads beads{n, {coordinate[0], coordinate[1], coordinate[2]}, coordinate[3]};
     near.clear();
     const CandidateSink sink{&near, [](void* host, std::int64_t bead, std::uint32_t feature) {
                                static_cast<decltype(near)*>(host)->emplace_back(static_cast<std::uint32_t>(bead), feature);
