@@ -24,7 +24,9 @@ std::size_t count_support(const std::vector<Parabola>& windows, const Rotation& 
     const double dx = w.position[0] - r.circle.x, dy = w.position[1] - r.circle.y, square = dx * dx + dy * dy;
     if (square < least * least) continue;
     const double ex = w.velocity[0] + r.angular_velocity * dy, ey = w.velocity[1] - r.angular_velocity * dx;
-    const double tolerance = 0.03 * std::fabs(r.angular_velocity) * std::sqrt(square) + 2 * noise * w.velocity_per_noise;
+    const double turning = std::fabs(r.angular_velocity) * std::sqrt(square), uncertain = 2 * noise * w.velocity_per_noise;
+    if (uncertain > 0.2 * turning) continue;  // noise could turn so
+    const double tolerance = 0.03 * turning + uncertain;
     support += ex * ex + ey * ey < tolerance * tolerance;
   }
   return support;
@@ -147,7 +149,7 @@ Circle ridge_circle(const PlanePoints& points, const std::vector<double>& weight
     circle.x += step[0];
     circle.y += step[1];
     circle.radius += step[2];
-    if (step.cwiseAbs().maxCoeff() < 1e-7) break;
+    if (step.cwiseAbs().maxCoeff() < 1e-6) break;
   }
   return circle;
 }

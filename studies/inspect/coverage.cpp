@@ -7,7 +7,7 @@
 
 #include "studies/inspect/resample.hpp"
 #include "studies/inspect/windows.hpp"
-#include "studies/trajectory/trajectory.hpp"
+#include "studies/recording/noise.hpp"
 
 namespace millscope::studies {
 namespace {
@@ -66,7 +66,7 @@ std::array<Finding, 3> measure_noise(const Recording& recording) {
   std::array<std::vector<double>, 3> values;
   for (const Run& run : recording.runs) {
     for (std::size_t first = 0; first + length <= run.size(); first += length) {
-      const auto noise = estimate_noise(part_of(run, first, first + length), recording.gap_limit);
+      const auto noise = difference_noise(part_of(run, first, first + length), recording.gap_limit);
       for (std::size_t a = 0; a < 3; ++a) {
         if (noise[a] > 0) values[a].push_back(noise[a]);
       }
@@ -82,7 +82,7 @@ std::array<Finding, 3> measure_noise(const Recording& recording) {
     double mean = 0, squares = 0;
     for (const double v : values[a]) mean += v / n;
     for (const double v : values[a]) squares += (v - mean) * (v - mean);
-    result[a] = {interval(mean, std::sqrt(squares / (n - 1) / n), n - 1), "what a smooth motion through neighbouring points leaves over"};
+    result[a] = {interval(mean, std::sqrt(squares / (n - 1) / n), n - 1), "from point to point; its slow part comes on top"};
   }
   return result;
 }

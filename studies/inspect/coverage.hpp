@@ -24,7 +24,7 @@ struct Coverage {
 
 Coverage measure_coverage(const Recording& recording);
 
-/// Noise from point to point (estimate_noise) with an interval from twenty parts of the recording; m.
+/// Noise from point to point (difference_noise) with an interval from twenty parts of the recording; m.
 std::array<Finding, 3> measure_noise(const Recording& recording);
 
 /// Along the mill's axis.

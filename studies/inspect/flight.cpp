@@ -9,8 +9,8 @@
 
 #include "studies/inspect/resample.hpp"
 #include "studies/inspect/windows.hpp"
+#include "studies/recording/noise.hpp"
 #include "studies/recording/select.hpp"
-#include "studies/trajectory/trajectory.hpp"
 
 namespace millscope::studies {
 namespace {
@@ -62,7 +62,7 @@ void add_arc(const Run& run, std::size_t first, std::size_t last, double noise, 
 
 std::vector<Arc> find_arcs(const Recording& recording) {
   std::vector<std::array<double, 3>> noises;
-  for (const Run& run : recording.runs) noises.push_back(estimate_noise(run, recording.gap_limit));
+  for (const Run& run : recording.runs) noises.push_back(difference_noise(run, recording.gap_limit));
   const auto least = std::max(kFewest, static_cast<std::size_t>(kShortest / std::max(1e-5, median_interval(recording)) / 4));
   std::vector<Arc> arcs;
   for (const UnbrokenStretch& stretch : unbroken_stretches(recording)) {

@@ -10,14 +10,14 @@
 #include "studies/inspect/resample.hpp"
 #include "studies/inspect/rides.hpp"
 #include "studies/inspect/windows.hpp"
+#include "studies/recording/noise.hpp"
 #include "studies/recording/select.hpp"
-#include "studies/trajectory/trajectory.hpp"
 
 namespace millscope::studies {
 namespace {
 
 constexpr std::size_t kFewestRides = 5;
-constexpr std::size_t kDraws = 200;
+constexpr std::size_t kDraws = 120;
 // What resampling rides cannot see, because it is in all of them: beads that do not quite touch the shell (part of its radius), and that
 // roll on between two lifters (part of its speed). From thirty recordings of a mill whose axis and speed are known.
 constexpr double kLooseness = 0.001;
@@ -40,7 +40,7 @@ std::string rides_text(std::size_t rides) { return fmt::format("{} {}", rides, r
 double plane_noise(const Recording& recording) {
   double sum = 0, count = 0;
   for (const Run& run : recording.runs) {
-    const auto noise = estimate_noise(run, recording.gap_limit);
+    const auto noise = difference_noise(run, recording.gap_limit);
     const auto n = static_cast<double>(run.size());
     sum += 0.5 * (noise[0] + noise[1]) * n;
     count += n;
@@ -139,7 +139,7 @@ void report_circle(const Work& work, MillMotion& motion) {
   const std::string basis = fmt::format("{} rides along one circle", work.rides.size());
   motion.axis[0] = {interval(work.circle.x, deviation[0], freedom, kLooseness * work.circle.radius), basis};
   motion.axis[1] = {interval(work.circle.y, deviation[1], freedom, kLooseness * work.circle.radius), basis};
-  motion.path_radius = {interval(work.circle.radius, deviation[2], freedom, 1.5 * kLooseness * work.circle.radius),
+  motion.path_radius = {interval(work.circle.radius, deviation[2], freedom, 2 * kLooseness * work.circle.radius),
                         basis + ", the outermost; a shell that the tracer never touched is larger"};
   motion.radial_scatter = scatter_about(points, work.circle);
 }
@@ -163,6 +163,15 @@ void report_speed(const Work& work, MillMotion& motion) {
   result.note = "rides along the shell differ in speed, so the charge slips and the shell is at least so fast; " + result.note;
 }
 
+// Rides along a wall have one radius; rides through the charge that happen to pass a band have any.
+bool met_wall(const Work& work) { return work.rides.size() >= kFewestRides && radius_spread(work.rides) < 0.26 * work.rule.band; }
+
+std::string why_no_wall(const Work& work) {
+  if (work.rides.size() < kFewestRides) return fmt::format("only {} along the shell", rides_text(work.rides.size()));
+  return fmt::format("{} whose radii differ by {:.1f} mm, so that no wall is recognised", rides_text(work.rides.size()),
+                     radius_spread(work.rides) * 1e3);
+}
+
 // The tracer hardly met the shell: the enclosing circle, with blocks of a second resampled.
 void report_enclosing(const Work& work, MillMotion& motion) {
   std::vector<double> weights(work.points.size());
@@ -171,8 +180,7 @@ void report_enclosing(const Work& work, MillMotion& motion) {
     const Circle c = enclose(work, weights);
     return std::vector<double>{c.x, c.y, c.radius};
   });
-  const std::string basis =
-      fmt::format("only {} along one circle: from the circle that encloses the points", rides_text(work.rides.size()));
+  const std::string basis = why_no_wall(work) + ": from the circle that encloses the points";
   const double floor = 0.01 * work.circle.radius;
   motion.axis[0] = {interval(work.circle.x, deviation[0], 30, floor), basis};
   motion.axis[1] = {interval(work.circle.y, deviation[1], 30, floor), basis};
@@ -198,8 +206,7 @@ void report_least_speed(const Work& work, MillMotion& motion) {
   }
   const double typical = quantile(speeds, 0.9), low = quantile(speeds, 0.5);
   motion.speed = {Estimate{typical, low, std::numeric_limits<double>::infinity()},
-                  fmt::format("only {} along the shell: the outer charge turns so fast, the shell at least", rides_text(work.rides.size())),
-                  Bound::at_least};
+                  why_no_wall(work) + ": the outer charge turns so fast, the shell at least", Bound::at_least};
 }
 
 }  // namespace
@@ -218,9 +225,9 @@ MillMotion estimate_motion(const Recording& recording) {
   work.circle = enclose(work, {});
   const Circle enclosing = work.circle;
   settle(work);
-  motion.rides = work.rides.size();
-  for (const Ride& ride : work.rides) motion.ride_time += ride.duration;
-  if (work.rides.size() >= kFewestRides) {
+  if (met_wall(work)) {
+    motion.rides = work.rides.size();
+    for (const Ride& ride : work.rides) motion.ride_time += ride.duration;
     report_circle(work, motion);
     report_speed(work, motion);
   } else {

@@ -18,7 +18,7 @@ struct MillMotion {
   std::array<Finding, 2> axis;  ///< x and y in the frame of the file, m
   Finding speed;                ///< |Ω| of the shell, rad/s
   Finding path_radius;          ///< of the circle on which the tracer's centre rides along the shell, m: the shell's less a bead's radius
-  std::size_t rides = 0;        ///< separate rides along the shell
+  std::size_t rides = 0;        ///< separate rides along the shell; 0 where no wall is recognised
   double ride_time = 0;         ///< s of them, ends cut off
   double radial_scatter = 0;    ///< standard deviation of the points of rides about the circle, m: the noise with its slow part
 

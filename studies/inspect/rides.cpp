@@ -62,6 +62,8 @@ void add_rides(const Run& run, std::size_t number, const std::vector<std::size_t
     }
     if (ride.points.size() < 5) continue;
     fit_speed(run, inside, sense, ride);
+    for (const std::size_t i : ride.points)
+      ride.radius += std::hypot(run.position[0][i] - circle.x, run.position[1][i] - circle.y) / static_cast<double>(ride.points.size());
     if (ride.angular_velocity * sense > 0) rides.push_back(std::move(ride));
   }
 }
@@ -88,6 +90,14 @@ std::vector<Ride> find_rides(const Recording& recording, const Circle& circle, i
   return rides;
 }
 
+double radius_spread(const std::vector<Ride>& rides) {
+  const auto n = static_cast<double>(rides.size());
+  double mean = 0, squares = 0;
+  for (const Ride& ride : rides) mean += ride.radius / n;
+  for (const Ride& ride : rides) squares += (ride.radius - mean) * (ride.radius - mean);
+  return n > 1 ? std::sqrt(squares / (n - 1)) : 0;
+}
+
 PlanePoints points_of(const Recording& recording, const std::vector<Ride>& rides) {
   PlanePoints points;
   for (std::size_t r = 0; r < rides.size(); ++r) {
@@ -102,9 +112,14 @@ PlanePoints points_of(const Recording& recording, const std::vector<Ride>& rides
 }
 
 double common_speed(const std::vector<Ride>& rides, const std::vector<double>& times) {
+  constexpr std::size_t kStarts = 25;
+  std::vector<double> starts;
+  for (const Ride& ride : rides) starts.push_back(ride.angular_velocity);
+  std::sort(starts.begin(), starts.end());
+  const std::size_t stride = starts.size() / kStarts + 1;
   double best = -1, result = 0;
-  for (const Ride& candidate : rides) {
-    double speed = candidate.angular_velocity;
+  for (std::size_t start = stride / 2; start < starts.size(); start += stride) {
+    double speed = starts[start];
     double density = 0;
     for (int pass = 0; pass < 20; ++pass) {  // mean shift
       double sum = 0, shifted = 0;
@@ -116,7 +131,7 @@ double common_speed(const std::vector<Ride>& rides, const std::vector<double>& t
         sum += weight / width;
         shifted += weight / width * rides[i].angular_velocity;
       }
-      if (!(sum > 0) || std::fabs(shifted / sum - speed) < 1e-9) break;
+      if (!(sum > 0) || std::fabs(shifted / sum - speed) < 1e-6 * std::fabs(speed)) break;
       speed = shifted / sum;
     }
     if (density > best) {

@@ -12,6 +12,7 @@ struct Ride {
   std::size_t run = 0;
   std::vector<std::size_t> points;
   double duration = 0;          ///< s
+  double radius = 0;            ///< m, mean distance of its points from the centre
   double angular_velocity = 0;  ///< rad/s, slope of angle over time
   double deviation = 0;         ///< its standard error from the scatter of the angles
 };
@@ -26,6 +27,9 @@ struct RideRule {
 
 /// Rides in the turning sense `sense` (±1).
 std::vector<Ride> find_rides(const Recording& recording, const Circle& circle, int sense, const RideRule& rule);
+
+/// Standard deviation of the rides' radii about their mean, m; a common wall leaves little.
+double radius_spread(const std::vector<Ride>& rides);
 
 /// The points of rides, grouped by ride.
 PlanePoints points_of(const Recording& recording, const std::vector<Ride>& rides);

@@ -25,10 +25,14 @@ struct Plane {
 
 Vector3d point_of(const Run& run, std::size_t i) { return {run.position[0][i], run.position[1][i], run.position[2][i]}; }
 
-std::vector<Vector3d> all_points(const Recording& recording) {
+// At most about fifty thousand, evenly chosen.
+std::vector<Vector3d> some_points(const Recording& recording) {
+  std::size_t count = 0;
+  for (const Run& run : recording.runs) count += run.size();
+  const std::size_t stride = count / 50000 + 1;
   std::vector<Vector3d> points;
   for (const Run& run : recording.runs) {
-    for (std::size_t i = 0; i < run.size(); ++i) points.push_back(point_of(run, i));
+    for (std::size_t i = 0; i < run.size(); i += stride) points.push_back(point_of(run, i));
   }
   return points;
 }
@@ -199,7 +203,7 @@ Estimate radius_interval(const PlanePoints& flat, const Circle& circle, double s
 
 std::optional<Rotor> recognise_rotor(const Recording& recording) {
   constexpr double kPaceLength = 4;  // s
-  const std::vector<Vector3d> points = all_points(recording);
+  const std::vector<Vector3d> points = some_points(recording);
   if (points.size() < 100) return std::nullopt;
   Plane plane = fit_plane(points);
   const PlanePoints flat = project(points, plane);

@@ -102,7 +102,7 @@ Verdict judge_motion(const Inspection& i) {
   const bool whole = i.motion.speed.estimate && i.motion.speed.bound == Bound::both && i.motion.path_radius.bound == Bound::both;
   v.support = whole ? Support::yes : Support::partly;
   v.reason = whole ? fmt::format("{} rides along the shell, {:.1f} s", i.motion.rides, i.motion.ride_time)
-                   : fmt::format("only {} rides along the shell: give the speed in recording.yaml, or record longer", i.motion.rides);
+                   : i.motion.path_radius.note + "; give the speed in recording.yaml, or record longer";
   return v;
 }
 
