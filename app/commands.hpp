@@ -22,6 +22,7 @@ int run(const Arguments& arguments);
 int resume(const Arguments& arguments);
 int check(const Arguments& arguments);
 int analyze(const Arguments& arguments);
+int pept(const Arguments& arguments);
 int describe(const Arguments& arguments);
 int plugins(const Arguments& arguments);
 int schema(const Arguments& arguments);

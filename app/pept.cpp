@@ -1,0 +1,61 @@
+// `millscope pept`: what a camera saw. Each action is a function with options of its own.
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/commands.hpp"
+#include "kernel/config/document.hpp"
+#include "kernel/config/error.hpp"
+#include "studies/inspect/report.hpp"
+
+namespace millscope::app {
+namespace {
+
+int inspect(const Arguments& arguments) {
+  Options options("pept inspect FILE [--json]",
+                  "Says how good a recording is and what it can support, from its points alone: time covered, noise, losses, circulations, "
+                  "the mill's axis, sense, "
+                  "speed and radius, the vertical direction from free flight, coverage along the axis; for a tracer on a rotor its radius "
+                  "and plateaus of speed. "
+                  "Every figure has a 90 % interval or the reason why it cannot be said.",
+                  "millscope pept inspect run1.a");
+  options.positional("FILE", "a recording (.a, .csv, .tsv, .txt, .gz of one) or a recording.yaml with several");
+  options.add()("json", "print JSON; units are in the names of the keys");
+  if (!options.parse(arguments)) return kDone;
+  const studies::Inspection inspection = studies::inspect(studies::read_recording(options.text("FILE")));
+  fmt::print("{}", options.has("json") ? studies::inspection_json(inspection).dump(2) + "\n" : studies::inspection_text(inspection));
+  return kDone;
+}
+
+struct Action {
+  const char* name;
+  const char* what;
+  int (*call)(const Arguments&);
+};
+
+constexpr Action kActions[] = {
+    {"inspect", "how good a recording is and what it can support", inspect},
+};
+
+void print_actions() {
+  fmt::print("usage: millscope pept ACTION …\n\nRecordings of a tracer in a mill (positron emission particle tracking).\n\n");
+  for (const Action& a : kActions) fmt::print("  {:<12} {}\n", a.name, a.what);
+  fmt::print("\n'millscope pept ACTION --help' explains one, with an example.\n\nExample:\n  millscope pept inspect run1.a\n");
+}
+
+}  // namespace
+
+int pept(const Arguments& arguments) {
+  if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h") {
+    print_actions();
+    return arguments.empty() ? kBadInput : kDone;
+  }
+  std::vector<std::string> names;
+  for (const Action& a : kActions) {
+    if (arguments[0] == a.name) return a.call(Arguments(arguments.begin() + 1, arguments.end()));
+    names.emplace_back(a.name);
+  }
+  throw config::UserError(fmt::format("'pept {}' is no action; {}", arguments[0], config::suggestion(arguments[0], names)));
+}
+
+}  // namespace millscope::app
