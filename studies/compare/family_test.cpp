@@ -35,22 +35,41 @@ std::vector<float> scaled(const std::vector<float>& draws, const std::vector<dou
   return out;
 }
 
-/// M*_r of one observable.
-std::vector<float> resampled_maxima(const TestedObservable& observable, const std::vector<TestedElement>& elements, std::size_t pairs) {
+/// Which draw of A goes with which of B. The shift grows by one with every round through the draws of A: no pair comes twice within as many
+/// rounds as B has draws.
+struct Pairing {
+  std::vector<std::uint32_t> a, b;
+  Pairing(std::size_t count_a, std::size_t count_b, std::size_t pairs) : a(pairs), b(pairs) {
+    for (std::size_t r = 0; r < pairs; ++r) {
+      a[r] = static_cast<std::uint32_t>(r % count_a);
+      b[r] = static_cast<std::uint32_t>((r + 1 + r / count_a) % count_b);
+    }
+  }
+};
+
+/// w_k: the normal deviate at 99 % over that of the resamples, at most 1.
+float tail_weight(std::vector<float> deviates) {
+  constexpr float kNormal = 2.5758F;
+  const auto place = deviates.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(deviates.size() - 1));
+  std::nth_element(deviates.begin(), place, deviates.end());
+  return *place > kNormal ? kNormal / *place : 1;
+}
+
+/// M*_r of one observable; sets the weights of its elements.
+std::vector<float> resampled_maxima(const TestedObservable& observable, std::vector<TestedElement>& elements, std::size_t pairs) {
   std::vector<double> unit_a, unit_b;
   for (const TestedElement& e : elements) unit_a.push_back(e.error_a / e.error), unit_b.push_back(e.error_b / e.error);
   const std::vector<float> a = scaled(observable.draws_a, unit_a), b = scaled(observable.draws_b, unit_b);
   const std::size_t n = elements.size(), count_a = a.size() / n, count_b = b.size() / n;
-  // The shift grows by one with every round through the draws of A: no pair comes twice within count_b rounds.
-  std::vector<std::uint32_t> of_a(pairs), of_b(pairs);
-  for (std::size_t r = 0; r < pairs; ++r) {
-    of_a[r] = static_cast<std::uint32_t>(r % count_a);
-    of_b[r] = static_cast<std::uint32_t>((r + 1 + r / count_a) % count_b);
-  }
-  std::vector<float> maxima(pairs, 0);
+  const Pairing pairing(count_a, count_b, pairs);
+  std::vector<float> maxima(pairs, 0), deviates(pairs);
   for (std::size_t k = 0; k < n; ++k) {
     const float *const draw_a = a.data() + k * count_a, *const draw_b = b.data() + k * count_b;
-    for (std::size_t r = 0; r < pairs; ++r) maxima[r] = std::max(maxima[r], std::abs(draw_b[of_b[r]] - draw_a[of_a[r]]));
+    for (std::size_t r = 0; r < pairs; ++r) deviates[r] = std::abs(draw_b[pairing.b[r]] - draw_a[pairing.a[r]]);
+    const auto round = static_cast<std::ptrdiff_t>(std::min(pairs, count_a));
+    const float weight = tail_weight({deviates.begin(), deviates.begin() + round});
+    elements[k].weight = static_cast<double>(weight);
+    for (std::size_t r = 0; r < pairs; ++r) maxima[r] = std::max(maxima[r], weight * deviates[r]);
   }
   return maxima;
 }
@@ -193,9 +212,10 @@ std::vector<ObservableVerdict> judge(const std::vector<TestedObservable>& observ
     maxima.push_back(resampled_maxima(observable, verdict.elements, pairs));
     std::vector<float> sorted = maxima.back();
     std::sort(sorted.begin(), sorted.end());
-    for (TestedElement& e : verdict.elements) e.p = tail(sorted, e.deviate);
-    const auto strongest = std::max_element(verdict.elements.begin(), verdict.elements.end(),
-                                            [](const TestedElement& x, const TestedElement& y) { return x.deviate < y.deviate; });
+    for (TestedElement& e : verdict.elements) e.p = tail(sorted, e.weight * e.deviate);
+    const auto strongest =
+        std::max_element(verdict.elements.begin(), verdict.elements.end(),
+                         [](const TestedElement& x, const TestedElement& y) { return x.weight * x.deviate < y.weight * y.deviate; });
     verdict.strongest = static_cast<std::size_t>(strongest - verdict.elements.begin());
     verdict.p = strongest->p;
     verdicts.push_back(std::move(verdict));

@@ -3,7 +3,8 @@
 //   d_k = b_k − a_k,  s_k² = s_ak² + s_bk²,  t_k = d_k / s_k          element k of an observable: a number, a bin, a cell, a region
 //   z_k : the normal deviate with the two-sided p-value of t_k at ν_k degrees of freedom
 //   z*_rk = (b*_rk − a*_rk) / s_k                                     joint resample r, centred: what chance alone does
-//   M = max_k |z_k|,  M*_r = max_k |z*_rk|                            of one observable
+//   w_k = min(1, 2.576 / 99 % point of |z*_rk|)                       heavy tails weigh down their own element, not all the others
+//   M = max_k w_k |z_k|,  M*_r = max_k w_k |z*_rk|                    of one observable
 //   p = (1 + #{M*_r ≥ M}) / (1 + R)                                   max-T within the observable
 //   adjusted p: step-down min-P over all observables                  Westfall and Young, Resampling-Based Multiple Testing (1993), 2.8
 //
@@ -36,13 +37,14 @@ struct TestedElement {
   double error = 0;          ///< s_k
   double low = 0, high = 0;  ///< interval of d_k for this element alone
   double deviate = 0;        ///< |z_k|
+  double weight = 1;         ///< w_k
   double p = 1;              ///< within its observable
   double adjusted_p = 1;     ///< over everything
 };
 
 struct ObservableVerdict {
   std::vector<TestedElement> elements;
-  std::size_t strongest = 0;  ///< the element with the largest |z_k|
+  std::size_t strongest = 0;  ///< the element with the largest w_k |z_k|
   double p = 1;               ///< of the observable alone
   double adjusted_p = 1;      ///< family-wise
 };

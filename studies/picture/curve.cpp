@@ -75,11 +75,29 @@ class CurveDrawing {
  private:
   Axis x_axis() const {
     Range range;
-    for (const Curve& curve : picture_.curves) {
-      for (const double x : curve.x) range.add(x);
-    }
+    for (const Curve& curve : picture_.curves) add_defined(curve, range);
+    if (picture_.points && !range.empty()) range = {range.low - 0.6, range.high + 0.6};
     if (range.empty() || range.low == range.high) range = {range.empty() ? 0 : range.low - 0.5, range.empty() ? 1 : range.low + 0.5};
-    return make_axis(picture_.x_label, picture_.x_unit, range.low, range.high, log_x_, kWidth);
+    Axis axis = make_axis(picture_.x_label, picture_.x_unit, range.low, range.high, log_x_, kWidth);
+    if (picture_.points && range.high - range.low < 40) {  // whole numbers only
+      axis.ticks = {};
+      const int step = range.high - range.low < 20 ? 1 : 5;
+      for (int n = static_cast<int>(std::ceil(range.low)); n <= range.high; n += step) {
+        axis.ticks.major.push_back(n);
+        axis.ticks.label.push_back(fmt::format("{}", n));
+      }
+    }
+    return axis;
+  }
+
+  // From the first to the last value that is defined.
+  static void add_defined(const Curve& curve, Range& range) {
+    const std::size_t last = curve.x.size() - curve.value.size();  // edges: the upper one counts, too
+    for (std::size_t i = 0; i < curve.value.size(); ++i) {
+      if (!std::isfinite(curve.value[i])) continue;
+      range.add(curve.x[i]);
+      range.add(curve.x[i + last]);
+    }
   }
 
   // The values decide; bands may widen the axis threefold, what lies beyond is cut and counted.
@@ -95,7 +113,7 @@ class CurveDrawing {
       for (const double v : curve.high) bands.add(v);
     }
     if (values.empty()) values = {0, 1};
-    const bool logarithmic = !picture_.zero_line && values.low >= 0 && values.high > std::pow(10, kDecades) * least;
+    const bool logarithmic = log_x_ && !picture_.zero_line && values.low >= 0 && values.high > std::pow(10, kDecades) * least;
     if (logarithmic) {
       return make_axis(picture_.value_label, picture_.value_unit, least / 1.5,
                        std::min(std::max(bands.high, values.high), 10 * values.high) * 1.3, true, kHeight);
@@ -110,6 +128,7 @@ class CurveDrawing {
   }
 
   double legend_rows() const {
+    if (picture_.curves.size() == 1) return 0;  // the line below the title says what it is
     double rows = 1, x = 0;
     for (const Curve& curve : picture_.curves) {
       const double width = entry_width(curve);
@@ -125,7 +144,7 @@ class CurveDrawing {
     Frame::Words words{picture_.title, picture_.subtitle, {}};
     if (!picture_.note.empty()) words.notes.push_back(picture_.note);
     const bool band = std::any_of(picture_.curves.begin(), picture_.curves.end(), [](const Curve& c) { return !c.low.empty(); });
-    if (band) words.notes.push_back("Shaded: " + picture_.band + ".");
+    if (band) words.notes.push_back((picture_.points ? "Whiskers: " : "Shaded: ") + picture_.band + ".");
     std::size_t cut = 0, unplaced = 0;
     for (const Curve& curve : picture_.curves) {
       for (std::size_t i = 0; i < curve.value.size(); ++i) {
@@ -150,10 +169,16 @@ class CurveDrawing {
     frame_.draw_words(canvas);
     frame_.draw_grid(canvas);
     canvas.within(frame_.plot(), [&] {
-      for (std::size_t i = 0; i < picture_.curves.size(); ++i) draw_band(canvas, i);
+      for (std::size_t i = 0; i < picture_.curves.size() && !picture_.points; ++i) draw_band(canvas, i);
       if (picture_.zero_line)
         canvas.line(frame_.at(frame_.x().low / frame_.x().factor, 0), frame_.at(frame_.x().high / frame_.x().factor, 0), {kInk, 0.9});
-      for (std::size_t i = 0; i < picture_.curves.size(); ++i) draw_curve(canvas, i);
+      for (std::size_t i = 0; i < picture_.curves.size(); ++i) {
+        if (picture_.points) {
+          draw_points(canvas, i);
+        } else {
+          draw_curve(canvas, i);
+        }
+      }
     });
     frame_.draw_axes(canvas);
     draw_legend(canvas);
@@ -204,13 +229,34 @@ class CurveDrawing {
     finish();
   }
 
+  // Sources side by side, so that whiskers do not cover each other.
+  void draw_points(Canvas& canvas, std::size_t index) const {
+    const Curve& curve = picture_.curves[index];
+    const double aside = 5 * (static_cast<double>(index) - 0.5 * static_cast<double>(picture_.curves.size() - 1));
+    for (std::size_t i = 0; i < curve.value.size(); ++i) {
+      Point at = frame_.at(curve.x[i], curve.value[i]);
+      if (!std::isfinite(at.y)) continue;
+      at.x += aside;
+      if (!curve.low.empty() && std::isfinite(curve.low[i]) && std::isfinite(curve.high[i])) {
+        canvas.line({at.x, frame_.at(curve.x[i], curve.low[i]).y}, {at.x, frame_.at(curve.x[i], curve.high[i]).y},
+                    {distinct_color(index), 1.2});
+      }
+      canvas.dot(at, 2.4, distinct_color(index));
+    }
+  }
+
   void draw_legend(Canvas& canvas) const {
+    if (picture_.curves.size() == 1) return;
     double x = 0, y = frame_.legend_top() + 9;
     for (std::size_t i = 0; i < picture_.curves.size(); ++i) {
       const double width = entry_width(picture_.curves[i]);
       if (x > 0 && x + width > kWidth) x = 0, y += kLegendLine;
       const double left = frame_.plot().left + x;
-      canvas.line({left, y - 3}, {left + kSample, y - 3}, pen(i));
+      if (picture_.points) {
+        canvas.dot({left + kSample / 2, y - 3}, 2.4, distinct_color(i));
+      } else {
+        canvas.line({left, y - 3}, {left + kSample, y - 3}, pen(i));
+      }
       canvas.text({left + kSample + 5, y}, picture_.curves[i].label, kTextFont);
       x += width;
     }

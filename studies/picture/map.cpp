@@ -7,6 +7,7 @@
 
 #include "kernel/config/error.hpp"
 #include "studies/picture/frame.hpp"
+#include "studies/picture/map_colors.hpp"
 #include "studies/picture/picture.hpp"
 
 namespace millscope::studies {
@@ -16,54 +17,6 @@ constexpr double kLongSide = 300, kShortSide = 60;        // of the plot, points
 constexpr double kBarGap = 12, kBarWidth = 12, kTip = 7;  // colour bar
 constexpr double kPi = 3.14159265358979323846;
 constexpr Color kHatch{0.80, 0.80, 0.80, 1};
-
-bool is_blank(double value) { return !std::isfinite(value) || value == 0; }
-
-/// From values to colours, in stored units.
-struct Colors {
-  double low = 0, high = 1;          // ends of the bar
-  double smallest = 0, largest = 0;  // of the data
-  bool diverging = false, any = false;
-
-  Color operator()(double value) const {
-    const double fraction = (value - low) / (high - low);
-    return diverging ? diverging_color(fraction) : sequential_color(fraction);
-  }
-  // A rounding error beyond the end is no value beyond the end.
-  bool beyond_high() const { return largest > high + 1e-9 * (high - low); }
-  bool beyond_low() const { return smallest < low - 1e-9 * (high - low); }
-};
-
-double quantile(const std::vector<double>& sorted, double probability) {
-  return sorted[static_cast<std::size_t>(std::lround(probability * static_cast<double>(sorted.size() - 1)))];
-}
-
-Colors choose_colors(const MapPicture& picture) {
-  std::vector<double> values;
-  std::copy_if(picture.value.values.begin(), picture.value.values.end(), std::back_inserter(values), [](double v) { return !is_blank(v); });
-  Colors colors;
-  if (values.empty()) return colors;
-  std::sort(values.begin(), values.end());
-  colors.any = true;
-  colors.smallest = values.front(), colors.largest = values.back();
-  double low = quantile(values, 0.01), high = quantile(values, 0.99);
-  const double span = std::max(high - low, 0.5 * std::max(std::abs(low), std::abs(high)));
-  if (colors.largest - high < 0.3 * span) high = colors.largest;
-  if (low - colors.smallest < 0.3 * span) low = colors.smallest;
-  const double size = std::max(std::abs(low), std::abs(high));
-  const bool both_signs = low < -0.05 * size && high > 0.05 * size;
-  colors.diverging = picture.scale == ColorScale::diverging || (picture.scale == ColorScale::automatic && both_signs);
-  if (colors.diverging) {
-    low = -size, high = size;
-  } else if (high > 0 && low < 0.5 * high) {
-    low = 0;  // a scale from zero, unless that would waste more than half of it
-  } else if (high < 0 && high > 0.5 * low) {
-    high = 0;
-  }
-  if (!(high > low)) low -= 0.5 * size, high += 0.5 * size;
-  colors.low = low, colors.high = high;
-  return colors;
-}
 
 /// The cell between edges that holds `value`.
 std::size_t cell_of(const std::vector<double>& edges, double value) {
@@ -120,6 +73,10 @@ class MapDrawing {
   }
   Axis bar_axis() {
     Axis axis = make_axis(picture_.value.label, picture_.value.unit, colors_.low, colors_.high, false, std::max(room_.height, 100.0));
+    if (colors_.named) {
+      room_.right = std::ceil(kBarGap + kBarWidth + 6 + widest(picture_.names, kTextFont) + 9);
+      return axis;
+    }
     room_.right = std::ceil(kBarGap + kBarWidth + 6 + widest(axis.ticks.label, kTextFont) + 6 + 10 + 9);
     return axis;
   }
@@ -134,7 +91,7 @@ class MapDrawing {
       words.notes.push_back("Single cells lie above the colour bar, up to " + shown(colors_.largest) + ".");
     if (colors_.any && colors_.beyond_low())
       words.notes.push_back("Single cells lie below the colour bar, down to " + shown(colors_.smallest) + ".");
-    if (has_blank()) words.notes.push_back("Hatched: no data.");
+    if (has_blank()) words.notes.push_back("Hatched: " + picture_.blank + ".");
     if (!same_scale() && picture_.x.unit == picture_.y.unit) words.notes.push_back("The axes are not to the same scale.");
     return words;
   }
@@ -163,11 +120,16 @@ class MapDrawing {
       draw_blank(canvas);
       canvas.image(pixels(), frame_.plot());
       draw_framed(canvas);
+      draw_outlines(canvas);
       draw_mill(canvas);
     });
     frame_.draw_axes(canvas);
     draw_marks(canvas);
-    if (colors_.any) draw_bar(canvas);
+    if (colors_.named) {
+      draw_key(canvas);
+    } else if (colors_.any) {
+      draw_bar(canvas);
+    }
   }
 
   void draw_blank(Canvas& canvas) const {
@@ -213,14 +175,17 @@ class MapDrawing {
     }
   }
 
+  void draw_outlines(Canvas& canvas) const {
+    for (const Outline& outline : picture_.outlines) {
+      std::vector<Point> line;
+      for (const auto& corner : outline) line.push_back(frame_.at(corner[0], corner[1]));
+      canvas.polyline(line, {kInk, 1.3, {4, 2.5}});
+    }
+  }
+
   void draw_mill(Canvas& canvas) const {
     if (picture_.mill.radius <= 0) return;
-    for (const auto& lifter : picture_.mill.lifters) {
-      std::vector<Point> outline;
-      for (const auto& corner : lifter) outline.push_back(frame_.at(corner[0], corner[1]));
-      canvas.fill(outline, {0.55, 0.55, 0.55, 1});
-      canvas.polyline(outline, {kInk, 0.5}, true);
-    }
+    for (const auto& l : picture_.mill.section) canvas.line(frame_.at(l[0], l[1]), frame_.at(l[2], l[3]), {kInk, 0.7});
     canvas.circle(shell_centre(), paper(picture_.mill.radius), {kInk, 1.1});
     if (picture_.mill.omega != 0) draw_turning(canvas);
   }
@@ -253,6 +218,16 @@ class MapDrawing {
     }
   }
 
+  void draw_key(Canvas& canvas) const {
+    const double left = frame_.plot().right() + kBarGap;
+    for (std::size_t n = 1; n < picture_.names.size(); ++n) {
+      const Box swatch{left, frame_.plot().top + 16 * static_cast<double>(n - 1), kBarWidth, 10};
+      canvas.fill_rectangle(swatch, colors_(static_cast<double>(n)));
+      canvas.rectangle(swatch, {kInk, 0.6});
+      canvas.text({swatch.right() + 6, swatch.bottom() - 2}, picture_.names[n], kTextFont);
+    }
+  }
+
   void draw_bar(Canvas& canvas) const {
     const double height = std::max(frame_.plot().height, 100.0) - 2 * kTip;
     const Box bar{frame_.plot().right() + kBarGap, frame_.plot().top + kTip, kBarWidth, height};
@@ -281,7 +256,7 @@ class MapDrawing {
   }
 
   const MapPicture& picture_;
-  Colors colors_;
+  MapColors colors_;
   Frame::Room room_;
   Axis bar_;
   Frame frame_;

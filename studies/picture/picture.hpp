@@ -27,11 +27,14 @@ struct MapValues {
 
 /// What is drawn of the mill in a map across its axis; a radius of 0: nothing.
 struct MillOutline {
-  double radius = 0;                                             ///< of the bare shell, m
-  std::array<double, 2> centre{0, 0};                            ///< m
-  double omega = 0;                                              ///< rad/s about z; not 0: an arrow shows the sense
-  std::vector<std::vector<std::array<double, 2>>> lifters = {};  ///< outlines, m
+  double radius = 0;                                ///< of the bare shell, m
+  std::array<double, 2> centre{0, 0};               ///< m
+  double omega = 0;                                 ///< rad/s about z; not 0: an arrow shows the sense
+  std::vector<std::array<double, 4>> section = {};  ///< lines x0 y0 x1 y1 of lifters, m
 };
+
+/// A line on a map, m; closed where it ends at its beginning.
+using Outline = std::vector<std::array<double, 2>>;
 
 /// A point that is worth a name, e.g. the toe.
 struct Mark {
@@ -50,6 +53,10 @@ struct MapPicture {
   ColorScale scale = ColorScale::automatic;  ///< automatic: diverging about zero where values of both signs matter
   std::vector<std::uint8_t> framed = {};     ///< [ny, nx] or empty: cells to be framed, e.g. those that differ
   std::vector<Mark> marks = {};
+  std::vector<Outline> outlines = {};  ///< dashed, e.g. regions that differ
+  std::string blank = "no data";       ///< why cells are hatched
+  /// Not empty: the values are whole numbers, 0 is blank and n is called names[n]; a key stands in place of the colour bar.
+  std::vector<std::string> names = {};
   std::string note = {};  ///< a line below, in front of what the drawing itself has to say
 };
 
@@ -73,10 +80,11 @@ struct CurvePicture {
   std::vector<Curve> curves;  ///< at least one
   std::string band = "90 % interval";
   bool zero_line = false;  ///< for differences
+  bool points = false;     ///< places 1, 2, … without an order between: dots with whiskers, no line
   std::string note = {};
 };
 
-/// Logarithmic x where the edges grow by a constant factor; logarithmic values where all are positive and span three decades.
+/// Logarithmic x where the edges grow by a constant factor; then also logarithmic values where all are positive and span three decades.
 void draw_curves(const CurvePicture& picture, const std::filesystem::path& stem);
 
 }  // namespace millscope::studies

@@ -14,11 +14,6 @@
 namespace millscope::studies {
 namespace {
 
-std::string words_of(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
 /// "theta_edges_deg" → "theta": what an axis counts, without how.
 std::string axis_label(const std::string& name) {
   constexpr std::array<const char*, 9> how{"edges", "edge", "centres", "centre", "centers", "deg", "mm", "ms", "s"};
@@ -55,14 +50,14 @@ std::string full_name(const ResultArray& array) { return array.analyzer + "." + 
 
 /// What a reader must know of the uncertainty, after the sentence that says what is drawn.
 std::string note_of(const ResultArray& array) {
-  std::string note = array.doc;
-  const auto few =
-      std::count_if(array.flags.begin(), array.flags.end(), [](std::uint8_t f) { return (f & (kFewBlocks | kNoUncertainty)) != 0; });
-  if (few > 0) {
-    note += fmt::format(" {} of {} values rest on fewer than 10 independent blocks.",
-                        few == static_cast<std::ptrdiff_t>(array.size()) ? "All" : fmt::format("{}", few), array.size());
+  std::size_t few = 0, all = 0;
+  for (std::size_t i = 0; i < array.flags.size(); ++i) {
+    if (!std::isfinite(array.value[i]) || array.value[i] == 0) continue;
+    ++all;
+    few += (array.flags[i] & (kFewBlocks | kNoUncertainty)) != 0 ? 1 : 0;
   }
-  return note;
+  if (few == 0) return array.doc;
+  return fmt::format("{} {} of {} values rest on fewer than 10 independent blocks.", array.doc, few, all);
 }
 
 bool has_value(const ResultArray& array) {
@@ -78,7 +73,8 @@ void draw_result_map(const ResultSet& results, const ResultArray& array, const M
             .y = y,
             .value = {words_of(array.name), array.unit, array.value},
             .mill = across ? mill : MillOutline{},
-            .note = note_of(array)},
+            .names = category_names(array),
+            .note = category_names(array).empty() ? note_of(array) : ""},
            stem);
 }
 
@@ -92,6 +88,7 @@ void draw_result_curve(const ResultSet& results, const ResultArray& array, const
                .value_unit = array.unit,
                .curves = {curve_of(results, array, results.meta.name.empty() ? "result" : results.meta.name)},
                .band = fmt::format("{:.0f} % interval", 100 * results.meta.confidence),
+               .points = axis == nullptr,
                .note = note_of(array)},
               stem);
 }
@@ -105,6 +102,26 @@ std::string obstacle(const ResultArray& array) {
 }
 
 }  // namespace
+
+std::string words_of(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+std::vector<std::string> category_names(const ResultArray& array) {
+  if (array.shape.size() != 2 || array.unit != "1") return {};
+  std::vector<std::string> names;
+  for (std::size_t at = 0; at < array.doc.size();) {
+    const std::string number = std::to_string(names.size()) + " ";
+    if (array.doc.compare(at, number.size(), number) != 0) return {};
+    const std::size_t end = std::min(array.doc.find(", ", at), array.doc.size());
+    names.push_back(array.doc.substr(at + number.size(), end - at - number.size()));
+    at = end + 2;
+  }
+  if (names.size() < 2) return {};
+  if (names.back().ends_with('.')) names.back().pop_back();
+  return names;
+}
 
 std::string title_of(const std::string& name) {
   std::string title = words_of(name);

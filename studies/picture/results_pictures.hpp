@@ -26,6 +26,12 @@ MillOutline shell_of(const ResultSet& results);
 /// "velocity_x" → "Velocity x".
 std::string title_of(const std::string& name);
 
+/// "velocity_x" → "velocity x".
+std::string words_of(std::string name);
+
+/// The names of a map of names, index by value: a result of rank 2 whose description is "0 nothing, 1 en masse, 2 …". Else empty.
+std::vector<std::string> category_names(const ResultArray& array);
+
 /// "run1 · 96.1 s of a recording".
 std::string source_line(const ResultMeta& meta);
 

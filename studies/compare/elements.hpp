@@ -1,0 +1,29 @@
+// From a pair of results to elements that can be judged, with their resamples.
+#pragma once
+
+#include "studies/compare/compare.hpp"
+#include "studies/compare/pair.hpp"
+
+namespace millscope::studies {
+
+/// A pair made ready; `tested` and `compared.elements` go together.
+struct PreparedObservable {
+  ComparedObservable compared;
+  TestedObservable tested;
+  std::size_t exact_differences = 0;  ///< values without uncertainty that differ
+};
+
+/// Takes the values that both have and that rest on enough blocks.
+PreparedObservable prepare_observable(const ResultSet& a, const ResultSet& b, const ResultPair& pair);
+
+/// Of a map across the mill: means over its regions, of the cells that are judged; without elements where there are none. Where a map
+/// shows motion, cells count by the precision of their difference, so nearly by the time spent in them; otherwise all alike.
+PreparedObservable prepare_regions(const ResultSet& a, const ResultSet& b, const ResultPair& pair);
+
+/// "x −85 mm, y −62 mm (…)", "energy 1–2 mJ", "": where element `index` lies.
+std::string where_text(const ResultSet& results, const ResultArray& array, std::size_t index, const MillPlace& mill);
+
+/// What the results say of the mill.
+MillPlace mill_place(const ResultSet& results);
+
+}  // namespace millscope::studies

@@ -1,0 +1,146 @@
+#include "studies/compare/pair.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/config/error.hpp"
+#include "studies/picture/scale.hpp"
+
+namespace millscope::studies {
+namespace {
+
+using config::UserError;
+
+constexpr double kSameGrid = 1e-6;  // of the axis's span
+
+std::string full_name(const ResultArray& array) { return array.analyzer + "." + array.name; }
+
+bool names(const std::vector<std::string>& list, const ResultArray& array) {
+  return std::any_of(list.begin(), list.end(), [&](const std::string& n) { return n == array.analyzer || n == full_name(array); });
+}
+
+bool is_chosen(const CompareOptions& options, const ResultArray& array) {
+  return !array.is_axis && (options.only.empty() || names(options.only, array)) && !names(options.without, array);
+}
+
+/// A name that selects nothing is a slip of the pen.
+void require_known(const std::vector<std::string>& list, const char* option, const ResultSet& a, const ResultSet& b) {
+  for (const std::string& name : list) {
+    const auto has = [&](const ResultSet& r) {
+      return std::any_of(r.arrays.begin(), r.arrays.end(),
+                         [&](const ResultArray& x) { return x.analyzer == name || full_name(x) == name; });
+    };
+    if (!has(a) && !has(b))
+      throw UserError(fmt::format("--{} {}: neither of the results has it; name an analyzer or ANALYZER.RESULT", option, name));
+  }
+}
+
+std::string shape_text(const ResultArray& array) {
+  return array.shape.empty() ? "one number" : fmt::format("{} values", fmt::join(array.shape, " × "));
+}
+
+std::string range_text(const ResultArray& axis) {
+  return fmt::format("{} from {} to {} {}", shape_text(axis), significant_text(axis.value.front(), 4),
+                     significant_text(axis.value.back(), 4), axis.unit);
+}
+
+void require_same_axis(const ResultArray& array, const ResultArray* a, const ResultArray* b) {
+  if (a == nullptr && b == nullptr) return;
+  const std::string remedy =
+      fmt::format("analyse both with the same settings of '{}', or leave it out with --without {}", array.analyzer, array.analyzer);
+  if (a == nullptr || b == nullptr)
+    throw UserError(fmt::format("{}: only one of the results has an axis for it; {}", full_name(array), remedy));
+  bool same = a->unit == b->unit && a->size() == b->size();
+  const double span = std::abs(a->value.back() - a->value.front());
+  for (std::size_t i = 0; same && i < a->size(); ++i) same = std::abs(a->value[i] - b->value[i]) <= kSameGrid * span;
+  if (!same)
+    throw UserError(fmt::format("{}: the grids differ: {} is {} in A and {} in B; {}", full_name(array), a->name, range_text(*a),
+                                range_text(*b), remedy));
+}
+
+void require_comparable(const ResultSet& a, const ResultSet& b, const ResultPair& pair) {
+  const ResultArray &of_a = a.arrays[pair.a], &of_b = b.arrays[pair.b];
+  if (of_a.unit != of_b.unit) {
+    throw UserError(fmt::format("{}: the units differ: {} in A, {} in B; analyse both with one version and the same settings",
+                                full_name(of_a), of_a.unit, of_b.unit));
+  }
+  if (of_a.shape.size() == of_b.shape.size()) {
+    for (std::size_t d = 0; d < of_a.shape.size(); ++d) require_same_axis(of_a, a.axis(of_a, d), b.axis(of_b, d));
+  }
+  if (of_a.shape != of_b.shape) {
+    throw UserError(fmt::format("{}: {} in A, {} in B; analyse both with the same settings of '{}'", full_name(of_a), shape_text(of_a),
+                                shape_text(of_b), of_a.analyzer));
+  }
+}
+
+const char* kind_text(const std::string& source) {
+  return source == "recording" ? "a recording" : source == "tracks" ? "followed beads of a simulation" : "all beads of a simulation";
+}
+
+void note_number(std::vector<std::string>& notes, const char* what, double a, double b, const char* unit) {
+  if (a == 0 || b == 0 || std::abs(a - b) <= 1e-3 * std::max(std::abs(a), std::abs(b))) return;
+  notes.push_back(fmt::format("{} is {} {} in A and {} {} in B", what, significant_text(a, 4), unit, significant_text(b, 4), unit));
+}
+
+nlohmann::ordered_json options_of(const ResultSet& results, const std::string& analyzer) {
+  const auto& p = results.meta.provenance;
+  if (!p.is_object() || !p.contains("analyzers") || !p["analyzers"].contains(analyzer)) return {};
+  return p["analyzers"][analyzer];
+}
+
+}  // namespace
+
+std::vector<ResultPair> pair_results(const ResultSet& a, const ResultSet& b, const CompareOptions& options,
+                                     std::vector<std::string>& alone) {
+  require_known(options.only, "only", a, b);
+  require_known(options.without, "without", a, b);
+  std::vector<ResultPair> pairs;
+  const auto find = [](const ResultSet& results, const ResultArray& like) {
+    const auto same = [&](const ResultArray& x) { return x.analyzer == like.analyzer && x.name == like.name; };
+    return static_cast<std::size_t>(std::find_if(results.arrays.begin(), results.arrays.end(), same) - results.arrays.begin());
+  };
+  for (std::size_t i = 0; i < a.arrays.size(); ++i) {
+    if (!is_chosen(options, a.arrays[i])) continue;
+    const std::size_t j = find(b, a.arrays[i]);
+    if (j == b.arrays.size()) {
+      alone.push_back(full_name(a.arrays[i]) + ": only in A");
+      continue;
+    }
+    pairs.push_back({i, j});
+    require_comparable(a, b, pairs.back());
+  }
+  for (const ResultArray& array : b.arrays) {
+    if (is_chosen(options, array) && find(a, array) == a.arrays.size()) alone.push_back(full_name(array) + ": only in B");
+  }
+  if (pairs.empty()) throw UserError("the two results have nothing in common that was asked for; analyse both with the same analyzers");
+  return pairs;
+}
+
+std::vector<std::string> condition_notes(const ResultSet& a, const ResultSet& b) {
+  std::vector<std::string> notes;
+  const AnalyzerContext &of_a = a.meta.context, &of_b = b.meta.context;
+  constexpr double kRpm = 9.549296585513721;
+  note_number(notes, "the turning speed", std::abs(of_a.omega) * kRpm, std::abs(of_b.omega) * kRpm, "rpm");
+  note_number(notes, "the mill's radius", 1e3 * of_a.mill_radius, 1e3 * of_b.mill_radius, "mm");
+  note_number(notes, "the mass of the charge", of_a.charge_mass, of_b.charge_mass, "kg");
+  note_number(notes, "the mean bead radius", 1e3 * of_a.bead_radius, 1e3 * of_b.bead_radius, "mm");
+  if (a.meta.source != b.meta.source) {
+    notes.push_back(
+        fmt::format("A is {}, B is {}: a camera blurs and loses beads; put the simulation through it ('millscope pept synthesize') for a "
+                    "fair comparison",
+                    kind_text(a.meta.source), kind_text(b.meta.source)));
+  }
+  std::vector<std::string> seen;
+  for (const ResultArray& array : a.arrays) {
+    if (std::find(seen.begin(), seen.end(), array.analyzer) != seen.end()) continue;
+    seen.push_back(array.analyzer);
+    const auto options_a = options_of(a, array.analyzer), options_b = options_of(b, array.analyzer);
+    if (!options_a.is_null() && !options_b.is_null() && options_a != options_b)
+      notes.push_back(fmt::format("the settings of '{}' differ", array.analyzer));
+  }
+  return notes;
+}
+
+}  // namespace millscope::studies

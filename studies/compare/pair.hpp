@@ -1,0 +1,23 @@
+// Which result of A goes with which of B, and what stands in the way.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/compare/compare.hpp"
+
+namespace millscope::studies {
+
+struct ResultPair {
+  std::size_t a, b;  ///< indices of arrays
+};
+
+/// Pairs results of the same analyzer and name. `alone` receives those that only one has. Throws config::UserError for other units, shapes
+/// or axes, with the remedy.
+std::vector<ResultPair> pair_results(const ResultSet& a, const ResultSet& b, const CompareOptions& options,
+                                     std::vector<std::string>& alone);
+
+/// Sentences on conditions that differ: speed, mill, kind of source, options of analyzers.
+std::vector<std::string> condition_notes(const ResultSet& a, const ResultSet& b);
+
+}  // namespace millscope::studies
