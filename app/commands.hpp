@@ -23,6 +23,8 @@ int resume(const Arguments& arguments);
 int check(const Arguments& arguments);
 int analyze(const Arguments& arguments);
 int pept(const Arguments& arguments);
+int pept_camera(const Arguments& arguments);
+int pept_synthesize(const Arguments& arguments);
 int describe(const Arguments& arguments);
 int plugins(const Arguments& arguments);
 int schema(const Arguments& arguments);

@@ -35,6 +35,8 @@ struct Action {
 
 constexpr Action kActions[] = {
     {"inspect", "how good a recording is and what it can support", inspect},
+    {"camera", "estimate the camera of a recording", pept_camera},
+    {"synthesize", "what a camera would have recorded of simulated beads", pept_synthesize},
 };
 
 void print_actions() {
