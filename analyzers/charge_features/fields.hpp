@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "analyzers/common/angle.hpp"
 #include "analyzers/common/centre.hpp"
 #include "analyzers/common/grid.hpp"
 #include "analyzers/common/mill.hpp"
@@ -38,7 +39,7 @@ struct FieldShape {
   double end_bands;  ///< m at each end face; 0: unknown or none
 
   /// rad from 6 o'clock, positive in the turning sense.
-  double angle(double x, double y) const { return std::atan2(sense * x, -y); }
+  double angle(double x, double y) const { return angle_of(sense * x, -y); }
 };
 
 /// Sums, read by name.

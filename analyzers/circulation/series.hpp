@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "analyzers/common/angle.hpp"
 #include "analyzers/common/grid.hpp"
 #include "analyzers/common/mill.hpp"
 #include "analyzers/common/tracks.hpp"
@@ -114,7 +115,7 @@ inline Circulations follow(const FrameBlock& block, const Track& track, double s
   double angle = 0, before = 0, highest = 0, last = -1;
   for (std::size_t i = 0; i < track.size(); ++i) {
     const std::int64_t s = track.points[i].sample;
-    const double now = std::atan2(block.position[1][s] - centre_y, sense * (block.position[0][s] - centre_x)) - line;
+    const double now = angle_of(block.position[1][s] - centre_y, sense * (block.position[0][s] - centre_x)) - line;
     if (i == 0) {
       angle = now - 2 * kPi * std::floor(now / (2 * kPi));  // 0 … 2π: the first passage is at 2π
       found.angle = -angle;

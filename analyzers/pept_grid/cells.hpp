@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "analyzers/common/angle.hpp"
 #include "analyzers/common/grid.hpp"
 #include "analyzers/common/mill.hpp"
 
@@ -53,7 +54,7 @@ class Cells {
   /// Number of the cell; −1 outside.
   template <bool polar, bool axial>
   std::int64_t at(double x, double y, double z) const {
-    const std::int64_t a = polar ? fast_.at(std::atan2(sense_ * x, -y)) : fast_.at(x);
+    const std::int64_t a = polar ? fast_.at(angle_of(sense_ * x, -y)) : fast_.at(x);
     const std::int64_t b = polar ? middle_.at(std::sqrt(x * x + y * y)) : middle_.at(y);
     const std::int64_t c = axial ? slow_.at(z) : 0;
     return (a | b | c) < 0 ? -1 : (c * middle_.count + b) * fast_.count + a;

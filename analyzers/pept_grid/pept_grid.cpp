@@ -8,6 +8,7 @@
 //   porosity    ε_i  = 1 − l_i f V_beads / V_i                      f: fraction of the time in the range along z
 //
 // A visit is an entry into a cell, seen in two samples of the same bead that follow each other without a gap.
+#include <algorithm>
 #include <vector>
 
 #include "analyzers/pept_grid/cells.hpp"
@@ -110,7 +111,7 @@ class PeptGrid {
   void add_motion(double* m, double weight, double x, double y, const FrameBlock& block, std::int64_t s) const {
     const double u = block.velocity[0][s], v = block.velocity[1][s], w = block.velocity[2][s];
     const double square = u * u + v * v + w * w;
-    const double radius_square = std::fmax(x * x + y * y, 1e-14);  // on the axis itself ω has no value
+    const double radius_square = std::max(x * x + y * y, 1e-14);  // on the axis itself ω has no value
     const double swirl = cells_.sense() < 0 ? y * u - x * v : x * v - y * u, turning = swirl / radius_square;
     const double per_radius = polar ? 1 / std::sqrt(radius_square) : 0;
     m[kTime] += weight;
@@ -189,7 +190,7 @@ class PeptGrid {
 
   /// Left out where the charge or the length is unknown.
   void add_porosity(Results& results, const double* moments, double in_range, double all) const {
-    const std::vector<double> volume = cells_.volumes();
+    const std::vector<double>& volume = volumes_;
     if (volume.empty() || !(bead_volume_ > 0)) return;
     const double solids = bead_volume_ * ratio(in_range, all);  // m³ within the range along z
     std::vector<double> field(volume.size());
@@ -206,6 +207,7 @@ class PeptGrid {
 
   AxialRange range_;
   Cells cells_;
+  std::vector<double> volumes_ = cells_.volumes();  ///< m³; the same for every resample
   std::int64_t largest_id_;
   double bead_volume_ = 0;
 };

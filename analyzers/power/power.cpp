@@ -9,6 +9,7 @@
 //   dissipation          P = Δ(energy lost)/Δt
 //
 // Bbosa's sum is an estimator with a bias; the last three agree in the steady state.
+#include <algorithm>
 #include <vector>
 
 #include "analyzers/common/grid.hpp"
@@ -85,7 +86,7 @@ class Power {
     whole[kAllOmega] += mass * omega;
     const std::int64_t column = x_.at(x), row = y_.at(y);
     if ((column | row) < 0) return;
-    const double turning = (x * block.velocity[1][s] - y * block.velocity[0][s]) / std::fmax(x * x + y * y, 1e-14);
+    const double turning = (x * block.velocity[1][s] - y * block.velocity[0][s]) / std::max(x * x + y * y, 1e-14);
     double* m = moments + (row * x_.count + column) * kMoments;
     m[kMass] += mass;
     m[kTurning] += mass * std::fabs(turning);

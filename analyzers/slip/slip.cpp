@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "analyzers/common/angle.hpp"
 #include "analyzers/common/grid.hpp"
 #include "analyzers/common/mill.hpp"
 
@@ -65,7 +66,7 @@ class Slip {
         if (ring < 0 || !range_.contains(block.position[2][s]) || !in_sector(x, y)) continue;
         const std::int64_t phase = pitch_ > 0 ? phases_.at(lifter_phase(x, y, shell_angle)) : 0;
         const double weight = block.weight[s];
-        const double turning = sense_ * (x * block.velocity[1][s] - y * block.velocity[0][s]) / std::fmax(radius_square, 1e-14);
+        const double turning = sense_ * (x * block.velocity[1][s] - y * block.velocity[0][s]) / std::max(radius_square, 1e-14);
         double* m = sums[0] + (ring * phases_.count + phase) * kMoments;
         m[kTime] += weight;
         m[kTurning] += weight * turning;
@@ -109,11 +110,11 @@ class Slip {
 
  private:
   bool in_sector(double x, double y) const {
-    const double angle = std::atan2(sense_ * x, -y);
+    const double angle = angle_of(sense_ * x, -y);
     return angle >= from_ && angle <= to_;
   }
   double lifter_phase(double x, double y, double shell_angle) const {
-    const double pitches = sense_ * (std::atan2(y, x) - shell_angle) / pitch_;
+    const double pitches = sense_ * (angle_of(y, x) - shell_angle) / pitch_;
     return pitches - std::floor(pitches);
   }
 

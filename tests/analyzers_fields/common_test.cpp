@@ -1,7 +1,9 @@
 // What holds for every analyzer of fields: additivity, one meaning for simulations and recordings, weights by time, both turning senses,
 // named axes.
 #include <catch2/catch.hpp>
+#include <cmath>
 
+#include "analyzers/common/angle.hpp"
 #include "analyzers_fields/analyzer.hpp"
 
 using namespace analyzers_test;
@@ -151,4 +153,22 @@ TEST_CASE("what a mill is not known to be is refused with the remedy") {
   AnalyzerContext beadless = study();
   beadless.bead_radius = 0;
   CHECK_THROWS_WITH(Analyzer("models", beadless), Catch::Contains("bead_diameter"));
+}
+
+TEST_CASE("the quick angle is that of the library, on the axes and between, and never beyond half a turn") {
+  using millscope::analyzers::angle_of;
+  double largest = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const double a = 1e-4 * i, y = std::sin(a), x = std::cos(1.7 * a);
+    largest = std::max(largest, std::fabs(angle_of(y, x) - std::atan2(y, x)));
+  }
+  for (const double x : {-2.0, 0.0, 2.0}) {
+    for (const double y : {-2.0, -0.0, 0.0, 2.0}) largest = std::max(largest, std::fabs(angle_of(y, x) - std::atan2(y, x)));
+  }
+  CHECK(largest < 4e-9);
+  for (int i = -1000; i <= 1000; ++i) {
+    const double angle = angle_of(1e-12 * i, -1.0);
+    CHECK(std::fabs(angle) <= 3.14159265358979323846);
+  }
+  CHECK(std::isnan(angle_of(std::nan(""), 1)));
 }
