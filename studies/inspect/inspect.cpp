@@ -7,6 +7,7 @@ namespace millscope::studies {
 Inspection inspect(const Recording& recording) {
   Inspection result;
   result.file = recording.file.string();
+  result.stated_velocity = recording.condition.angular_velocity;
   result.coverage = measure_coverage(recording);
   result.noise = measure_noise(recording);
   result.axial = measure_axial(recording);

@@ -38,6 +38,7 @@ struct Inspection {
   std::array<Finding, 3> noise;  ///< standard deviation of a component, from point to point, m
   std::optional<Rotor> rotor;    ///< when the tracer sits on a rotor, nothing of what follows but the verdicts is filled
   MillMotion motion;
+  std::optional<double> stated_velocity;  ///< Ω that recording.yaml states, rad/s; not used, only held against the one found
   FreeFlight flight;
   Circulations circulations;
   Finding mean_offset;  ///< ⟨x⟩ of the tracer beside the axis, m

@@ -68,12 +68,22 @@ std::string rotor_text(const Rotor& r) {
   return out;
 }
 
-std::string motion_text(const MillMotion& m) {
+std::string stated_text(double stated, const MillMotion& m) {
+  std::string out = fmt::format("{:.2f} rpm", std::fabs(stated) * kRpm);
+  if (stated * m.sense < 0) return out + ", the other way round: check the axes of recording.yaml, or its direction";
+  if (!m.speed.estimate) return out;
+  const bool inside = m.speed.estimate->low <= std::fabs(stated) && std::fabs(stated) <= m.speed.estimate->high;
+  return out + (inside ? ", within the interval" : ", outside the interval");
+}
+
+std::string motion_text(const Inspection& i) {
+  const MillMotion& m = i.motion;
   std::string out = "\nMill, from the tracer alone\n";
-  out += line("turning sense", m.sense == 0  ? "cannot be said"
-                               : m.sense > 0 ? "counter-clockwise, z towards the viewer (Omega > 0)"
-                                             : "clockwise, z towards the viewer (Omega < 0)");
+  if (m.sense == 0) return out + line("sense, speed, axis", m.speed, kRevolutions);
+  out += line("turning sense",
+              m.sense > 0 ? "counter-clockwise, z towards the viewer (Omega > 0)" : "clockwise, z towards the viewer (Omega < 0)");
   out += line("speed", m.speed, kRevolutions);
+  if (i.stated_velocity) out += line("speed that is stated", stated_text(*i.stated_velocity, m));
   out += line("axis x", m.axis[0], kMillimetre);
   out += line("axis y", m.axis[1], kMillimetre);
   out += line("radius of the path", m.path_radius, kMillimetre);
@@ -84,6 +94,7 @@ std::string motion_text(const MillMotion& m) {
 
 std::string flight_text(const FreeFlight& f) {
   std::string out = "\nFree flight\n";
+  if (!f.magnitude.estimate) return out + line("gravity", f.magnitude, kDegree);
   out += line("gravity, from -y to +x", f.angle_degrees, kDegree);
   out += line("gravity, towards +z", f.axial_degrees, kDegree);
   out += line("gravity", f.magnitude, {1, "m/s2", 2});
@@ -101,7 +112,7 @@ std::string circulation_text(const Inspection& i) {
   return out;
 }
 
-std::string losses_text(const Losses& l) {
+std::string losses_text(const Losses& l, bool tumbling) {
   std::string out = "\nLosses\n";
   out += line("locations lost", l.lost, kPercent);
   for (const SpeedRange& r : l.ranges) {
@@ -112,6 +123,7 @@ std::string losses_text(const Losses& l) {
     out += line("  " + name, fmt::format("{:>5.0f} per s  lost {:<20} {:.1f} s", r.rate.value, lost, r.time));
   }
   out += line("pauses without a speed", fmt::format("{:.1f} s", l.unassigned));
+  if (!tumbling) return out;
   out += line("rises missed", l.missed_rising, kPercent);
   out += line("falls missed", l.missed_falling, kPercent);
   return out;
@@ -143,9 +155,9 @@ std::string inspection_text(const Inspection& i) {
   if (i.rotor) {
     out += rotor_text(*i.rotor);
   } else {
-    out += motion_text(i.motion) + flight_text(i.flight) + circulation_text(i);
+    out += motion_text(i) + flight_text(i.flight) + circulation_text(i);
   }
-  out += losses_text(i.losses);
+  out += losses_text(i.losses, !i.rotor);
   if (!i.rotor) out += axial_text(i.axial);
   return out + verdict_text(i.verdicts);
 }

@@ -100,6 +100,7 @@ Json inspection_json(const Inspection& i) {
   if (!i.rotor) {
     const Circulations& c = i.circulations;
     j["mill"] = json(i.motion);
+    j["mill"]["stated_angular_velocity_rad_per_s"] = i.stated_velocity ? Json(*i.stated_velocity) : Json(nullptr);
     j["free_flight"] = {{"arcs", i.flight.arcs},
                         {"flights", i.flight.flights},
                         {"gravity_angle_degrees", json(i.flight.angle_degrees)},

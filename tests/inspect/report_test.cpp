@@ -35,6 +35,19 @@ TEST_CASE("the text names sense, speed and verdicts") {
   }
 }
 
+TEST_CASE("a speed that is stated is held against the one found") {
+  Recording recording = make_recording(test::SyntheticMill{});
+  const auto line = [&](double stated) {
+    recording.condition.angular_velocity = stated;
+    const std::string text = inspection_text(inspect(recording));
+    const std::size_t at = text.find("speed that is stated");
+    return at == std::string::npos ? std::string() : text.substr(at, text.find('\n', at) - at);
+  };
+  CHECK(line(-6).find("within the interval") != std::string::npos);
+  CHECK(line(-6.6).find("outside the interval") != std::string::npos);
+  CHECK(line(6).find("the other way round") != std::string::npos);
+}
+
 TEST_CASE("a rotor's text has its plateaus in rpm") {
   const std::string text = inspection_text(inspect(make_recording(test::SyntheticRotor{})));
   CHECK(text.find("30.0") != std::string::npos);
