@@ -86,7 +86,6 @@ void System::save(const DoubleSink& put_doubles, const IntegerSink& put_integers
   const std::size_t n = p.position.size(), slots = static_cast<std::size_t>(layout_.history_count());
   const std::vector<std::int64_t> counters{step_,
                                            rebuilds_,
-                                           last_rebuild_step_,
                                            rebuild_needed_ ? 1 : 0,
                                            settings_.partitions,
                                            static_cast<std::int64_t>(slots),
@@ -186,8 +185,8 @@ void System::save(const DoubleSink& put_doubles, const IntegerSink& put_integers
 void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_integers) {
   const std::vector<std::int64_t> counters = get_integers("counters");
   const std::size_t slots = static_cast<std::size_t>(layout_.history_count());
-  if (counters.size() != 7 || counters[4] != settings_.partitions || counters[5] != static_cast<std::int64_t>(slots) ||
-      counters[6] != static_cast<std::int64_t>(physics_.size())) {
+  if (counters.size() != 6 || counters[3] != settings_.partitions || counters[4] != static_cast<std::int64_t>(slots) ||
+      counters[5] != static_cast<std::int64_t>(physics_.size())) {
     throw config::UserError(
         "the checkpoint was written with other plugins, materials or run.partitions than the case has now; put them back");
   }
@@ -206,8 +205,7 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
   for (ForceLine& f : p.force) f = ForceLine{};
   prepare();
   rebuilds_ = counters[1];
-  last_rebuild_step_ = counters[2];
-  rebuild_needed_ = counters[3] != 0;
+  rebuild_needed_ = counters[2] != 0;
   const std::vector<double> walls_moved = get_doubles("walls_moved");
   wall_margin_ = walls_moved[0];
   wall_moved_ = walls_moved[1];

@@ -167,7 +167,7 @@ System::Scratch::Scratch(int history_count) {
   }
   for (double** p : {&batch.overlap, &batch.radius_i, &batch.radius_j, &batch.radius, &batch.mass, &batch.arm_i, &batch.arm_j,
                      &batch.normal_force, &batch.normal_stiffness, &batch.added_force, &batch.added_cap, &batch.restitution,
-                     &batch.friction, &batch.elastic, &query_radius, &wall.overlap}) {
+                     &batch.friction, &query_radius, &wall.overlap}) {
     *p = take();
   }
   for (double*& p : batch.power) p = take();

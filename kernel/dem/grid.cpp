@@ -41,8 +41,7 @@ void System::sort_beads() {
       PositionLine& x = p.position[k];
       double* c = &x.x;
       for (int a = 0; a < 3; ++a) {
-        const double length = settings_.periodic.length[a];
-        if (length > 0) c[a] -= length * std::floor((c[a] - settings_.periodic_low[a]) / length);
+        c[a] = wrapped(settings_, a, c[a]);
         if (!(c[a] >= settings_.low[a] && c[a] <= settings_.high[a])) e.lost = i;
         e.low[a] = std::min(e.low[a], c[a]);
         e.high[a] = std::max(e.high[a], c[a]);
@@ -278,7 +277,6 @@ void System::rebuild() {
     std::fill(p.force.begin() + slab_begin(slab), p.force.begin() + slab_begin(slab + 1), ForceLine{});
   });
   ++rebuilds_;
-  last_rebuild_step_ = step_;
   rebuild_needed_ = false;
 }
 

@@ -99,7 +99,6 @@ struct BatchArrays {
   double* added_cap;
   double* restitution;
   double* friction;
-  double* elastic;
   double* power[6];
   double* history[kMaxHistories];
 };

@@ -10,6 +10,11 @@
 
 namespace millscope::dem {
 
+double wrapped(const Settings& settings, int axis, double coordinate) {
+  const double length = settings.periodic.length[axis];
+  return length > 0 ? coordinate - length * std::floor((coordinate - settings.periodic_low[axis]) / length) : coordinate;
+}
+
 PairListView PairList::view() {
   PairListView v{};
   v.count = static_cast<std::int64_t>(owner.size());
@@ -178,24 +183,14 @@ void System::velocity_at_step(std::int64_t bead, double velocity[3], double spin
   }
 }
 
-double System::kinetic_energy() const {
-  double sum = 0;
+System::KineticEnergy System::kinetic_energy() const {
+  KineticEnergy sum;
   for (std::int64_t i = 0; i < particles.count(); ++i) {
     double v[3], w[3];
     velocity_at_step(i, v, w);
     const MotionLine& m = particles.motion[static_cast<std::size_t>(i)];
-    sum += 0.5 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / m.inverse_mass +
-           0.5 * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) / m.inverse_inertia;
-  }
-  return sum;
-}
-
-double System::rotational_energy() const {
-  double sum = 0;
-  for (std::int64_t i = 0; i < particles.count(); ++i) {
-    double v[3], w[3];
-    velocity_at_step(i, v, w);
-    sum += 0.5 * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) / particles.motion[static_cast<std::size_t>(i)].inverse_inertia;
+    sum.translational += 0.5 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / m.inverse_mass;
+    sum.rotational += 0.5 * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) / m.inverse_inertia;
   }
   return sum;
 }
@@ -270,10 +265,7 @@ std::uint64_t System::state_hash() const {
     const PositionLine& x = particles.position[i];
     // Periodic coordinates are wrapped at rebuilds only: hash them wrapped.
     const double* c = &x.x;
-    for (int a = 0; a < 3; ++a) {
-      const double length = settings_.periodic.length[a];
-      hash.add(length > 0 ? c[a] - length * std::floor((c[a] - settings_.periodic_low[a]) / length) : c[a]);
-    }
+    for (int a = 0; a < 3; ++a) hash.add(wrapped(settings_, a, c[a]));
     for (int a = 0; a < 3; ++a) hash.add(particles.half[i].v[a]);
     for (int a = 0; a < 3; ++a) hash.add(particles.half[i].w[a]);
   }

@@ -77,6 +77,9 @@ struct Settings {
   std::string instruction_set;  ///< "" for the best
 };
 
+/// A coordinate along `axis` brought into the periodic box; as it is where the axis is not periodic.
+double wrapped(const Settings& settings, int axis, double coordinate);
+
 struct SlabState;  // scratch and results of one slab
 
 class System {
@@ -109,8 +112,11 @@ class System {
 
   /// Sum of all slabs since the start.
   Ledger ledger() const;
-  double kinetic_energy() const;  ///< J, at the step (translation + rotation), valid inside `observe`
-  double rotational_energy() const;
+  struct KineticEnergy {
+    double translational = 0, rotational = 0;  ///< J
+    double total() const { return translational + rotational; }
+  };
+  KineticEnergy kinetic_energy() const;  ///< at the step, valid inside `observe`
   std::array<double, 3> centre_of_mass() const;
   double total_mass() const;
   std::array<double, 3> acceleration() const { return acceleration_; }
@@ -192,7 +198,7 @@ class System {
   std::vector<std::unique_ptr<Scratch>> scratch_;
   std::vector<Pose> poses_;
   std::array<double, 3> acceleration_{};
-  std::int64_t step_ = 0, rebuilds_ = 0, last_rebuild_step_ = 0;
+  std::int64_t step_ = 0, rebuilds_ = 0;
   bool rebuild_needed_ = false;
   double wall_margin_ = 0;   ///< the walls may move this far before a rebuild, m
   double wall_speed_ = 0;    ///< greatest speed of any wall, m/s

@@ -35,10 +35,7 @@ std::vector<std::uint32_t> tracked(const Assembly& a) {
 }
 
 void wrap(const dem::Settings& s, double* x) {
-  for (int a = 0; a < 3; ++a) {
-    const double length = s.periodic.length[a];
-    if (length > 0) x[a] -= length * std::floor((x[a] - s.periodic_low[a]) / length);
-  }
+  for (int a = 0; a < 3; ++a) x[a] = dem::wrapped(s, a, x[a]);
 }
 
 }  // namespace

@@ -49,7 +49,6 @@ class Recorder {
   std::optional<output::PictureSeries> bead_pictures_, mesh_pictures_;
   std::vector<Sample> samples_;
   std::optional<dem::Ledger> window_start_;
-  std::optional<Sample> last_series_;
   std::vector<std::uint32_t> track_ids_;
   std::vector<std::uint32_t> index_of_id_;
   std::int64_t indexed_rebuild_ = -1;

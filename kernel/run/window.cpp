@@ -30,9 +30,9 @@ Sample take_sample(const dem::System& system, const Assembly& a) {
   Sample s;
   s.time = system.time();
   const dem::Ledger ledger = system.ledger();
-  const double kinetic = system.kinetic_energy();
-  s.rotational = system.rotational_energy();
-  s.translational = kinetic - s.rotational;
+  const dem::System::KineticEnergy kinetic = system.kinetic_energy();
+  s.rotational = kinetic.rotational;
+  s.translational = kinetic.translational;
   s.centre = system.centre_of_mass();
   const double mass = system.total_mass();
   for (std::size_t k = 0; k < 3; ++k) s.potential -= mass * a.gravity[k] * s.centre[k];

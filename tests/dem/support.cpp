@@ -144,7 +144,7 @@ double inertia(const Assembly& a, std::uint32_t id) { return 1 / a.system->parti
 Energy observed(Assembly& a) {
   Energy e;
   a.system->observe = [&](const dem::System& s) {
-    e.kinetic = s.kinetic_energy();
+    e.kinetic = s.kinetic_energy().total();
     const Vector c = s.centre_of_mass();
     for (std::size_t k = 0; k < 3; ++k) e.potential -= s.total_mass() * a.gravity[k] * c[k];
     const dem::Ledger ledger = s.ledger();
