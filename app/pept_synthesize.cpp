@@ -87,9 +87,12 @@ int pept_camera(const Arguments& arguments) {
       "millscope pept camera run1.a -o camera.yaml");
   options.positional("RECORDING", "a recording (.a, .csv, .tsv, .txt, .gz of one) or a recording.yaml with several");
   options.add()("output,o", po::value<std::string>()->value_name("CAMERA.yaml"), "file to write (default: standard output)");
+  options.add()("json", "JSON with all standard errors instead of YAML");
   options.add()("force", "overwrite the file");
   if (!options.parse(arguments)) return kDone;
-  const std::string text = camera_of(options.text("RECORDING"));
+  const studies::CameraEstimate estimate = studies::estimate_camera(studies::read_recording(options.text("RECORDING")));
+  const std::string text =
+      options.has("json") ? studies::camera_json(estimate).dump(2) + "\n" : studies::camera_text(estimate, options.text("RECORDING"));
   if (options.has("output")) {
     write_text(options.text("output"), text, options.has("force"));
   } else {

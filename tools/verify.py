@@ -18,6 +18,10 @@ import sys
 import time
 from pathlib import Path
 
+sys.dont_write_bytecode = True
+from verify_camera import bbosa, camera, roundtrip
+from verify_rows import row, show
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "validation.md"
 SLICE, PARAMETRIC, FULL = "configs/crosscheck/slice.yaml", "configs/crosscheck/slice_parametric.yaml", "configs/chagas2015/full_75.yaml"
@@ -56,6 +60,16 @@ class Bench:
                 raise Failure("'millscope %s' failed: %s" % (" ".join(command[1:]), (err.read().strip().splitlines() or ["no message"])[-1]))
             return out.read(), usage.ru_maxrss * 1024
 
+    def study(self, *arguments):
+        """What a study program beside millscope found."""
+        command = [str(self.binary.parent / "millscope_camera_study")] + [str(a) for a in arguments]
+        self.commands.append(["millscope_camera_study"] + command[1:])
+        print("  " + " ".join(self.commands[-1]), flush=True)
+        done = subprocess.run(command, cwd=ROOT, text=True, capture_output=True)
+        if done.returncode != 0:
+            raise Failure(done.stderr.strip() or "%s failed" % command[0])
+        return json.loads(done.stdout)
+
     def export_liner(self):
         self.call("geometry", "export", PARAMETRIC, "-o", LINER)
 
@@ -91,16 +105,8 @@ class Bench:
         return total.hexdigest()[:16]
 
 
-def row(what, found, wanted="", good=None):
-    return {"what": what, "found": found, "wanted": wanted, "good": good}
-
-
 def power(summary, kind):
     return summary["power_W"][kind], summary["power_W"][kind + "_sem"]
-
-
-def show(value, error, unit):
-    return "%.4g ± %.2g %s" % (value, error, unit)
 
 
 def three_powers(s):
@@ -227,7 +233,7 @@ def ergodicity(bench):
     return rows
 
 
-ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, ergodicity)}
+ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, ergodicity, camera, roundtrip, bbosa)}
 QUICK = ("crosscheck", "hashes", "memory")
 
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -74,6 +75,9 @@ struct EstimateOptions {
 
 /// Throws config::UserError when the recording is too short or sparse (fewer than 200 locations or 20 unbroken stretches of 24).
 CameraEstimate estimate_camera(const Recording& recording, const EstimateOptions& options = {});
+
+/// The estimate with its standard errors; units are in the names of the keys, numbers that are not finite are null.
+nlohmann::ordered_json camera_json(const CameraEstimate& estimate);
 
 /// The camera as YAML to be edited by hand, every value with its standard error in a comment.
 std::string camera_text(const CameraEstimate& estimate, const std::string& source);

@@ -69,16 +69,17 @@ int main(int count, char** words) {
   const std::vector<std::string> arguments(words + 1, words + count);
   try {
     const host::Registry registry;
-    if (arguments.size() == 5 && arguments[0] == "fields") {
+    if ((arguments.size() == 5 || arguments.size() == 6) && arguments[0] == "fields") {
       const Camera camera = read_camera(arguments[2], registry);
-      fmt::print("{}\n", study_fields(arguments[1], camera, std::stoi(arguments[3]), std::stoul(arguments[4]), registry).dump(1));
+      const FieldStudy study{std::stoi(arguments[3]), std::stoul(arguments[4]), arguments.size() == 6 ? std::stod(arguments[5]) : 0.0};
+      fmt::print("{}\n", study_fields(arguments[1], camera, study, registry).dump(1));
       return 0;
     }
     if (arguments.size() == 3 && arguments[0] == "power") {
       fmt::print("{}\n", study_power(arguments[1], arguments[2], registry).dump(1));
       return 0;
     }
-    fmt::print(stderr, "usage: millscope_camera_study fields RUN CAMERA.yaml CELLS BEADS | power RUN CAMERA.yaml\n");
+    fmt::print(stderr, "usage: millscope_camera_study fields RUN CAMERA.yaml CELLS BEADS [GAP_LIMIT_S] | power RUN CAMERA.yaml\n");
     return 2;
   } catch (const std::exception& e) {
     fmt::print(stderr, "millscope_camera_study: {}\n", e.what());

@@ -1,7 +1,7 @@
 // What a camera and the processing behind it do to figures that are known exactly, because the bead is simulated.
 //
-//   millscope_camera_study fields RUN CAMERA.yaml CELLS BEADS     coverage of the stated intervals, bias of occupancy and speed
-//   millscope_camera_study power RUN CAMERA.yaml                  bias of Bbosa's power against noise and cell size
+//   millscope_camera_study fields RUN CAMERA.yaml CELLS BEADS [GAP_LIMIT_S]   coverage of the stated intervals, bias of occupancy and speed
+//   millscope_camera_study power RUN CAMERA.yaml                             bias of Bbosa's power against noise and cell size
 //
 // Each bead goes the whole way of a recording: `.a` file, reading and cleaning, trajectory, analyzer. JSON on standard output.
 #pragma once
@@ -39,7 +39,12 @@ ResultSet analyze_path(const std::filesystem::path& path, const std::vector<std:
 std::filesystem::path record(const SimulatedBeads& beads, const Camera& camera, const std::vector<std::int64_t>& ids,
                              const std::filesystem::path& folder, std::uint64_t seed);
 
-nlohmann::json study_fields(const std::filesystem::path& run, const Camera& camera, int cells, std::size_t most_beads,
+struct FieldStudy {
+  int cells = 30;  ///< along x and along y
+  std::size_t most_beads = 1000;
+  double gap_limit = 0;  ///< s; 0: what the recording says
+};
+nlohmann::json study_fields(const std::filesystem::path& run, const Camera& camera, const FieldStudy& study,
                             const host::Registry& registry);
 nlohmann::json study_power(const std::filesystem::path& run, const std::string& camera_file, const host::Registry& registry);
 
