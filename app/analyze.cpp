@@ -11,6 +11,8 @@
 #include "kernel/output/summary.hpp"
 #include "studies/analysis/analysis.hpp"
 #include "studies/analysis/tables.hpp"
+#include "studies/picture/outline.hpp"
+#include "studies/picture/results_pictures.hpp"
 
 namespace millscope::app {
 namespace {
@@ -83,6 +85,20 @@ void prepare(const fs::path& output, bool force) {
   fs::create_directories(output / "tables");
 }
 
+/// Draws every curve and map; what has no picture, and why the mill lacks its lifters, becomes a note of the report.
+std::vector<std::string> draw(const studies::ResultSet& results, const fs::path& output, const host::Registry& registry) {
+  std::string why;
+  const studies::MillOutline mill = studies::outline_of(results, registry, why);
+  std::vector<std::string> notes;
+  if (!why.empty()) notes.push_back("the pictures show the shell without lifters: " + why);
+  const studies::DrawnPictures drawn = studies::draw_results(results, output / "pictures", mill);
+  if (!drawn.left_out.empty()) {
+    notes.push_back(fmt::format("{} results have no picture, {}{}", drawn.left_out.size(), drawn.left_out.front(),
+                                drawn.left_out.size() > 1 ? ", …" : ""));
+  }
+  return notes;
+}
+
 void print_report(const studies::ResultSet& results, const fs::path& output, bool all) {
   const studies::ResultMeta& meta = results.meta;
   fmt::print("{}\n{} block{} of {:.3g} s, {} resamples; intervals hold with 90 %\n\n", meta.description, meta.blocks.size(),
@@ -91,7 +107,7 @@ void print_report(const studies::ResultSet& results, const fs::path& output, boo
   for (const std::string& note : meta.notes) fmt::print("note: {}\n", note);
   for (const std::string& reason : meta.left_out) fmt::print("left out: {}\n", reason);
   fmt::print("joint covariance of {} values, rank {}\n", results.covariance_entries.size(), results.covariance_rank);
-  fmt::print("results in {}: results.h5, results.json, tables/*.csv\n", output.string());
+  fmt::print("results in {}: results.h5, results.json, tables/, pictures/\n", output.string());
 }
 
 }  // namespace
@@ -112,6 +128,7 @@ int analyze(const Arguments& arguments) {
   options.add()("from", po::value<double>()->value_name("s"), "leave out what is earlier");
   options.add()("to", po::value<double>()->value_name("s"), "leave out what is later");
   options.add()("threads", po::value<int>()->value_name("N"), "threads (default: all cores); no influence on results");
+  options.add()("no-pictures", "draw nothing");
   options.add()("all", "print every number, not the first eight of each analyzer");
   options.add()("quiet,q", "print nothing but errors");
   options.with_overrides("replace a setting (may be repeated), e.g. --set analyzers.pept_grid.cells_x=40, --set resampling.draws=400");
@@ -138,8 +155,13 @@ int analyze(const Arguments& arguments) {
 
   Line line(quiet);
   request.progress = [&line](const char* doing, double fraction) { line.update(doing, fraction); };
-  const studies::ResultSet results = studies::analyze(request, options.registry());
+  const host::Registry registry = options.registry();
+  studies::ResultSet results = studies::analyze(request, registry);
   prepare(output, force);
+  if (!options.has("no-pictures")) {
+    line.update("drawing", 0);
+    for (std::string& note : draw(results, output, registry)) results.meta.notes.push_back(std::move(note));
+  }
   studies::write_tables(output / "tables", results);
   output::write_json(output / "results.json", studies::summary_json(results));
   studies::write_results(output / "results.h5", results, force);

@@ -22,6 +22,7 @@ int run(const Arguments& arguments);
 int resume(const Arguments& arguments);
 int check(const Arguments& arguments);
 int analyze(const Arguments& arguments);
+int compare(const Arguments& arguments);
 int pept(const Arguments& arguments);
 int pept_camera(const Arguments& arguments);
 int pept_synthesize(const Arguments& arguments);

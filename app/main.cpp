@@ -26,6 +26,7 @@ constexpr Command kCommands[] = {
     {"resume", "continue a run from its newest checkpoint", resume},
     {"check", "check a case and predict its cost", check},
     {"analyze", "measure a simulation or a recording", analyze},
+    {"compare", "what differs between two results of analyze", compare},
     {"pept", "how good a recording of a tracer is", pept},
     {"describe", "what a plugin does and which parameters it takes", describe},
     {"plugins", "list the plugins", plugins},
