@@ -201,7 +201,7 @@ class FreeFlight {
 
     std::array<double, 3> alone{kNaN, kNaN, kNaN};
     for (std::size_t i = 0; i < 3; ++i) alone[i] = ratio(right[i], normal[i][i]) - (i == 1 ? gravity_ : 0);
-    results.add("gravity_without_drag", "m/s^2", alone.data(), {3}, "Gravity fitted with k = 0.");
+    results.add("gravity_without_drag", "m/s^2", alone.data(), {3}, "Gravity fitted with k = 0; x, y, z.");
     results.add("drag_at_known_gravity", "1/m", ratio(right[3], normal[3][3]),
                 "Drag coefficient with gravity as stated, straight down; the camera's scale and tilt go into it.");
   }

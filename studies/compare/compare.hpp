@@ -14,10 +14,10 @@
 namespace millscope::studies {
 
 struct CompareOptions {
-  std::vector<std::string> only;     ///< analyzers ("pept_grid") or results ("pept_grid.speed"); empty: all
-  std::vector<std::string> without;  ///< the same, to be left out
-  double level = 0.05;               ///< family-wise
-  double confidence = 0.9;           ///< of the intervals, each for itself
+  std::vector<std::string> only = {};     ///< analyzers ("pept_grid") or results ("pept_grid.speed"); empty: all
+  std::vector<std::string> without = {};  ///< the same, to be left out
+  double level = 0.05;                    ///< family-wise
+  double confidence = 0.9;                ///< of the intervals, each for itself
 };
 
 /// One judged place: a number, a bin, a cell, or the mean over a region of cells.

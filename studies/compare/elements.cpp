@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kFewestCells = 4;  // of a region
 constexpr std::size_t kMany = 8;         // values from which on errors are held against each other (family_test.hpp)
 constexpr double kFewestBlocks = 10;     // effective ones that a single number must rest on
-constexpr double kFewestOfMany = 4;      // and a value among many, whose error the others support
+constexpr double kFewestOfMany = 10;     // and a value among many, whose error the others support
 constexpr double kRounding = 1e-12;      // fractions and percents below it are zero
 
 std::uint8_t flags_of(const ResultArray& array, std::size_t i) {

@@ -10,7 +10,8 @@
 namespace millscope::studies {
 namespace {
 
-constexpr std::size_t kMany = 8;  // elements from which on errors are held against each other
+constexpr std::size_t kForTail = 2000;  // pairs that give an element's weight
+constexpr std::size_t kMany = 8;        // elements from which on errors are held against each other
 
 std::size_t draw_count(const std::vector<float>& draws, std::size_t elements) { return draws.size() / elements; }
 
@@ -66,8 +67,8 @@ std::vector<float> resampled_maxima(const TestedObservable& observable, std::vec
   for (std::size_t k = 0; k < n; ++k) {
     const float *const draw_a = a.data() + k * count_a, *const draw_b = b.data() + k * count_b;
     for (std::size_t r = 0; r < pairs; ++r) deviates[r] = std::abs(draw_b[pairing.b[r]] - draw_a[pairing.a[r]]);
-    const auto round = static_cast<std::ptrdiff_t>(std::min(pairs, count_a));
-    const float weight = tail_weight({deviates.begin(), deviates.begin() + round});
+    const auto some = static_cast<std::ptrdiff_t>(std::min(pairs, kForTail));
+    const float weight = tail_weight({deviates.begin(), deviates.begin() + some});
     elements[k].weight = static_cast<double>(weight);
     for (std::size_t r = 0; r < pairs; ++r) maxima[r] = std::max(maxima[r], weight * deviates[r]);
   }

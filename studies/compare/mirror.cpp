@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -23,8 +24,10 @@ bool is_along_x(const ResultArray& axis) { return has_word(axis.name, "x") && ax
 /// A length, velocity, acceleration, force.
 bool is_vector_unit(const std::string& unit) { return unit == "m" || unit == "m/s" || unit == "m/s^2" || unit == "N"; }
 
-bool follows_omega(const std::string& doc) {
-  return doc.find("clockwise") != std::string::npos || doc.find("that of Omega") != std::string::npos;
+/// Whether the description says that the sign goes with that of Omega or with x.
+bool says_signed(const std::string& doc) {
+  constexpr std::array<const char*, 3> phrases{"clockwise", "that of Omega", "towards +x"};
+  return std::any_of(phrases.begin(), phrases.end(), [&](const char* phrase) { return doc.find(phrase) != std::string::npos; });
 }
 
 /// Where the mirrored array takes element `i` from.
@@ -50,6 +53,14 @@ std::vector<T> permuted(const std::vector<T>& values, const std::vector<std::siz
   return out;
 }
 
+void turn_first(ResultArray& array) {
+  array.value[0] = -array.value[0];
+  if (array.low.empty()) return;
+  const double low = array.low[0];
+  array.low[0] = -array.high[0], array.high[0] = -low;
+  for (std::size_t r = 0; r < array.draws.size(); r += array.size()) array.draws[r] = -array.draws[r];
+}
+
 void apply(const MirrorRule& rule, ResultArray& array) {
   std::vector<std::size_t> from(array.size());
   const std::vector<std::size_t> shape = array.shape.empty() ? std::vector<std::size_t>{1} : array.shape;
@@ -59,6 +70,7 @@ void apply(const MirrorRule& rule, ResultArray& array) {
   array.low = permuted(array.low, from), array.high = permuted(array.high, from);
   array.effective_blocks = permuted(array.effective_blocks, from), array.flags = permuted(array.flags, from);
   array.draws = permuted(array.draws, from);
+  if (rule.first_changes_sign) turn_first(array);
   if (!rule.changes_sign && rule.complement == 0) return;
   for (std::vector<double>* values : {&array.value, &array.low, &array.high}) {
     for (double& v : *values) v = rule.complement - v;
@@ -70,7 +82,7 @@ void apply(const MirrorRule& rule, ResultArray& array) {
 }  // namespace
 
 bool MirrorRule::changes() const {
-  return changes_sign || complement != 0 || std::find(reversed.begin(), reversed.end(), true) != reversed.end();
+  return changes_sign || first_changes_sign || complement != 0 || std::find(reversed.begin(), reversed.end(), true) != reversed.end();
 }
 
 MirrorRule mirror_rule(const ResultSet& results, const ResultArray& array) {
@@ -86,7 +98,10 @@ MirrorRule mirror_rule(const ResultSet& results, const ResultArray& array) {
     rule.reversed.push_back(axis != nullptr && is_along_x(*axis));
     along_x = along_x || rule.reversed.back();
   }
-  rule.changes_sign = (has_word(array.name, "x") && is_vector_unit(array.unit)) || follows_omega(array.doc);
+  rule.changes_sign = (has_word(array.name, "x") && is_vector_unit(array.unit)) || says_signed(array.doc);
+  const bool is_size = has_word(array.name, "error") || has_word(array.name, "deviation");
+  rule.first_changes_sign =
+      array.shape == std::vector<std::size_t>{3} && is_vector_unit(array.unit) && array.doc.ends_with("x, y, z.") && !is_size;
   if (along_x && has_word(array.name, "cumulative")) rule.complement = array.unit == "%" ? 100 : 1;
   return rule;
 }
@@ -102,7 +117,8 @@ ResultSet mirrored(const ResultSet& results, std::vector<std::string>& done) {
     if (array.is_axis) continue;
     grids = grids || std::find(rule.reversed.begin(), rule.reversed.end(), true) != rule.reversed.end();
     cumulative = cumulative || rule.complement != 0;
-    if (rule.changes_sign) signs += fmt::format("{}{}.{}", signs.empty() ? "" : ", ", array.analyzer, array.name);
+    if (rule.changes_sign || rule.first_changes_sign)
+      signs += fmt::format("{}{}.{}", signs.empty() ? "" : ", ", array.analyzer, array.name);
   }
   out.meta.context.omega = -out.meta.context.omega;
   if (grids) done.push_back("grids along x are reversed");

@@ -24,7 +24,8 @@ std::string signed_angle(double degrees) {
 
 std::string region_name(std::size_t ring, int sector) {
   const double from = sector * 360.0 / kSectors - 180, to = from + 360.0 / kSectors;
-  const std::string angles = from < 0 ? fmt::format("{:.0f}–{:.0f}° before", -to, -from) : fmt::format("{:.0f}–{:.0f}° past", from, to);
+  const std::string angles =
+      from < 0 ? fmt::format("{:.0f}–{:.0f}° before", std::abs(to), -from) : fmt::format("{:.0f}–{:.0f}° past", from, to);
   return fmt::format("{}–{} R, {} 6 o'clock", kRings[ring], kRings[ring + 1], angles);
 }
 

@@ -16,7 +16,7 @@ struct Shift {
 
 struct Design {
   std::size_t blocks_a = 40, blocks_b = 40;
-  std::size_t draws = 300;
+  std::size_t draws = 200;
   Shift shift = {};
 };
 

@@ -1,0 +1,162 @@
+// What `compare` concludes, and what it refuses.
+#include "studies/compare/compare.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "host/temporary.hpp"
+#include "made_up.hpp"
+#include "studies/compare/mirror.hpp"
+
+using namespace millscope::studies;
+using compare_test::make_results;
+using host_test::refusal;
+
+namespace {
+
+const ComparedObservable* find(const Comparison& c, const std::string& name) {
+  for (const ComparedObservable& o : c.observables) {
+    if (o.name == name) return &o;
+  }
+  return nullptr;
+}
+
+bool mentions(const std::vector<std::string>& texts, const std::string& part) {
+  for (const std::string& text : texts) {
+    if (text.find(part) != std::string::npos) return true;
+  }
+  return false;
+}
+
+ResultArray& array_named(ResultSet& results, const std::string& name) {
+  for (ResultArray& a : results.arrays) {
+    if (a.analyzer + "." + a.name == name) return a;
+  }
+  throw std::runtime_error("no " + name);
+}
+
+}  // namespace
+
+TEST_CASE("two runs of the same mill do not differ") {
+  const Comparison c = compare(make_results({.seed = 1}), make_results({.seed = 2}), {});
+  CHECK(c.verdict_kind == Verdict::no_difference);
+  CHECK(c.verdict == "no difference at 5 % family-wise in 8 observables");
+  CHECK(c.given.empty());
+  CHECK(c.notes.empty());
+  CHECK(mentions(c.not_judged, "pept_grid.kind: names, not numbers"));
+}
+
+TEST_CASE("a power that differs is found, and nothing else is") {
+  const Comparison c = compare(make_results({.seed = 3}), make_results({.seed = 4, .power = 0.6}), {});  // 5.4 standard errors
+  REQUIRE(c.verdict_kind == Verdict::differ);
+  CHECK(c.verdict == "1 of 8 observables differ at 5 % family-wise; strongest: power.power_gravity");
+  const ComparedElement& e = c.observables[0].elements[0];
+  CHECK(e.b - e.a == Approx(0.6).margin(0.35));
+  CHECK(e.test.high - e.test.low == Approx(2 * 1.665 * 0.5 * std::sqrt(2.0 / 40)).epsilon(0.25));  // Student's 95 % point at 78
+}
+
+TEST_CASE("a region that differs is named as an engineer would") {
+  const Comparison c = compare(make_results({.seed = 5}), make_results({.seed = 6, .speed = 0.05}), {});  // 2.2 standard errors in a cell
+  REQUIRE(c.verdict_kind == Verdict::differ);
+  CHECK(c.observables[0].name == "pept_grid.speed by region");
+  const ComparedElement& e = c.observables[0].elements[c.observables[0].strongest];
+  CHECK(e.where.find("0–45° past 6 o'clock") != std::string::npos);
+  CHECK(find(c, "pept_grid.velocity_x by region")->adjusted_p > 0.05);
+}
+
+TEST_CASE("cells are named by place, radius and clock") {
+  const MillPlace clockwise{0.15, -1};
+  CHECK(place_text(-0.105, 0.0, clockwise) == "x −105 mm, y 0 mm (0.70 R, 90° past 6 o'clock)");
+  CHECK(place_text(0.105, 0.0, {0.15, 1}) == "x 105 mm, y 0 mm (0.70 R, 90° past 6 o'clock)");
+  CHECK(place_text(0.075, -0.1299, clockwise) == "x 75 mm, y −130 mm (1.00 R, 30° before 6 o'clock)");
+  CHECK(place_text(0.01, 0.02, {}) == "x 10 mm, y 20 mm");
+}
+
+TEST_CASE("every cell of a map lies in one region") {
+  CellAxis axis{"x", "m", {}};
+  for (int i = 0; i <= 30; ++i) axis.edges.push_back(-0.15 + 0.01 * i);
+  std::vector<int> seen(900, 0);
+  const auto regions = regions_of(axis, axis, {0.15, -1});
+  CHECK(regions.size() == 24);
+  for (const Region& region : regions) {
+    for (const std::size_t cell : region.cells) ++seen[cell];
+  }
+  CHECK(std::count(seen.begin(), seen.end(), 1) == 900);
+  CHECK(regions_of(axis, axis, {0.15, 0}).empty());
+}
+
+TEST_CASE("of two senses one is mirrored, and it is said") {
+  const ResultSet a = make_results({.seed = 7}), b = make_results({.seed = 8, .power = 0.6});
+  std::vector<std::string> done;
+  const ResultSet turned = mirrored(b, done);
+  CHECK(turned.meta.context.omega == 6);
+  const Comparison plain = compare(a, b, {}), across = compare(a, turned, {});
+  REQUIRE(across.observables.size() == plain.observables.size());
+  for (std::size_t i = 0; i < plain.observables.size(); ++i) {
+    const ComparedObservable &x = plain.observables[i], &y = across.observables[i];
+    CHECK(x.name == y.name);
+    CHECK(x.adjusted_p == y.adjusted_p);
+    REQUIRE(x.elements.size() == y.elements.size());
+    for (std::size_t k = 0; k < x.elements.size(); ++k) CHECK(x.elements[k].b == Approx(y.elements[k].b).margin(1e-12));
+  }
+  CHECK(plain.notes.empty());
+  REQUIRE(across.notes.size() == 1);
+  CHECK(across.notes[0].find("A turns clockwise, B counter-clockwise: B is mirrored") == 0);
+  CHECK(across.notes[0].find("power.centre_of_mass_x") != std::string::npos);
+  CHECK(across.notes[0].find("power.power_gravity") == std::string::npos);
+}
+
+TEST_CASE("an unknown sense is taken for the other's, and it is said") {
+  ResultSet b = make_results({.seed = 8});
+  b.meta.context.omega = 0;
+  CHECK(mentions(compare(make_results({.seed = 7}), b, {}).notes, "the turning sense of B is unknown"));
+}
+
+TEST_CASE("with too few blocks there is no verdict") {
+  const Comparison c = compare(make_results({.seed = 1, .blocks = 5}), make_results({.seed = 2, .power = 50}), {});
+  CHECK(c.verdict_kind == Verdict::cannot_tell);
+  CHECK(c.verdict == "cannot tell: no result rests on 10 independent blocks in both (A has 5 blocks, B 40); analyse longer spans");
+  CHECK(mentions(c.not_judged, "power.power_gravity: rests on fewer than 10 independent blocks"));
+}
+
+TEST_CASE("given quantities and conditions that differ are told, not judged") {
+  const Comparison c = compare(make_results({.seed = 1}), make_results({.seed = 2, .omega = -5, .critical = 7.5}), {});
+  CHECK(c.given == std::vector<std::string>{"models.critical_speed: 8.0000 rad/s in A, 7.5000 rad/s in B"});
+  CHECK(mentions(c.notes, "the turning speed is 57.30 rpm in A and 47.75 rpm in B"));
+  CHECK(find(c, "models.critical_speed") == nullptr);
+}
+
+TEST_CASE("other grids and units are refused, with the remedy") {
+  const ResultSet a = make_results({.seed = 1});
+  const std::string grids = refusal([&] { compare(a, make_results({.seed = 2, .cells = 10}), {.only = {"pept_grid"}}); });
+  CHECK(grids.find("pept_grid.speed: the grids differ: y_edges is 13 values from −0.1500 to 0.1500 m in A and 11 values") == 0);
+  CHECK(grids.find("--without pept_grid") != std::string::npos);
+  CHECK_NOTHROW(compare(a, make_results({.seed = 2, .cells = 10}), {.without = {"pept_grid", "distributions"}}));
+  ResultSet b = make_results({.seed = 2});
+  array_named(b, "power.power_gravity").unit = "kW";
+  CHECK(refusal([&] { compare(a, b, {}); }).find("power.power_gravity: the units differ: W in A, kW in B") == 0);
+  b = make_results({.seed = 2});
+  for (double& edge : array_named(b, "distributions.x_edges").value) edge *= 1.01;
+  CHECK(refusal([&] { compare(a, b, {}); }).find("distributions.x_percent: the grids differ") == 0);
+}
+
+TEST_CASE("what is not there cannot be chosen") {
+  const ResultSet a = make_results({.seed = 1}), b = make_results({.seed = 2});
+  CHECK(refusal([&] { compare(a, b, {.only = {"pept_gird"}}); }).find("--only pept_gird: neither of the results has it") == 0);
+  CHECK(compare(a, b, {.only = {"pept_grid.speed"}}).observables.size() == 2);
+  CHECK(compare(a, b, {.without = {"pept_grid", "power.power_gravity"}}).observables.size() == 3);
+  ResultSet less = b;
+  std::erase_if(less.arrays, [](const ResultArray& x) { return x.name == "power_gravity"; });
+  CHECK(mentions(compare(a, less, {}).not_judged, "power.power_gravity: only in A"));
+}
+
+TEST_CASE("rounding errors of a fraction are no difference") {
+  ResultSet a = make_results({.seed = 1}), b = make_results({.seed = 2});
+  for (ResultSet* r : {&a, &b}) {
+    ResultArray& outside = array_named(*r, "power.centre_of_mass_x");
+    outside.name = "outside_fraction", outside.unit = "1";
+    outside.value[0] = r == &a ? 4e-15 : -60e-15, outside.sem[0] = 2e-15;
+    for (float& draw : outside.draws) draw *= 1e-12F;
+  }
+  CHECK(find(compare(a, b, {}), "power.outside_fraction") == nullptr);
+}
