@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 #include "analysis/support.hpp"
@@ -37,19 +38,18 @@ Uncertainty of_mean(const std::vector<double>& sums, const std::vector<double>& 
   return uncertainty(value, draws, left_out, follows);
 }
 
-/// Fraction of 400 intervals that hold the truth, for blocks of `length` values of f(x).
+/// Fraction of the intervals of many trials that hold the truth, for blocks of `length` values of f(x).
 template <class F>
-double coverage(std::size_t blocks, std::size_t length, double phi, double truth, F&& f) {
+double coverage(std::size_t blocks, std::size_t length, double phi, double truth, F&& f, int trials = 400) {
   int hits = 0;
-  constexpr int kTrials = 400;
-  for (int trial = 0; trial < kTrials; ++trial) {
+  for (int trial = 0; trial < trials; ++trial) {
     const std::vector<double> x = autoregressive(blocks * length, phi, 1000 + static_cast<std::uint64_t>(trial));
     std::vector<double> sums(blocks, 0.0);
     for (std::size_t i = 0; i < x.size(); ++i) sums[i / length] += f(x[i]);
     const Uncertainty u = of_mean(sums, std::vector<double>(blocks, static_cast<double>(length)), 7);
     hits += u.low <= truth && truth <= u.high ? 1 : 0;
   }
-  return static_cast<double>(hits) / kTrials;
+  return static_cast<double>(hits) / trials;
 }
 
 double itself(double x) { return x; }
@@ -65,6 +65,29 @@ TEST_CASE("intervals hold with 90 % where blocks are three autocorrelation times
   // An event that is seen in one block of three.
   CHECK_THAT(coverage(40, 29, phi, 0.5 * std::erfc(1.8 / std::sqrt(2)), [](double x) { return x > 1.8 ? 1.0 : 0.0; }),
              WithinAbs(0.90, 0.06));
+}
+
+TEST_CASE("how often the intervals hold, as a table", "[.coverage]") {
+  constexpr double phi = 0.9;
+  const auto exponential = [](double x) { return std::exp(x); };
+  const auto rare = [](double x) { return x > 1.8 ? 1.0 : 0.0; };
+  const double seldom = 0.5 * std::erfc(1.8 / std::sqrt(2));
+  struct Row {
+    const char* what;
+    std::size_t blocks;
+    double holds;
+  };
+  const Row rows[] = {{"memory, blocks of 3 tau", 10, coverage(10, 29, phi, 0, itself, 2000)},
+                      {"memory, blocks of 3 tau", 20, coverage(20, 29, phi, 0, itself, 2000)},
+                      {"memory, blocks of 3 tau", 64, coverage(64, 29, phi, 0, itself, 2000)},
+                      {"memory, blocks of 1 tau", 64, coverage(64, 10, phi, 0, itself, 2000)},
+                      {"its exponential (skewed)", 64, coverage(64, 29, phi, std::exp(0.5), exponential, 2000)},
+                      {"a rare state (4 %)", 20, coverage(20, 29, phi, seldom, rare, 2000)},
+                      {"a rare state (4 %)", 64, coverage(64, 29, phi, seldom, rare, 2000)}};
+  for (const Row& row : rows) {
+    std::printf("%-26s %2zu blocks: %.1f %%\n", row.what, row.blocks, 100 * row.holds);
+    CHECK(row.holds > 0.8);
+  }
 }
 
 TEST_CASE("a memory longer than the blocks widens the interval and says so") {
