@@ -17,7 +17,7 @@ namespace {
 
 using config::UserError;
 
-constexpr std::size_t kMostChunks = 128, kWantedBlocks = 64, kFewestChunks = 16;
+constexpr std::size_t kMostChunks = 128, kWantedBlocks = 64, kSpeedBlocks = 20, kFewestChunks = 16;
 constexpr double kMostSumBytes = 1e9, kMostDrawBytes = 4e9;
 
 /// How finely the data may be cut so that the sums of all chunks fit into memory.
@@ -33,7 +33,8 @@ double total_duration(const SumTable& table) {
 }
 
 double block_length(const BlockRule& rule, double wished, double total) {
-  return std::max({rule.least, wished, total / static_cast<double>(kWantedBlocks)});
+  return std::max(
+      {rule.least, wished, total / static_cast<double>(kWantedBlocks), std::min(rule.wished, total / static_cast<double>(kSpeedBlocks))});
 }
 
 /// Sums of the blocks and the rule that cut them.

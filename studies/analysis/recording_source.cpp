@@ -48,7 +48,7 @@ OpenedSource open_recording(const SourceRequest& request, const host::Registry& 
   if (!(options.gap_limit > 0)) options.gap_limit = recording.gap_limit;
   std::vector<Trajectory> trajectories;
   double seconds = 0;
-  std::uint64_t points = 0;
+  std::uint64_t points = 0, left_out = 0;
   for (const Run& whole : recording.runs) {
     const Run run = cut_to(whole, request);
     if (run.size() < static_cast<std::size_t>(options.least_points)) {
@@ -61,15 +61,16 @@ OpenedSource open_recording(const SourceRequest& request, const host::Registry& 
     t.density = condition.tracer.density.value_or(condition.bead_density.value_or(0));
     seconds += t.covered;
     points += run.size();
-    if (t.points_left_out > 0) {
-      opened.meta.notes.push_back(fmt::format("{}: {} points stand in stretches of fewer than {} and are left out", run.source,
-                                              t.points_left_out, options.least_points));
-    }
+    left_out += t.points_left_out;
     opened.meta.inputs.push_back({run.source, file_hash(run.source)});
     trajectories.push_back(std::move(t));
   }
   if (trajectories.empty())
     throw UserError(fmt::format("{}: no run has enough points in the span asked for; widen --from and --to", request.path.string()));
+  if (left_out > 0) {
+    opened.meta.notes.push_back(
+        fmt::format("{} of {} points stand in stretches of fewer than {} and are left out", left_out, points, options.least_points));
+  }
   ShellMotion motion;
   if (known.context.omega != 0) motion.omega = [omega = known.context.omega](double) { return omega; };
   const std::string description = fmt::format("{}: {} run{}, {} points, {:.6g} s covered", request.path.string(), trajectories.size(),

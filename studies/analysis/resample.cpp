@@ -44,12 +44,11 @@ struct Influence {
 Influence influence_of(std::span<const float> left_out, std::span<const std::uint8_t> follows) {
   Influence r;
   const double n = static_cast<double>(left_out.size());
-  double mean = 0, products = 0, before = 0;
+  const double mean = spread_of(left_out).mean;
+  double products = 0, before = 0;
   std::size_t pairs = 0;
-  for (const float value : left_out) mean += value;
-  mean /= n;
   for (std::size_t i = 0; i < left_out.size(); ++i) {
-    const double u = mean - left_out[i], square = u * u;
+    const double u = std::isnan(left_out[i]) ? 0.0 : mean - left_out[i], square = u * u;
     r.squares += square;
     r.cubes += square * u;
     r.fourths += square * square;
@@ -93,15 +92,15 @@ Uncertainty uncertainty(double value, std::span<const float> draws, std::span<co
   Uncertainty u{kNaN, kNaN, kNaN, 0, kFewBlocks | kNoUncertainty, 0};
   if (left_out.size() < 2 || std::isnan(value)) return u;
   const Spread spread = spread_of(draws);
-  // Undefined without one of the blocks: all rests on that block.
-  const bool rests_on_one = std::any_of(left_out.begin(), left_out.end(), [](float v) { return std::isnan(v); });
-  const bool often_undefined = static_cast<double>(spread.defined) < 0.9 * static_cast<double>(draws.size());
-  if (rests_on_one || spread.defined < 2) {
+  const bool needs_one = std::any_of(left_out.begin(), left_out.end(), [](float v) { return std::isnan(v); });
+  const Influence influence = influence_of(left_out, follows);
+  // Undefined without one of the blocks and blind to the others: all rests on that block.
+  if (spread.defined < 2 || (needs_one && !(influence.squares > 0))) {
     u.effective_blocks = 1;
     u.flags |= kOftenUndefined;
     return u;
   }
-  const Influence influence = influence_of(left_out, follows);
+  const bool often_undefined = needs_one || static_cast<double>(spread.defined) < 0.9 * static_cast<double>(draws.size());
   u.flags = often_undefined ? kOftenUndefined : 0;
   if (!(influence.squares > 0) || !(std::sqrt(spread.variance) > kRounding * std::fabs(value))) {  // the same in every block
     u.sem = 0;

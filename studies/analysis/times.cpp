@@ -75,6 +75,17 @@ std::vector<double> even_row(const BasicSeries& s, std::size_t basic, double ste
   return row;
 }
 
+/// Lag at which the autocorrelation first falls to zero, s; 0: never.
+double first_zero(const EvenSeries& series, const Moments& m) {
+  std::size_t longest = 0;
+  for (const auto& row : series.rows) longest = std::max(longest, row.size());
+  if (!(m.variance > 0)) return 0;
+  for (std::size_t lag = 1; lag < longest; ++lag) {
+    if (covariance_at(series, m.mean, lag) <= 0) return series.step * static_cast<double>(lag);
+  }
+  return 0;
+}
+
 }  // namespace
 
 void BasicSeries::append(const BasicSeries& other) {
@@ -158,7 +169,7 @@ double circulation_time(const EvenSeries& series) {
       }
     }
   }
-  return count < 2 ? 0 : sum / static_cast<double>(count);
+  return count < 2 ? 4 * first_zero(series, m) : sum / static_cast<double>(count);
 }
 
 BlockRule block_rule(const std::vector<BasicSeries>& stretches, bool one_bead) {
@@ -168,9 +179,10 @@ BlockRule block_rule(const std::vector<BasicSeries>& stretches, bool one_bead) {
   for (std::size_t k = 0; k < kBasics; ++k) {
     const EvenSeries even = even_series(stretches, k);
     const double time = autocorrelation_time(even);
-    const bool transverse = std::string(kBasicNames[k]) != "z";
-    rule.times.push_back({kBasicNames[k], time, span / (2 * time), transverse});
-    if (transverse && !std::isnan(time)) rule.least = std::max(rule.least, 3 * time);
+    const bool sets = k < 3;  // x, y, radius
+    rule.times.push_back({kBasicNames[k], time, span / (2 * time), sets});
+    if (sets && !std::isnan(time)) rule.least = std::max(rule.least, 3 * time);
+    if (std::string(kBasicNames[k]) == "speed" && !std::isnan(time)) rule.wished = 3 * time;
     if (k == 0 && one_bead) rule.circulation = circulation_time(even);
   }
   rule.least = std::max(rule.least, 2 * rule.circulation);

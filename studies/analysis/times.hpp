@@ -40,13 +40,15 @@ EvenSeries even_series(const std::vector<BasicSeries>& stretches, std::size_t ba
 double autocorrelation_time(const EvenSeries& series);
 
 /// Mean time of one circulation: from one crossing of the mean upwards to the next, half a standard deviation being passed on
-/// both sides; s. 0: fewer than three.
+/// both sides; s. Where gaps leave fewer than three, four times the lag at which the
+/// autocorrelation first falls to zero. 0: unknown.
 double circulation_time(const EvenSeries& series);
 
 /// What the series say of the blocks.
 struct BlockRule {
   std::vector<ObservableTime> times;
-  double least = 0;        ///< s: three autocorrelation times of every transverse observable, and of one bead two circulations
+  double least = 0;        ///< s: three autocorrelation times of x, y and radius, and of one bead two circulations
+  double wished = 0;       ///< s: three of the speed, which a bead's loop carries on over circulations: as far as enough blocks remain
   double circulation = 0;  ///< s; 0: unknown or many beads
 };
 /// `one_bead`: the series follow a single bead, so that circulations are seen.

@@ -133,6 +133,14 @@ TEST_CASE("few blocks, a single block and constants are told apart") {
   CHECK(std::isnan(single.sem));
   CHECK((single.flags & kOftenUndefined) != 0);
   CHECK(single.effective_blocks == 1);
+  // What fails once without a block, but feels the others too, is doubtful and still has an interval.
+  std::vector<float> draws, left_out;
+  for (int b = 0; b < 200; ++b) draws.push_back(b % 3 == 0 ? std::nanf("") : 0.1F * static_cast<float>(b % 7 - 3));
+  for (int i = 0; i < 20; ++i) left_out.push_back(i == 4 ? std::nanf("") : 0.01F * static_cast<float>(i % 5 - 2));
+  const Uncertainty doubtful = uncertainty(1.0, draws, left_out, std::vector<std::uint8_t>(20, 1));
+  CHECK((doubtful.flags & kOftenUndefined) != 0);
+  CHECK(doubtful.low < 1.0);
+  CHECK(doubtful.high > 1.0);
 }
 
 TEST_CASE("draws are the same everywhere and hold every block as often as chance says") {
