@@ -54,9 +54,20 @@ OpenedSource open_simulation(const SourceRequest& request, const host::Registry&
   return opened;
 }
 
+/// frames.h5 or tracks.h5 of a run stands for its directory.
+SourceRequest as_directory(SourceRequest request) {
+  const fs::path name = request.path.filename();
+  const fs::path directory = request.path.has_parent_path() ? request.path.parent_path() : fs::path(".");
+  if ((name != "frames.h5" && name != "tracks.h5") || !fs::exists(directory / kResolvedCase)) return request;
+  if (name == "tracks.h5" && request.tracers.empty()) request.tracers = {"all"};
+  request.path = directory;
+  return request;
+}
+
 }  // namespace
 
-OpenedSource open_source(const SourceRequest& request, const host::Registry& registry) {
+OpenedSource open_source(const SourceRequest& asked, const host::Registry& registry) {
+  const SourceRequest request = as_directory(asked);
   if (request.from && request.to && !(*request.to > *request.from)) {
     throw UserError(fmt::format("--from {:.6g} --to {:.6g}: the span is empty; give --to later than --from", *request.from, *request.to));
   }

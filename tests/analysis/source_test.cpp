@@ -131,6 +131,8 @@ TEST_CASE("followed beads have the speed of their motion, through the periodic b
     CHECK_THAT(b.velocity[2][f], WithinAbs(0.02, 1e-3));
   }
   CHECK(open(scratch.path, {"all"}).source->survey().size() == 2);
+  CHECK(open(scratch / "tracks.h5").source->survey().size() == 2);  // a file of a run stands for the run
+  CHECK(open(scratch / "frames.h5").meta.source == "simulation");
   fs::remove(scratch / "frames.h5");
   const OpenedSource only_tracks = open(scratch.path);
   CHECK(only_tracks.meta.source == "tracks");
