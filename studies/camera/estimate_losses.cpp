@@ -115,9 +115,9 @@ RateModel estimate_rate(const std::vector<RateWindow>& windows) {
   model.rate = {rate * std::exp(used.value[0]), rate * std::exp(used.value[0]) * used.error(0)};
   loss.typical_distance = quantile(distances, 0.5);
   if (loss.found) {
-    loss.at_rest = {fit.value[1], fit.error(1)};
-    loss.per_distance = {fit.value[2] / distance, fit.error(2) / distance};
-    loss.per_speed = {fit.value[3] / speed, fit.error(3) / speed};
+    loss.at_rest = {fit.value[1], kCaution * fit.error(1)};
+    loss.per_distance = {fit.value[2] / distance, kCaution * fit.error(2) / distance};
+    loss.per_speed = {fit.value[3] / speed, kCaution * fit.error(3) / speed};
   }
   std::vector<double> rates;
   for (const RateWindow& w : windows) rates.push_back(counts.rate_at(used.value, w));

@@ -17,9 +17,6 @@ constexpr double kNoCorrelation = -20;  // ln of correlated/white
 /// Locations share events with their neighbours only: known beforehand is a correlation time of one and a half intervals (the scale is
 /// two), within a factor of two. A longer memory is told from the bead's own wandering by the data alone.
 constexpr double kUsualTime = -0.2877, kTimeDeviation = 0.7;
-/// Real motion is no Gaussian process: over recordings synthesized from simulated beads the estimates scatter about the truth by one and
-/// a half times what the likelihood says (docs/virtual_camera.md).
-constexpr double kCaution = 1.5;
 
 /// Logarithms of numbers over their scales; growth times kLengthScale.
 struct NoisePoint {

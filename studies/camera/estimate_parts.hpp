@@ -5,6 +5,11 @@
 
 namespace millscope::studies::camera {
 
+/// Real motion is no Gaussian process, and distance and speed are known from noisy locations: over recordings synthesized from simulated
+/// beads the estimates of noise and losses scatter about the truth by one and a half times what the likelihood says
+/// (docs/virtual_camera.md).
+inline constexpr double kCaution = 1.5;
+
 using Point = std::array<double, 3>;
 
 /// Distance of point i of a run from the rig's middle.
