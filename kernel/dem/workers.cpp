@@ -12,7 +12,7 @@ void pause() { __builtin_ia32_pause(); }
 
 }  // namespace
 
-Workers::Workers(int count) : count_(count) {
+Workers::Workers(int count) : count_(count), claimed_(static_cast<std::size_t>(count)) {
   for (int w = 1; w < count_; ++w) threads_.emplace_back([this, w] { loop(w); });
 }
 
@@ -26,15 +26,23 @@ Workers::~Workers() {
 void Workers::share(int worker) {
   const int last = first(worker + 1, slabs_);
   for (int slab = first(worker, slabs_); slab < last; ++slab) (*task_)(slab, worker);
+  pending_.fetch_sub(1, std::memory_order_acq_rel);
+}
+
+bool Workers::claim(int worker, unsigned generation) {
+  unsigned before = generation - 1;
+  return claimed_[static_cast<std::size_t>(worker)].compare_exchange_strong(before, generation, std::memory_order_acq_rel);
 }
 
 void Workers::run(int slabs, const std::function<void(int, int)>& task) {
   slabs_ = slabs;
   task_ = &task;
-  pending_.store(count_ - 1, std::memory_order_relaxed);
-  generation_.fetch_add(1, std::memory_order_release);
+  pending_.store(count_, std::memory_order_relaxed);
+  const unsigned generation = generation_.fetch_add(1, std::memory_order_acq_rel) + 1;
   if (count_ > 1) generation_.notify_all();
-  share(0);
+  for (int worker = 0; worker < count_; ++worker) {
+    if (claim(worker, generation)) share(worker);
+  }
   for (int spin = 0; pending_.load(std::memory_order_acquire) != 0; ++spin) {
     if (spin < kSpins) {
       pause();
@@ -57,8 +65,7 @@ void Workers::loop(int worker) {
     generation_.wait(seen, std::memory_order_acquire);
     seen = generation_.load(std::memory_order_acquire);
     if (stop_.load()) return;
-    share(worker);
-    pending_.fetch_sub(1, std::memory_order_release);
+    if (claim(worker, seen)) share(worker);
   }
 }
 

@@ -21,18 +21,22 @@ class Workers {
   int first(int worker, int slabs) const { return worker * slabs / count_; }
 
   /// Runs task(slab, worker) for each slab in [0, slabs): slab k goes to worker k·count/slabs, so that a slab stays in one cache.
-  /// Returns when all are done. The task must not throw.
+  /// Returns when all are done. The task must not throw. The share of a worker whose thread has not begun when the calling thread is done
+  /// with its own is taken over by it, under that worker's number: on a busy machine nobody waits for a thread that is not running.
   void run(int slabs, const std::function<void(int slab, int worker)>& task);
 
  private:
   void loop(int worker);
   void share(int worker);
+  /// True for one caller per worker and generation.
+  bool claim(int worker, unsigned generation);
 
   int count_;
   int slabs_ = 0;
   const std::function<void(int, int)>* task_ = nullptr;
   std::atomic<unsigned> generation_{0};
-  std::atomic<int> pending_{0};
+  std::atomic<int> pending_{0};                 ///< shares of this generation that are not done
+  std::vector<std::atomic<unsigned>> claimed_;  ///< [worker]: the last generation whose share somebody has taken
   std::atomic<bool> stop_{false};
   std::vector<std::thread> threads_;
 };
