@@ -21,7 +21,7 @@ test: packages-test ## install what is missing, build, run every test
 	cmake --build --preset release -j $(JOBS)
 	ctest --preset release -j $(JOBS)
 
-bench: packages-test binary ## time against LIGGGHTS on the cross-check case (about an hour)
+bench: packages-test binary ## time against LIGGGHTS on the cross-check case (20 minutes on a quiet machine)
 	cmake --build --preset release -j $(JOBS) --target millscope_bench
 	bench/run.sh $(BUILD) $(BENCH_OPTIONS)
 
