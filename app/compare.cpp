@@ -36,7 +36,7 @@ void write_output(const studies::Comparison& c, const fs::path& output, const ho
   const studies::MillOutline mill = studies::outline_of(c.a, registry, lacking);
   const auto pictures = studies::draw_comparison(c, output / "pictures", mill);
   if (quiet) return;
-  if (!lacking.empty()) fmt::print("note: {}\n", lacking);
+  if (!lacking.empty()) fmt::print("note: the pictures show the shell without lifters: {}\n", lacking);
   fmt::print("written to {}: comparison.json, observables.csv, elements.csv, {} pictures\n", output.string(), pictures.size());
 }
 

@@ -20,6 +20,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 from verify_camera import bbosa, camera, roundtrip
+from verify_compare import differences
 from verify_rows import row, show
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -233,7 +234,7 @@ def ergodicity(bench):
     return rows
 
 
-ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, ergodicity, camera, roundtrip, bbosa)}
+ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, ergodicity, camera, roundtrip, bbosa, differences)}
 QUICK = ("crosscheck", "hashes", "memory")
 
 

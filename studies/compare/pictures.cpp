@@ -88,7 +88,7 @@ void draw_overlay(const Comparison& c, const ComparedObservable& o, const std::f
                .curves = {curve_of(c.a, a, name_of(c.a, "A")), curve_of(c.b, b, name_of(c.b, "B"))},
                .band = fmt::format("{:.0f} % intervals, each for itself", 100 * c.a.meta.confidence),
                .points = axis.label == "number",
-               .note = fmt::format("A and B: {} Strongest: {}.", p_words(o, c.options.level), first.where)},
+               .note = fmt::format("B less A: {} Strongest: {}.", p_words(o, c.options.level), first.where)},
               stem);
 }
 

@@ -90,11 +90,11 @@ class CurveDrawing {
     return axis;
   }
 
-  // From the first to the last value that is defined.
-  static void add_defined(const Curve& curve, Range& range) {
+  // From the first to the last value that is defined; of a spectrum, that is not zero.
+  void add_defined(const Curve& curve, Range& range) const {
     const std::size_t last = curve.x.size() - curve.value.size();  // edges: the upper one counts, too
     for (std::size_t i = 0; i < curve.value.size(); ++i) {
-      if (!std::isfinite(curve.value[i])) continue;
+      if (!std::isfinite(curve.value[i]) || (log_x_ && curve.value[i] == 0)) continue;
       range.add(curve.x[i]);
       range.add(curve.x[i + last]);
     }

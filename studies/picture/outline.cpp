@@ -67,7 +67,7 @@ MillOutline outline_of(const ResultSet& results, const host::Registry& registry,
     }
   } catch (const config::UserError& e) {
     outline.section.clear();
-    why = std::string("pictures lack the lifters: ") + e.what();
+    why = e.what();
   }
   return outline;
 }

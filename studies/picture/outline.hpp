@@ -14,7 +14,7 @@ namespace millscope::studies {
 std::vector<std::array<double, 4>> section_of(const Surface& surface, double z, double radius);
 
 /// Shell and turning sense from the results, lifters from the case that they name, as they stand at the start. Without a case, or when it
-/// cannot be read any more, the shell alone; `why` then says so (empty: nothing lacks).
+/// cannot be read any more, the shell alone; `why` then holds the reason (empty: nothing lacks).
 MillOutline outline_of(const ResultSet& results, const host::Registry& registry, std::string& why);
 
 }  // namespace millscope::studies

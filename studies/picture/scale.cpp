@@ -145,7 +145,7 @@ double Axis::place(double stored) const {
 
 Axis make_axis(const std::string& label, const std::string& unit, double low, double high, bool logarithmic, double length) {
   DisplayUnit shown = display_unit(unit, std::max(std::abs(low), std::abs(high)));
-  if (logarithmic && shown.text.starts_with("10")) shown = {1, typeset_unit(unit)};  // its ticks are powers of ten anyway
+  if (logarithmic && unit != "m") shown = {1, typeset_unit(unit)};  // its ticks are powers of ten anyway
   Axis axis{with_unit(label, shown.text), shown.factor, low * shown.factor, high * shown.factor, logarithmic, {}};
   const int most = std::max(2, static_cast<int>(length / 38));
   axis.ticks = logarithmic ? logarithmic_ticks(axis.low, axis.high, most) : even_ticks(axis.low, axis.high, most);

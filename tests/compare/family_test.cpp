@@ -50,6 +50,7 @@ TEST_CASE("a difference that is there is found and placed") {
     cell += map.adjusted_p <= 0.05 && column >= 5 && column <= 6 && row <= 1 ? 1 : 0;
     for (std::size_t o = 1; o < compare_test::kMapObservable; ++o) elsewhere += verdicts[o].adjusted_p <= 0.05 ? 1 : 0;
   }
+  INFO(number << " numbers, " << cell << " cells, " << elsewhere << " elsewhere");
   CHECK(number >= 19);
   CHECK(cell >= 19);
   CHECK(elsewhere <= 4);  // 5 % of 20 comparisons is 1
