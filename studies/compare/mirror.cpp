@@ -121,8 +121,8 @@ ResultSet mirrored(const ResultSet& results, std::vector<std::string>& done) {
       signs += fmt::format("{}{}.{}", signs.empty() ? "" : ", ", array.analyzer, array.name);
   }
   out.meta.context.omega = -out.meta.context.omega;
-  if (grids) done.push_back("grids along x are reversed");
-  if (cumulative) done.push_back("cumulative shares along x count from the other side");
+  if (grids) done.emplace_back("grids along x are reversed");
+  if (cumulative) done.emplace_back("cumulative shares along x count from the other side");
   if (!signs.empty()) done.push_back("the sign changes in " + signs);
   return out;
 }

@@ -83,7 +83,7 @@ std::vector<Outline> borders_of(const std::vector<Region>& regions, const std::v
 
 std::string place_text(double x, double y, const MillPlace& mill) {
   const auto mm = [](double metres) { return number_text(1e3 * metres, 1); };
-  const std::string place = fmt::format("x {} mm, y {} mm", mm(x), mm(y));
+  std::string place = fmt::format("x {} mm, y {} mm", mm(x), mm(y));
   if (!(mill.radius > 0) || mill.sense == 0) return place;
   return fmt::format("{} ({:.2f} R, {})", place, std::hypot(x, y) / mill.radius, signed_angle(clock_angle(x, y, mill.sense)));
 }

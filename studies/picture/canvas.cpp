@@ -221,7 +221,9 @@ std::vector<std::string> wrap(const std::string& words, const Font& font, double
   std::string line;
   for (std::size_t begin = 0; begin < words.size();) {
     const std::size_t end = std::min(words.find(' ', begin), words.size());
-    const std::string word = words.substr(begin, end - begin), longer = line.empty() ? word : line + " " + word;
+    const std::string word = words.substr(begin, end - begin);
+    std::string longer = line;
+    longer.append(line.empty() ? "" : " ").append(word);
     if (!line.empty() && text_width(longer, font) > width) {
       lines.push_back(line);
       line = word;

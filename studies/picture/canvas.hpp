@@ -11,7 +11,7 @@
 
 #include "studies/picture/color.hpp"
 
-struct _cairo;  // cairo_t, named so by cairo's header
+struct _cairo;  // cairo_t; NOLINT(bugprone-reserved-identifier): named so by cairo's header
 
 namespace millscope::studies {
 

@@ -27,7 +27,7 @@ double widest(const std::vector<std::string>& words, const Font& font) {
   return width;
 }
 
-Frame::Frame(Words words, const Axis& x, const Axis& y, const Room& room) : x_(x), y_(y) {
+Frame::Frame(const Words& words, const Axis& x, const Axis& y, const Room& room) : x_(x), y_(y) {
   const double labels = widest(y.ticks.label, kTextFont);
   const double left = std::ceil(kEdge + 12 + 4 + labels + kTick + 3);
   width_ = std::max(left + room.width + room.right, kLeastPaper);

@@ -27,7 +27,7 @@ class Frame {
     double right = 12;     ///< beside it, for a colour bar
     double legend = 0;     ///< above it
   };
-  Frame(Words words, const Axis& x, const Axis& y, const Room& room);
+  Frame(const Words& words, const Axis& x, const Axis& y, const Room& room);
 
   const Box& plot() const { return plot_; }
   /// The top of the room for a legend.

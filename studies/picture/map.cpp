@@ -84,7 +84,7 @@ class MapDrawing {
   Frame::Words words() const {
     Frame::Words words{picture_.title, picture_.subtitle, {}};
     if (!picture_.note.empty()) words.notes.push_back(picture_.note);
-    if (!colors_.any) words.notes.push_back("No cell has data.");
+    if (!colors_.any) words.notes.emplace_back("No cell has data.");
     const DisplayUnit unit = display_unit(picture_.value.unit, std::max(std::abs(colors_.low), std::abs(colors_.high)));
     const auto shown = [&](double value) { return significant_text(value * unit.factor, 3) + (unit.text.empty() ? "" : " " + unit.text); };
     if (colors_.any && colors_.beyond_high())
@@ -92,7 +92,7 @@ class MapDrawing {
     if (colors_.any && colors_.beyond_low())
       words.notes.push_back("Single cells lie below the colour bar, down to " + shown(colors_.smallest) + ".");
     if (has_blank()) words.notes.push_back("Hatched: " + picture_.blank + ".");
-    if (!same_scale() && picture_.x.unit == picture_.y.unit) words.notes.push_back("The axes are not to the same scale.");
+    if (!same_scale() && picture_.x.unit == picture_.y.unit) words.notes.emplace_back("The axes are not to the same scale.");
     return words;
   }
 

@@ -120,8 +120,9 @@ void add_maps(Maker& maker, const MadeUp& recipe) {
   std::vector<std::vector<double>> speed(recipe.blocks), velocity(recipe.blocks);
   for (std::size_t i = 0; i < recipe.blocks; ++i) {
     for (std::size_t cell = 0; cell < n * n; ++cell) {
-      const double x = (static_cast<double>(cell % n) + 0.5) / static_cast<double>(n) - 0.5,
-                   y = (static_cast<double>(cell / n) + 0.5) / static_cast<double>(n) - 0.5;
+      const std::size_t column = cell % n, row = cell / n;
+      const double x = (static_cast<double>(column) + 0.5) / static_cast<double>(n) - 0.5,
+                   y = (static_cast<double>(row) + 0.5) / static_cast<double>(n) - 0.5;
       const bool lower_left = x < -0.1 && y < -0.1 && x > y;  // within 0 to 45° past 6 o'clock of a clockwise mill
       speed[i].push_back(0.8 + (lower_left ? recipe.speed : 0) + 0.1 * maker.random().normal());
       velocity[i].push_back(x + 0.1 * maker.random().normal());

@@ -86,7 +86,7 @@ std::filesystem::path write_recording(const std::filesystem::path& folder, const
     const auto p = walk.next();
     table << fmt::format("{:.3f},{:.6f},{:.6f},{:.6f}\n", i * 1000 / kRate, 1e3 * sign * p[0], 1e3 * p[1], 1e3 * p[2]);
   }
-  const std::filesystem::path file = folder / (name + ".yaml");
+  std::filesystem::path file = folder / (name + ".yaml");
   std::ofstream(file) << fmt::format(
       "files: [{}.csv]\nformat: table\ncolumns: {{t: ms, x: mm, y: mm, z: mm}}\nframe: {{axis: [0, 0], ends: [0, 60 mm]}}\n"
       "condition:\n  speed: 6 rad/s\n  direction: {}\n  filling: 30 %\n  porosity: 0.4\n  bead_diameter: 5 mm\n  bead_density: 2500\n  "
