@@ -17,6 +17,15 @@ struct SlabState {
   IntegrateResult result{false, -1};
 };
 
+/// One list of pairs on its way through a step.
+struct System::PairSweep {
+  int slab;
+  std::size_t physics;
+  PairListView list;
+  BatchArrays batch;
+  GatherContext gather;
+};
+
 /// One worker's arrays for a batch, and for the wall query before it.
 struct System::Scratch {
   explicit Scratch(int history_count);

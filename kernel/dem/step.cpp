@@ -28,10 +28,11 @@ void System::contacts(int slab, int worker, bool finish_too) {
   std::int64_t finished = slab_begin(slab);
   for (std::size_t p = 0; p < physics_.size(); ++p) {
     if (physics_[p].wall) continue;
-    PairListView list = state.lists[p].view();
+    PairSweep sweep = begin_pairs(slab, worker, p);
+    PairListView& list = sweep.list;
     for (std::int64_t first = 0; first < list.count; first += kBatch) {
       const std::int64_t last = std::min(list.count, first + kBatch);
-      list.written += pair_batch(slab, worker, p, {first, last}, list);
+      list.written += pair_batch(sweep, first, last);
       if (p == last_list_ && last < list.count && last % (kTrail * kBatch) == 0) {
         walls(slab, worker, list.owner[last]);
         if (finish_too) finish(slab, worker, {finished, list.owner[last]});
@@ -45,51 +46,67 @@ void System::contacts(int slab, int worker, bool finish_too) {
   if (finish_too) finish(slab, worker, {finished, slab_end});
 }
 
-/// Contacts among the list slots of one batch. Returns their number.
-std::int64_t System::pair_batch(int slab, int worker, std::size_t p, SlotRange slots, PairListView& list) {
-  SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
+/// What all batches of one list share.
+System::PairSweep System::begin_pairs(int slab, int worker, std::size_t p) {
   const PairPhysics& physics = physics_[p];
   const Equality& equality = equality_[p];
-  BatchArrays batch = scratch_[static_cast<std::size_t>(worker)]->batch;
+  PairSweep sweep{slab, p, slabs_[static_cast<std::size_t>(slab)]->lists[p].view(), scratch_[static_cast<std::size_t>(worker)]->batch, {}};
   if (equality.equal) {
     // Arrays that hold the same number everywhere, made once.
-    batch.radius = equality.arrays[0]->data();
-    batch.mass = equality.arrays[1]->data();
-    batch.radius_i = batch.radius_j = equality.arrays[2]->data();
+    sweep.batch.radius = equality.arrays[0]->data();
+    sweep.batch.mass = equality.arrays[1]->data();
+    sweep.batch.radius_i = sweep.batch.radius_j = equality.arrays[2]->data();
   }
-  GatherContext gather{particles.position.data(),
-                       particles.motion.data(),
-                       settings_.periodic,
-                       physics.reach,
-                       equality.equal,
-                       !physics.interactions.empty(),
-                       equality.radius,
-                       0.5 * equality.mass,
-                       0,
-                       0,
-                       nullptr};
-  const std::size_t batch_index = static_cast<std::size_t>(slots.first / kBatch);
-  if (p == last_list_ && batch_index + 2 < state.frontier.size()) {
-    gather.ahead = state.frontier[batch_index + 1];
-    gather.ahead_end = state.frontier[batch_index + 2];
-    const std::int64_t slab_end = slab_begin(slab + 1);
-    if (gather.ahead >= slab_end) {
-      gather.ahead_force = state.halo.data() + (gather.ahead - slab_end);
-    } else if (state.force.mask == -1) {
-      gather.ahead_force = particles.force.data() + gather.ahead;
-      gather.ahead_end = std::min(gather.ahead_end, slab_end);
-    }
+  sweep.gather = {particles.position.data(),
+                  particles.motion.data(),
+                  settings_.periodic,
+                  physics.reach,
+                  equality.equal,
+                  !physics.interactions.empty(),
+                  equality.radius,
+                  0.5 * equality.mass,
+                  0,
+                  0,
+                  nullptr};
+  return sweep;
+}
+
+/// What `search` asks for in passing: the beads that the batch after the next will be the first to touch.
+void System::look_ahead(PairSweep& sweep, std::int64_t first) const {
+  const SlabState& state = *slabs_[static_cast<std::size_t>(sweep.slab)];
+  GatherContext& gather = sweep.gather;
+  gather.ahead = gather.ahead_end = 0;
+  gather.ahead_force = nullptr;
+  const std::size_t batch = static_cast<std::size_t>(first / kBatch);
+  if (sweep.physics != last_list_ || batch + 2 >= state.frontier.size()) return;
+  gather.ahead = state.frontier[batch + 1];
+  gather.ahead_end = state.frontier[batch + 2];
+  const std::int64_t slab_end = slab_begin(sweep.slab + 1);
+  if (gather.ahead >= slab_end) {
+    gather.ahead_force = state.halo.data() + (gather.ahead - slab_end);
+  } else if (state.force.mask == -1) {
+    gather.ahead_force = particles.force.data() + gather.ahead;
+    gather.ahead_end = std::min(gather.ahead_end, slab_end);
   }
-  const std::int64_t count = wide_->search(gather, list, slots.first, slots.last, batch);
+}
+
+/// Contacts among the list slots [first, last). Returns their number.
+std::int64_t System::pair_batch(PairSweep& sweep, std::int64_t first, std::int64_t last) {
+  SlabState& state = *slabs_[static_cast<std::size_t>(sweep.slab)];
+  const PairPhysics& physics = physics_[sweep.physics];
+  PairListView& list = sweep.list;
+  BatchArrays& batch = sweep.batch;
+  look_ahead(sweep, first);
+  const std::int64_t count = wide_->search(sweep.gather, list, first, last, batch);
   if (count == 0) return 0;
-  state.lists[p].make_room(list);
-  wide_->gather(gather, list, count, batch);
-  PairLedger& ledger = state.ledger.pairs[p];
+  state.lists[sweep.physics].make_room(list);
+  wide_->gather(sweep.gather, list, count, batch);
+  PairLedger& ledger = state.ledger.pairs[sweep.physics];
   count_collisions(count, batch, ledger);
   if (step_ % 16 == 0) note_overlap(count, batch, ledger);
   ledger.contacts += count;
   evaluate({&physics, settings_.time_step, count, false}, batch, ledger);
-  const ScatterContext scatter{state.force, state.halo.data(), slab_begin(slab + 1), equality.equal};
+  const ScatterContext scatter{state.force, state.halo.data(), slab_begin(sweep.slab + 1), sweep.gather.equal};
   wide_->scatter(scatter, list, count, physics.has_post(), batch);
   return count;
 }
@@ -121,7 +138,7 @@ void System::size_ring(int slab) {
 
 /// What follows from new lists: which slabs reach into which, and the rings.
 void System::prepare_sweeps() {
-  for (int slab = 0; slab < settings_.partitions; ++slab) size_ring(slab);
+  workers_->run(settings_.partitions, [this](int slab, int) { size_ring(slab); });
   std::int64_t longest = 0;
   for (const auto& slab : slabs_) longest = std::max(longest, slab->ring);
   for (const auto& scratch : scratch_) {

@@ -126,8 +126,12 @@ void System::prepare() {
   }
   reaches_.resize(particles.position.size());
   list_count_ = 0;
+  wall_reach_ = 0;
   for (std::size_t p = 0; p < physics_.size(); ++p) {
-    if (physics_[p].wall) continue;
+    if (physics_[p].wall) {
+      wall_reach_ = std::max(wall_reach_, physics_[p].reach);
+      continue;
+    }
     last_list_ = p;
     ++list_count_;
   }

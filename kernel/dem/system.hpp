@@ -151,17 +151,18 @@ class System {
   void build_pairs(int slab);
   void extract_wall_history();
   void build_walls();
-  struct SlotRange {
-    std::int64_t first, last;
-  };
+  struct PairSweep;
   void contacts(int slab, int worker, bool finish_too);
-  std::int64_t pair_batch(int slab, int worker, std::size_t physics, SlotRange slots, PairListView& list);
+  PairSweep begin_pairs(int slab, int worker, std::size_t physics);
+  void look_ahead(PairSweep& sweep, std::int64_t first) const;
+  std::int64_t pair_batch(PairSweep& sweep, std::int64_t first, std::int64_t last);
   void size_ring(int slab);
   struct WallChunk {
     int slab, worker;
     std::size_t body;
     std::int64_t begin, count;  ///< of WallSlab::bead
     std::size_t base;           ///< its first contact in WallSlab::next
+    std::uint64_t present;      ///< bit p mod 64: it may have contacts of physics p
   };
   void begin_walls(int slab);
   void walls(int slab, int worker, std::int64_t end);
@@ -200,6 +201,7 @@ class System {
   std::array<double, 3> acceleration_{};
   std::int64_t step_ = 0, rebuilds_ = 0;
   bool rebuild_needed_ = false;
+  double wall_reach_ = 0;    ///< gap up to which the physics of any wall acts, m
   double wall_margin_ = 0;   ///< the walls may move this far before a rebuild, m
   double wall_speed_ = 0;    ///< greatest speed of any wall, m/s
   double wall_moved_ = 0;    ///< bound on its displacement since the rebuild, m

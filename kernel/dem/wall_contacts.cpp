@@ -61,7 +61,7 @@ void System::walls(int slab, int worker, std::int64_t end) {
   for (std::size_t body = 0; body < bodies.size(); ++body) {
     WallSlab& wall = slabs_[static_cast<std::size_t>(slab)]->walls[body];
     for (;;) {
-      WallChunk chunk{slab, worker, body, static_cast<std::int64_t>(wall.swept), 0, 0};
+      WallChunk chunk{slab, worker, body, static_cast<std::int64_t>(wall.swept), 0, 0, 0};
       const std::int64_t near = static_cast<std::int64_t>(wall.bead.size());
       while (chunk.count < kBeadsPerQuery && chunk.begin + chunk.count < near &&
              wall.bead[static_cast<std::size_t>(chunk.begin + chunk.count)] < end) {
@@ -71,7 +71,7 @@ void System::walls(int slab, int worker, std::int64_t end) {
       wall.swept += static_cast<std::size_t>(chunk.count);
       find_wall_contacts(chunk);
       for (std::size_t p = 0; p < physics_.size(); ++p) {
-        if (!physics_[p].wall) continue;
+        if (!physics_[p].wall || (chunk.present >> (p % 64) & 1) == 0) continue;
         const std::int64_t count = gather_wall_batch(chunk, p);
         if (count == 0) continue;
         BatchArrays& b = scratch_[static_cast<std::size_t>(worker)]->batch;
@@ -93,10 +93,6 @@ void System::find_wall_contacts(WallChunk& chunk) {
   const Body& body = bodies[chunk.body];
   const Pose& pose = poses_[chunk.body];
   const std::size_t histories = static_cast<std::size_t>(layout_.history_count());
-  double reach = 0;
-  for (const PairPhysics& p : physics_) {
-    if (p.wall) reach = std::max(reach, p.reach);
-  }
   for (std::int64_t k = 0; k < chunk.count; ++k) {
     const PositionLine& line = particles.position[wall.bead[static_cast<std::size_t>(chunk.begin + k)]];
     const Row x = to_body(pose, centre(line));
@@ -107,7 +103,7 @@ void System::find_wall_contacts(WallChunk& chunk) {
       {chunk.count, {scratch.query_position[0], scratch.query_position[1], scratch.query_position[2]}, scratch.query_radius},
       wall.first.data() + chunk.begin,
       wall.candidates.data(),
-      reach};
+      wall_reach_};
   GeometryContacts& found = scratch.wall;
   found.count = 0;
   body.table->contacts(body.self, &query, &found);
@@ -123,6 +119,7 @@ void System::find_wall_contacts(WallChunk& chunk) {
     std::int32_t pair = pair_index(particles.material[wall.bead[local]], body.material_of_slot[found.material[c]], true);
     if (found.overlap[c] + physics_[static_cast<std::size_t>(pair)].reach <= 0) pair = -1;
     scratch.pair[k] = pair;
+    if (pair >= 0) chunk.present |= std::uint64_t{1} << (pair % 64);
     wall.next.bead[at] = local;
     wall.next.feature[at] = pair >= 0 ? found.feature[c] : kUsedUp;
     wall.next.normal[at] = normal;
