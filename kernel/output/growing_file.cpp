@@ -25,6 +25,15 @@ Handle access_list() {
   return list;
 }
 
+// Space in pages of the operating system's size: a small piece of metadata never lies across two of them. A kill may fall between the
+// two halves of such a write, and HDF5 then refuses the piece for its checksum.
+Handle creation_list() {
+  Handle list(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_file_space_strategy(list, H5F_FSPACE_STRATEGY_PAGE, false, 1);
+  H5Pset_file_space_page_size(list, 4096);
+  return list;
+}
+
 }  // namespace
 
 Column::Column(Handle set, fs::path path) : set_(std::move(set)), path_(std::move(path)) {
@@ -94,7 +103,8 @@ void GrowingFile::create(const fs::path& path, const std::function<void(hid_t)>&
   File(temporary, O_WRONLY | O_CREAT | O_TRUNC);
   try {
     require_space(temporary, 0);
-    Handle file = checked({H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access_list()), H5Fclose}, path, "creating the file");
+    Handle file =
+        checked({H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, creation_list(), access_list()), H5Fclose}, path, "creating the file");
     build(file);
     check(H5Fflush(file, H5F_SCOPE_GLOBAL), path, "writing");
     if (!file.close()) fail(path, "closing the file");
@@ -112,7 +122,7 @@ void GrowingFile::reopen(const fs::path& path, const std::function<void(hid_t)>&
         fmt::format("{}: is missing, the run cannot be continued; put it back or start the run again with another -o", path.string()));
   }
   if (::access(path.c_str(), W_OK) != 0) throw_write_error(path, errno);
-  if (!clear_writer_mark(path)) {
+  if (!repair_superblock(path)) {
     throw config::UserError(fmt::format("{}: is damaged at its start; move it away and start the run again", path.string()));
   }
   Handle file = checked({H5Fopen(path.c_str(), H5F_ACC_RDWR, access_list()), H5Fclose}, path, "opening the file");

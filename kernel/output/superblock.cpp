@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -15,7 +16,7 @@ namespace {
 // HDF5 file format specification 3.0, II.A.2: signature (8), version, size of offsets, size of lengths, status flags, four addresses
 // of 8 bytes, checksum of the 44 bytes before it.
 constexpr std::size_t kSize = 48;
-constexpr std::size_t kVersion = 8, kOffsetSize = 9, kFlags = 11, kChecksum = 44;
+constexpr std::size_t kVersion = 8, kOffsetSize = 9, kFlags = 11, kEnd = 28, kChecksum = 44;
 constexpr std::array<unsigned char, 8> kSignature{0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
 using Superblock = std::array<unsigned char, kSize>;
 
@@ -45,28 +46,48 @@ std::uint32_t lookup3(const Superblock& bytes) {
   return c;
 }
 
-bool clear(int descriptor) {
+// Rewrites the superblock with `change` applied, unless it is of a kind that knows no mark. False when it is damaged.
+template <class Change>
+bool rewrite(const std::filesystem::path& path, const Change& change) {
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) return false;
   Superblock block;
-  if (::pread(descriptor, block.data(), kSize, 0) != static_cast<ssize_t>(kSize)) return false;
-  if (std::memcmp(block.data(), kSignature.data(), kSignature.size()) != 0) return false;
-  if (block[kVersion] != 3 || block[kOffsetSize] != 8 || block[kFlags] == 0) return true;
-  std::uint32_t stored = 0;
-  std::memcpy(&stored, block.data() + kChecksum, 4);
-  if (stored != lookup3(block)) return false;
-  block[kFlags] = 0;
-  stored = lookup3(block);
-  std::memcpy(block.data() + kChecksum, &stored, 4);
-  return ::pwrite(descriptor, block.data(), kSize, 0) == static_cast<ssize_t>(kSize);
+  bool good = ::pread(descriptor, block.data(), kSize, 0) == static_cast<ssize_t>(kSize) &&
+              std::memcmp(block.data(), kSignature.data(), kSignature.size()) == 0;
+  if (good && block[kVersion] == 3 && block[kOffsetSize] == 8) {
+    std::uint32_t stored = 0;
+    std::memcpy(&stored, block.data() + kChecksum, 4);
+    good = stored == lookup3(block);
+    const Superblock before = block;
+    if (good) change(block, descriptor);
+    if (good && block != before) {
+      stored = lookup3(block);
+      std::memcpy(block.data() + kChecksum, &stored, 4);
+      good = ::pwrite(descriptor, block.data(), kSize, 0) == static_cast<ssize_t>(kSize);
+    }
+  }
+  ::close(descriptor);
+  return good;
 }
 
 }  // namespace
 
 bool clear_writer_mark(const std::filesystem::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
-  if (descriptor < 0) return false;
-  const bool done = clear(descriptor);
-  ::close(descriptor);
-  return done;
+  return rewrite(path, [](Superblock& block, int) { block[kFlags] = 0; });
+}
+
+bool repair_superblock(const std::filesystem::path& path) {
+  bool extended = true;
+  const bool rewritten = rewrite(path, [&extended](Superblock& block, int descriptor) {
+    block[kFlags] = 0;
+    std::uint64_t end = 0;
+    std::memcpy(&end, block.data() + kEnd, 8);
+    const auto length = static_cast<std::uint64_t>(std::max<off_t>(0, ::lseek(descriptor, 0, SEEK_END)));
+    if (length < end) extended = ::ftruncate(descriptor, static_cast<off_t>(end)) == 0;
+    end = std::max(end, length);
+    std::memcpy(block.data() + kEnd, &end, 8);
+  });
+  return rewritten && extended;
 }
 
 }  // namespace millscope::output::hdf5

@@ -9,4 +9,8 @@ namespace millscope::output::hdf5 {
 /// of a kind without one), false when it cannot be read or written.
 bool clear_writer_mark(const std::filesystem::path& path);
 
+/// As above, and makes the file's length and the end that the superblock states agree, whichever is greater: a writer that was killed
+/// between two of its writes leaves either behind the other. False when it is damaged.
+bool repair_superblock(const std::filesystem::path& path);
+
 }  // namespace millscope::output::hdf5
