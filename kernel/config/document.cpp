@@ -42,20 +42,20 @@ void merge_sibling(NodeData& base, const NodeData& over) {
   }
 }
 
-Tree load_level(const std::string& text, const std::string& file, std::vector<std::string>& open_files);
+Tree load_level(const std::string& text, const std::string& file, Keys keys, std::vector<std::string>& open_files);
 
-Tree load_included(const NodeData& item, const std::string& from, std::vector<std::string>& open_files) {
+Tree load_included(const NodeData& item, const std::string& from, Keys keys, std::vector<std::string>& open_files) {
   if (item.type != Node::Type::scalar || item.null) throw UserError(item.where, "'include' wants a list of file names");
   const std::string file = (fs::path(from).parent_path() / item.text).lexically_normal().string();
   const std::string key = fs::absolute(file).lexically_normal().string();
   for (const std::string& open : open_files) {
     if (open == key) throw UserError(item.where, fmt::format("'{}' includes itself; remove the circle", item.text));
   }
-  return load_level(read_text(file, &item.where), file, open_files);
+  return load_level(read_text(file, &item.where), file, keys, open_files);
 }
 
-Tree load_level(const std::string& text, const std::string& file, std::vector<std::string>& open_files) {
-  Tree own = parse_tree(text, file);
+Tree load_level(const std::string& text, const std::string& file, Keys keys, std::vector<std::string>& open_files) {
+  Tree own = parse_tree(text, file, keys);
   if (own->type != Node::Type::map) throw UserError(own->where, "the file is no map; write 'key: value' lines");
   const NodeEntry* include = own->entry("include");
   if (include == nullptr) return own;
@@ -65,7 +65,7 @@ Tree load_level(const std::string& text, const std::string& file, std::vector<st
   merged->where = own->where;
   std::vector<Tree> items = include->value->items;
   if (include->value->type == Node::Type::scalar) items = {include->value};
-  for (const Tree& item : items) merge_sibling(*merged, *load_included(*item, file, open_files));
+  for (const Tree& item : items) merge_sibling(*merged, *load_included(*item, file, keys, open_files));
   open_files.pop_back();
   own->erase("include");
   overlay(*merged, *own);
@@ -119,13 +119,17 @@ void assign_paths(NodeData& node, const std::string& path) {
   for (std::size_t i = 0; i < node.items.size(); ++i) assign_paths(*node.items[i], prefix + std::to_string(i));
 }
 
-Tree load_tree(const std::string& text, const std::string& file) {
+Tree load_tree(const std::string& text, const std::string& file, Keys keys) {
   std::vector<std::string> open_files;
-  return load_level(text, file, open_files);
+  return load_level(text, file, keys, open_files);
 }
 
 Node load_document(const std::string& file, const std::vector<std::string>& overrides) {
   return finish_tree(load_tree(read_text(file, nullptr), file), overrides);
+}
+
+Node load_document_with_paths(const std::string& file, const std::vector<std::string>& overrides) {
+  return finish_tree(load_tree(read_text(file, nullptr), file, Keys::paths), overrides);
 }
 
 Node parse_document(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {

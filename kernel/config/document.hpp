@@ -76,6 +76,9 @@ class Node {
 /// created key means anything shows when the tree is read. Throws UserError.
 Node load_document(const std::string& file, const std::vector<std::string>& overrides = {});
 
+/// The same for a file whose keys may be paths: `mill.speed: 60 rpm` stands for `mill: {speed: 60 rpm}`.
+Node load_document_with_paths(const std::string& file, const std::vector<std::string>& overrides = {});
+
 /// The same from text; `file` is the name used in messages and for relative paths.
 Node parse_document(const std::string& text, const std::string& file, const std::vector<std::string>& overrides = {});
 

@@ -32,8 +32,11 @@ struct NodeData {
 
 using Tree = std::shared_ptr<NodeData>;
 
+/// How keys are written: `paths` lets `a.b` stand for a map within a map.
+enum class Keys { plain, paths };
+
 /// One file's text as a tree, without includes. Throws UserError.
-Tree parse_tree(const std::string& text, const std::string& file);
+Tree parse_tree(const std::string& text, const std::string& file, Keys keys = Keys::plain);
 /// The value of an override: every node gets `where`.
 Tree parse_value(const std::string& text, const Location& where);
 /// Whether a key can be used in a path; throws UserError if not.
@@ -42,7 +45,7 @@ void check_key(const std::string& key, const Location& where);
 /// Whole text of a file. Throws UserError, with `named_at` (may be null) as the place.
 std::string read_text(const std::string& file, const Location* named_at);
 /// Parses `text` with everything that it includes.
-Tree load_tree(const std::string& text, const std::string& file);
+Tree load_tree(const std::string& text, const std::string& file, Keys keys = Keys::plain);
 /// Lays `over` on `base`: its leaves win, null removes.
 void overlay(NodeData& base, const NodeData& over);
 void apply_override(NodeData& root, const std::string& text);

@@ -35,7 +35,7 @@ std::string odd_number(const std::string& text) {
 
 class Builder : public YAML::EventHandler {
  public:
-  explicit Builder(std::string file) : file_(std::move(file)) {}
+  explicit Builder(std::string file, Keys keys = Keys::plain) : file_(std::move(file)), keys_(keys) {}
   Tree root;
 
   void OnDocumentStart(const YAML::Mark&) override {}
@@ -76,7 +76,8 @@ class Builder : public YAML::EventHandler {
   struct Level {
     Tree node;
     bool has_key = false;
-    std::string key, written;
+    std::vector<std::string> path;  // one key, or with Keys::paths several
+    std::string written;
     Location where;
   };
 
@@ -97,19 +98,45 @@ class Builder : public YAML::EventHandler {
     if (tag.size() > 1) throw UserError(place(mark), fmt::format("the tag '{}' is not supported; remove it", tag));
   }
 
+  std::vector<std::string> split(const std::string& written, const Location& where) const {
+    std::vector<std::string> path;
+    std::size_t begin = 0;
+    for (std::size_t dot = 0; dot != std::string::npos; begin = dot + 1) {
+      dot = keys_ == Keys::paths ? written.find('.', begin) : std::string::npos;
+      const std::string key = written.substr(begin, dot == std::string::npos ? dot : dot - begin);
+      check_key(key, where);
+      path.push_back(normal_pair(key));
+    }
+    return path;
+  }
+
   void take_key(const YAML::Mark& mark, const std::string& written) {
-    check_key(written, place(mark));
     Level& level = open_.back();
-    level.key = normal_pair(written);
+    level.path = split(written, place(mark));
     level.written = written;
     level.where = place(mark);
     level.has_key = true;
-    const NodeEntry* first = level.node->entry(level.key);
-    if (first == nullptr) return;
+    NodeData* parent = level.node.get();
+    for (std::size_t i = 0; i < level.path.size(); ++i) {
+      const NodeEntry* first = parent->entry(level.path[i]);
+      if (first == nullptr) return;
+      const bool on_the_way = i + 1 < level.path.size();
+      if (!on_the_way || first->value->type != Node::Type::map) refuse_twice(level, *first, on_the_way);
+      parent = first->value.get();
+    }
+  }
+
+  static std::string last_of(const std::string& written) { return written.substr(written.rfind('.') + 1); }
+
+  [[noreturn]] static void refuse_twice(const Level& level, const NodeEntry& first, bool on_the_way) {
+    if (on_the_way) {
+      throw UserError(level.where, fmt::format("'{}' lies below '{}', which is a single value at line {}; remove one", level.written,
+                                               first.written, first.value->where.line));
+    }
     const std::string spelling =
-        first->written == written ? "" : fmt::format(" as '{}' (the order of a pair does not matter)", first->written);
-    throw UserError(level.where,
-                    fmt::format("key '{}' is given twice; first at line {}{}; remove one", written, first->value->where.line, spelling));
+        first.written == last_of(level.written) ? "" : fmt::format(" as '{}' (the order of a pair does not matter)", first.written);
+    throw UserError(level.where, fmt::format("key '{}' is given twice; first at line {}{}; remove one", level.written,
+                                             first.value->where.line, spelling));
   }
 
   void attach(const Tree& node) {
@@ -123,7 +150,17 @@ class Builder : public YAML::EventHandler {
       return;
     }
     node->where = level.where;
-    level.node->entries.push_back({level.key, level.written, node});
+    NodeData* parent = level.node.get();
+    for (std::size_t i = 0; i + 1 < level.path.size(); ++i) {
+      if (parent->entry(level.path[i]) == nullptr) {
+        auto map = std::make_shared<NodeData>();
+        map->type = Node::Type::map;
+        map->where = level.where;
+        parent->entries.push_back({level.path[i], level.path[i], map});
+      }
+      parent = parent->entry(level.path[i])->value.get();
+    }
+    parent->entries.push_back({level.path.back(), last_of(level.written), node});
     level.has_key = false;
   }
 
@@ -137,6 +174,7 @@ class Builder : public YAML::EventHandler {
   }
 
   std::string file_;
+  Keys keys_;
   std::vector<Level> open_;
 };
 
@@ -158,9 +196,9 @@ void place_everywhere(NodeData& node, const Location& where) {
 
 }  // namespace
 
-Tree parse_tree(const std::string& text, const std::string& file) {
+Tree parse_tree(const std::string& text, const std::string& file, Keys keys) {
   refuse_tabs(text, file);
-  Builder builder(file);
+  Builder builder(file, keys);
   try {
     std::istringstream stream(text + "\n...\n");  // the end mark makes the library refuse a quote that is never closed
     YAML::Parser parser(stream);

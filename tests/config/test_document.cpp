@@ -152,3 +152,17 @@ TEST_CASE("includes that cannot work") {
   CHECK(load_document(type).at("a").text() == "off");
   CHECK(message_of([&] { load_document(folder.path.string()); }) == folder.path.string() + ": is a directory; name a YAML file");
 }
+
+TEST_CASE("a file with paths for keys reads as the maps that they stand for") {
+  const Folder folder;
+  const auto read = [&](const std::string& text) { return load_document_with_paths(folder.write("paths.yaml", text)); };
+  const Node root = read("p:\n  pairs.liner~glass.friction: {range: [0, 1]}\n  pairs.glass~liner.rolling: 2\n");
+  const Node pair = root.at("p").at("pairs").at("glass~liner");
+  CHECK(pair.keys() == std::vector<std::string>{"friction", "rolling"});
+  CHECK(pair.at("rolling").path() == "p.pairs.glass~liner.rolling");
+  CHECK(pair.at("friction").where().line == 2);
+  const std::string file = (folder.path / "paths.yaml").string();
+  CHECK(message_of([&] { read("a.b: 1\na.b: 2\n"); }) == file + ":2: key 'a.b' is given twice; first at line 1; remove one");
+  CHECK(message_of([&] { read("a: 1\na.b: 2\n"); }) == file + ":2: 'a.b' lies below 'a', which is a single value at line 1; remove one");
+  CHECK(message_of([&] { read("a..b: 1\n"); }) == file + ":1: a key is empty; write a name before the colon");
+}
