@@ -93,8 +93,9 @@ void know_charge(const config::Case& c, const std::optional<config::Vessel>& ves
 
 }  // namespace
 
-MillOfCase read_mill_of_case(const std::filesystem::path& case_file, const host::Registry& registry) {
-  const config::Case c = config::read_case(case_file.string());
+MillOfCase read_mill_of_case(const std::filesystem::path& case_file, const host::Registry& registry,
+                             const std::vector<std::string>& settings) {
+  const config::Case c = config::read_case(case_file.string(), settings);
   MillOfCase mill;
   mill.name = c.name;
   const Shell shell = find_shell(c, registry);

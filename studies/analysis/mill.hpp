@@ -21,7 +21,8 @@ struct MillOfCase {
 };
 
 /// Reads a case, or what `millscope run` left of it (case.resolved.yaml). Of the plugins only those of geometry and gravity are used.
-/// Throws config::UserError.
-MillOfCase read_mill_of_case(const std::filesystem::path& case_file, const host::Registry& registry);
+/// `settings`: as `--set`. Throws config::UserError.
+MillOfCase read_mill_of_case(const std::filesystem::path& case_file, const host::Registry& registry,
+                             const std::vector<std::string>& settings = {});
 
 }  // namespace millscope::studies

@@ -1,0 +1,62 @@
+// Inequalities between parameters.
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "studies/calibrate/study_sections.hpp"
+
+namespace millscope::calibrate {
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+std::optional<double> number(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+/// factor · parameter, or a bare number where `parameter` is −1.
+struct Side {
+  double factor = 1;
+  int parameter = -1;
+  double value(const Eigen::VectorXd& point) const { return parameter < 0 ? factor : factor * point[parameter]; }
+};
+
+Side read_side(const config::Node& node, const std::string& text, const std::vector<Parameter>& parameters) {
+  Side side;
+  std::string name = trimmed(text);
+  if (const auto alone = number(name)) return {*alone, -1};
+  if (const std::size_t star = name.find('*'); star != std::string::npos) {
+    const auto factor = number(trimmed(name.substr(0, star)));
+    if (!factor) node.fail(fmt::format("is '{}': '{}' is no number; write e.g. a < 0.5 * b", node.text(), trimmed(name.substr(0, star))));
+    side.factor = *factor;
+    name = trimmed(name.substr(star + 1));
+  }
+  side.parameter = find_parameter(parameters, name);
+  if (side.parameter >= 0) return side;
+  std::vector<std::string> known;
+  for (const Parameter& p : parameters) known.push_back(p.name);
+  node.fail(fmt::format("is '{}': '{}' is no parameter of this study; {}", node.text(), name, config::suggestion(name, known)));
+}
+
+}  // namespace
+
+Constraint read_constraint(const config::Node& node, const std::vector<Parameter>& parameters) {
+  const std::string& text = node.text();
+  const std::size_t sign = text.find_first_of("<>");
+  if (sign == std::string::npos) node.fail(fmt::format("is '{}': no inequality; write e.g. mu_r < mu_s", text));
+  const bool strict = sign + 1 >= text.size() || text[sign + 1] != '=';
+  const Side left = read_side(node, text.substr(0, sign), parameters);
+  const Side right = read_side(node, text.substr(sign + (strict ? 1 : 2)), parameters);
+  const Side small = text[sign] == '<' ? left : right, large = text[sign] == '<' ? right : left;
+  return {text, [small, large, strict](const Eigen::VectorXd& point) {
+            const double a = small.value(point), b = large.value(point);
+            return strict ? a < b : a <= b;
+          }};
+}
+
+}  // namespace millscope::calibrate

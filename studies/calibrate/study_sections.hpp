@@ -1,0 +1,24 @@
+// Sections of study.yaml; for the files of this room.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/calibrate/study.hpp"
+
+namespace millscope::calibrate {
+
+std::vector<Condition> read_conditions(const config::Node& section);
+std::vector<Parameter> read_parameters(const config::Node& section);
+ObjectiveChoice read_objective(const config::Node& node);
+DesignChoice read_design(const config::Node& section);
+Budget read_budget(const config::Node& section);
+Observing read_observing(const config::Node& section);
+
+/// "a < 0.5 * b", "a >= 0.1": names or paths of parameters. Throws config::UserError at the node.
+Constraint read_constraint(const config::Node& node, const std::vector<Parameter>& parameters);
+
+/// The index of the parameter of that name or path; −1: none.
+int find_parameter(const std::vector<Parameter>& parameters, const std::string& name);
+
+}  // namespace millscope::calibrate
