@@ -46,6 +46,7 @@ struct Hyperparameters {
   Eigen::VectorXd length;
   double deviation;         ///< s, units of the observable
   double nugget_deviation;  ///< units of the observable
+  double inflation;         ///< the variance of predictions is multiplied by it: mean square of the left-out residuals where above 1
   double log_likelihood;    ///< restricted, penalised; of the observable in units of its spread
 };
 
@@ -59,6 +60,8 @@ class Emulator {
   /// Covariance of the emulator's errors between observables at a point: variance + nugget on the diagonal, correlated as the residuals of
   /// the left-out runs are (shrunk towards none after Schäfer & Strimmer 2005).
   Eigen::MatrixXd covariance(const Prediction& prediction) const;
+  /// Those correlations: observables × observables.
+  const Eigen::MatrixXd& correlation() const;
   Diagnostics leave_one_out() const;
   const Hyperparameters& hyperparameters(Eigen::Index observable) const;
   /// This emulator as if a run at the point had said what is predicted there: to choose several points at once.
