@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/QR>
+#include <cmath>
 #include <stdexcept>
 
 #include "kernel/config/error.hpp"

@@ -50,6 +50,7 @@ class CmaEs {
     std::uint64_t random = 0;
   };
   CmaEs(const Box& box, State state);
+  void recombine(const std::vector<std::size_t>& order);
   Box box_;
   State state_;
 };
