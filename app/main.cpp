@@ -17,7 +17,7 @@ namespace {
 
 struct Command {
   const char* name;
-  const char* what;
+  const char* what;  ///< nullptr: not for people
   int (*call)(const Arguments&);
 };
 
@@ -25,6 +25,8 @@ constexpr Command kCommands[] = {
     {"run", "simulate a case", run},
     {"resume", "continue a run from its newest checkpoint", resume},
     {"check", "check a case and predict its cost", check},
+    {"campaign", "run many simulations, each once", run_campaign},
+    {"campaign-task", nullptr, campaign_task},
     {"analyze", "measure a simulation or a recording", analyze},
     {"compare", "what differs between two results of analyze", compare},
     {"pept", "how good a recording of a tracer is", pept},
@@ -37,7 +39,9 @@ constexpr Command kCommands[] = {
 
 void print_help() {
   fmt::print("millscope {}: see inside a tumbling mill\n\nusage: millscope COMMAND …\n\n", MILLSCOPE_VERSION);
-  for (const Command& c : kCommands) fmt::print("  {:<10} {}\n", c.name, c.what);
+  for (const Command& c : kCommands) {
+    if (c.what != nullptr) fmt::print("  {:<10} {}\n", c.name, c.what);
+  }
   fmt::print("\n'millscope COMMAND --help' explains one, with an example.\n\nExample:\n  millscope run configs/demo.yaml -o demo-out\n\n"
              "Exit codes: 0 done · 1 internal error · 2 bad input, the one line on stderr says what and how to put it right · 3 stopped by a signal after "
              "writing a checkpoint · 4 the output cannot be written (disk full, no permission); what was written before is whole\n\nParticles are spheres; other shapes are not modelled yet.\n");
@@ -55,7 +59,7 @@ int dispatch(const Arguments& all) {
   std::vector<std::string> names;
   for (const Command& c : kCommands) {
     if (all[0] == c.name) return c.call(Arguments(all.begin() + 1, all.end()));
-    names.emplace_back(c.name);
+    if (c.what != nullptr) names.emplace_back(c.name);
   }
   throw config::UserError(fmt::format("'{}' is no command; {}", all[0], config::suggestion(all[0], names)));
 }

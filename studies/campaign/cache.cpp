@@ -1,0 +1,150 @@
+#include "studies/campaign/cache.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "kernel/output/file.hpp"
+#include "kernel/output/summary.hpp"
+
+namespace millscope::campaign {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<const char*, 5> kStages{"waiting", "running", "interrupted", "done", "failed"};
+
+Json json_of(const fs::path& file) {
+  const std::optional<std::string> text = text_of(file);
+  return text ? Json::parse(*text, nullptr, false) : Json();
+}
+
+Stage stage_named(const std::string& word) {
+  for (std::size_t i = 0; i < kStages.size(); ++i) {
+    if (word == kStages[i]) return static_cast<Stage>(i);
+  }
+  return Stage::waiting;
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  output::AtomicFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+/// Puts a copy named after its content into CACHE/files; returns its path as seen from an entry.
+std::string keep_copy(const NamedFile& file, const fs::path& cache) {
+  const std::string name = file.hash + fs::path(file.path).extension().string();
+  const fs::path copy = cache / "files" / name;
+  if (!fs::exists(copy)) {
+    make_directory(copy.parent_path());
+    const std::optional<std::string> bytes = text_of(file.path);
+    if (!bytes || content_hash(*bytes) != file.hash)
+      throw config::UserError(file.path + ": changes while the campaign is being prepared; start again when it is whole");
+    write_text(copy, *bytes);
+  }
+  return "../files/" + name;
+}
+
+}  // namespace
+
+std::optional<std::string> text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return {};
+  return std::string{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+void make_directory(const fs::path& directory) {
+  std::error_code trouble;
+  fs::create_directories(directory, trouble);
+  if (trouble) output::throw_write_error(directory, trouble.value());
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+std::string last_line(const fs::path& file) {
+  std::string last;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    if (!line.empty()) last = line;
+  }
+  constexpr std::string_view kName = "millscope: ";
+  return last.starts_with(kName) ? last.substr(kName.size()) : last;
+}
+
+void Entry::prepare(const Identity& identity, const std::string& label) const {
+  make_directory(folder_);
+  if (!fs::exists(case_file())) {
+    std::string text = identity.case_yaml;
+    for (const NamedFile& file : identity.files) {
+      if (file.alone) text = replaced(std::move(text), quoted(file.path), quoted(keep_copy(file, folder_.parent_path())));
+    }
+    write_text(case_file(), text);
+  }
+  if (fs::exists(folder_ / "task.json")) return;
+  TaskRecord record;
+  record.label = label;
+  write(record);
+}
+
+TaskRecord Entry::read() const {
+  const Json json = json_of(folder_ / "task.json");
+  TaskRecord record;
+  if (json.is_object()) {
+    record.stage = stage_named(json.value("state", ""));
+    record.label = json.value("label", "");
+    record.message = json.value("message", "");
+    record.attempts = json.value("attempts", 0);
+    record.wall_s = json.value("wall_s", 0.0);
+    record.host = json.value("host", "");
+  }
+  const Json summary = json_of(run() / "summary.json");
+  if (summary.is_object()) {
+    record.stage = Stage::done;
+    record.message.clear();
+    record.wall_s = summary.value("wall_s", 0.0);
+  } else if (record.stage == Stage::done) {
+    record.stage = Stage::interrupted;  // somebody took the results away
+  }
+  return record;
+}
+
+void Entry::write(const TaskRecord& record) const {
+  Json json;
+  json["schema_version"] = 1;
+  json["key"] = folder_.filename().string();
+  json["label"] = record.label;
+  json["state"] = kStages[static_cast<std::size_t>(record.stage)];
+  if (!record.message.empty()) json["message"] = record.message;
+  json["attempts"] = record.attempts;
+  if (record.stage == Stage::done) json["wall_s"] = record.wall_s;
+  if (!record.host.empty()) json["host"] = record.host;
+  output::write_json(folder_ / "task.json", json);
+}
+
+std::int64_t Entry::checkpoint_time() const {
+  struct stat s {};
+  if (::stat((run() / "checkpoint.h5").c_str(), &s) != 0) return 0;
+  return static_cast<std::int64_t>(s.st_mtim.tv_sec) * 1'000'000'000 + s.st_mtim.tv_nsec;
+}
+
+Outcome outcome_of(const Entry& entry, const TaskRecord& record) {
+  Outcome outcome;
+  outcome.state = record.stage == Stage::done ? State::done : State::failed;
+  outcome.folder = entry.run();
+  outcome.message = record.message;
+  outcome.wall_s = record.wall_s;
+  outcome.key = entry.folder().filename().string();
+  return outcome;
+}
+
+}  // namespace millscope::campaign

@@ -1,0 +1,185 @@
+#include "studies/campaign/identity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/uuid/name_generator_sha1.hpp>
+#include <boost/uuid/uuid.hpp>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "kernel/config/values.hpp"
+#include "kernel/config/writer.hpp"
+#include "kernel/output/summary.hpp"
+#include "kernel/run/assembly.hpp"
+
+namespace millscope::campaign {
+namespace {
+
+namespace fs = std::filesystem;
+using config::UserError;
+
+constexpr int kCacheVersion = 1;                  // of what a key is made of
+constexpr std::uint64_t kBaseMemory = 40U << 20;  // bytes: the program, its libraries and buffers, as `millscope check` has it
+constexpr std::uint64_t kMemoryPerBead = 1000;    // bytes
+constexpr std::uint64_t kMemoryPerMeshByte = 10;  // triangles, their trees and their topology
+
+std::string read_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw UserError(fmt::format("{}: the case names this file and it cannot be read; put it there or correct the case", path));
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+/// A glTF file may keep its numbers in files beside it: their contents belong to it.
+NamedFile name_file(const std::string& path) {
+  NamedFile file{path, content_hash(read_file(path)), true};
+  std::string extension = fs::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (extension != ".gltf") return file;
+  file.alone = false;
+  const nlohmann::json json = nlohmann::json::parse(read_file(path), nullptr, false);
+  if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return file;
+  for (const nlohmann::json& buffer : json["buffers"]) {
+    const std::string uri = buffer.is_object() ? buffer.value("uri", "") : "";
+    const fs::path beside = fs::path(path).parent_path() / uri;
+    if (uri.empty() || uri.starts_with("data:") || !fs::is_regular_file(beside)) continue;
+    file.hash = content_hash(file.hash + content_hash(read_file(beside.string())));
+  }
+  return file;
+}
+
+/// Visits every use of a plugin in a case: the kind, the plugin's name, and each section with its parameters.
+template <class Visit>
+void each_plugin(const config::Case& c, const Visit& visit) {
+  const auto on_pairs = [&](Kind kind, const config::PluginInstance& use) {
+    visit(kind, use.kind, use.node, Scope::instance);
+    for (const std::string& key : c.pairs.keys()) visit(kind, use.kind, c.pairs.section().at(key), Scope::pair);
+  };
+  on_pairs(Kind::contact_law, c.contact.law);
+  for (const config::PluginInstance& use : c.contact.interactions) on_pairs(Kind::interaction, use);
+  for (const config::PluginInstance& use : c.contact.pair_parameters) on_pairs(Kind::pair_parameter, use);
+  for (const config::PluginInstance& use : c.body_forces) visit(Kind::body_force, use.kind, use.node, Scope::instance);
+  for (const config::GeometryCase& g : c.geometry) visit(Kind::geometry, g.plugin.kind, g.plugin.node, Scope::instance);
+}
+
+std::vector<NamedFile> files_of(const config::Case& c, const host::Registry& registry) {
+  std::set<std::string> paths;
+  each_plugin(c, [&](Kind kind, const std::string& name, const config::Node& node, Scope scope) {
+    const Descriptor& descriptor = *registry.find(kind, name).descriptor;
+    const config::ResolvedValues values = config::resolve_present(descriptor, node, scope);
+    const Values view = values.view();
+    std::uint64_t next = 0;
+    for (std::uint64_t i = 0; i < descriptor.parameter_count; ++i) {
+      if (descriptor.parameters[i].scope != scope) continue;
+      const Value& value = view.items[next++];
+      if (descriptor.parameters[i].type == ValueType::file && value.given != 0) paths.insert(value.text);
+    }
+  });
+  std::vector<NamedFile> files;
+  for (const std::string& path : paths) files.push_back(name_file(path));
+  return files;
+}
+
+/// Of a library and of its builds for other instruction sets: which of them a machine takes makes no difference to the result.
+std::string library_hash(const host::Library& library) {
+  const fs::path path = library.path();
+  const fs::path base = library.level().empty() ? path.parent_path() : path.parent_path().parent_path();
+  std::string hashes;
+  for (const char* level : {"", "v2", "v3", "v4"}) {
+    const fs::path build = base / level / path.filename();
+    if (fs::is_regular_file(build)) hashes += fmt::format("{} {}\n", level, content_hash(read_file(build.string())));
+  }
+  return content_hash(hashes);
+}
+
+std::string plugins_text(const config::Case& c, const host::Registry& registry) {
+  std::map<std::string, std::string> lines;
+  each_plugin(c, [&](Kind kind, const std::string& name, const config::Node&, Scope) {
+    std::string& hash = lines[host::text(kind) + " " + name];
+    if (hash.empty()) hash = library_hash(*registry.find(kind, name).library);
+  });
+  std::string text;
+  for (const auto& [name, hash] : lines) text += fmt::format("{} {}\n", name, hash);
+  return text;
+}
+
+/// The case without what has no influence on what the run writes, and with contents in the place of paths.
+std::string essence(config::Case c, const host::Registry& registry, const std::vector<NamedFile>& files) {
+  c.name.clear();
+  c.run.threads = 0;
+  c.output.checkpoint = config::OutputCase::Checkpoint{};
+  std::string text = config::resolved_yaml(c, registry.descriptors());
+  for (const NamedFile& file : files) text = replaced(std::move(text), quoted(file.path), "content " + file.hash);
+  return text;
+}
+
+/// 0 when it cannot be told; the run itself then says why.
+double beads_of(const Simulation& simulation, const config::Case& c, const host::Registry& registry) {
+  try {
+    const bool told = !c.fill.filling || c.fill.vessel;
+    if (told) return static_cast<double>(config::bead_count(c));
+    return static_cast<double>(
+        run::assemble(config::read_case(simulation.case_file.string(), simulation.settings), registry, {1, ""}).bead_count);
+  } catch (const UserError&) {
+    return 0;
+  }
+}
+
+std::uint64_t predicted_memory(double beads, const std::vector<NamedFile>& files) {
+  std::uint64_t bytes = kBaseMemory + static_cast<std::uint64_t>(beads) * kMemoryPerBead;
+  for (const NamedFile& file : files) {
+    std::error_code ignored;
+    const std::uintmax_t size = fs::file_size(file.path, ignored);
+    if (!ignored) bytes += size * kMemoryPerMeshByte;
+  }
+  return bytes;
+}
+
+host::RegistryOptions registry_options(const Options& options) {
+  host::RegistryOptions r;
+  for (const fs::path& directory : options.plugin_directories) r.directories.push_back(directory.string());
+  return r;
+}
+
+}  // namespace
+
+std::string content_hash(const std::string& bytes) {
+  // The namespace is part of the cache's format.
+  constexpr boost::uuids::uuid kNamespace{{0x6d, 0x69, 0x6c, 0x6c, 0x73, 0x63, 0x6f, 0x70, 0x65, 0, 0, 0, 0, 0, 0, 1}};
+  const boost::uuids::uuid hash = boost::uuids::name_generator_sha1(kNamespace)(bytes.data(), bytes.size());
+  std::string text;
+  for (const std::uint8_t byte : hash) text += fmt::format("{:02x}", byte);
+  return text;
+}
+
+std::string quoted(const std::string& text) { return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) text.replace(at, from.size(), to);
+  return text;
+}
+
+Identifier::Identifier(const Options& options) : registry_(registry_options(options)) {}
+
+Identity Identifier::identify(const Simulation& simulation) const {
+  const config::Case c = config::read_case(simulation.case_file.string(), simulation.settings);
+  config::finish(c, registry_.descriptors());
+  Identity id;
+  id.files = files_of(c, registry_);
+  const std::string version = output::provenance({}, {})["version"].get<std::string>();
+  id.key = content_hash(
+      fmt::format("cache {}\nmillscope {}\n{}{}", kCacheVersion, version, plugins_text(c, registry_), essence(c, registry_, id.files)));
+  id.case_yaml = config::resolved_yaml(c, registry_.descriptors());
+  const double beads = beads_of(simulation, c, registry_);
+  id.work = std::max(1.0, beads) * (c.time.end + c.fill.settle);
+  id.end_s = c.time.end;
+  id.memory = predicted_memory(beads, id.files);
+  return id;
+}
+
+std::string key(const Simulation& simulation, const Options& options) { return Identifier(options).identify(simulation).key; }
+
+}  // namespace millscope::campaign

@@ -1,0 +1,49 @@
+// What a simulation's result depends on, and its key in the cache.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kernel/host/registry.hpp"
+#include "studies/campaign/campaign.hpp"
+
+namespace millscope::campaign {
+
+/// A file that a case names.
+struct NamedFile {
+  std::string path;   ///< absolute, as the resolved case has it
+  std::string hash;   ///< of its content
+  bool alone = true;  ///< needs no other file beside it, so that a copy elsewhere serves
+};
+
+/// A simulation that has been read.
+struct Identity {
+  std::string key;
+  std::string case_yaml;         ///< the resolved case; files by the paths of `files`
+  std::vector<NamedFile> files;  ///< each once
+  double work = 1;               ///< beads × simulated seconds: what its cost grows with
+  double end_s = 0;              ///< s, time.end_s
+  std::uint64_t memory = 0;      ///< predicted, bytes
+};
+
+/// Reads simulations; holds the plugins that explain their parameters.
+class Identifier {
+ public:
+  explicit Identifier(const Options& options);
+  /// Throws UserError when the case cannot be read.
+  Identity identify(const Simulation& simulation) const;
+
+ private:
+  host::Registry registry_;
+};
+
+/// SHA-1 of bytes as 32 hexadecimal digits (a version 5 UUID).
+std::string content_hash(const std::string& bytes);
+
+/// How a text stands in a resolved case.
+std::string quoted(const std::string& text);
+
+/// Every `from` in `text` replaced by `to`.
+std::string replaced(std::string text, const std::string& from, const std::string& to);
+
+}  // namespace millscope::campaign
