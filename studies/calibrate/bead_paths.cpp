@@ -1,0 +1,96 @@
+#include "studies/calibrate/bead_paths.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/config/case.hpp"
+#include "kernel/output/frame_reader.hpp"
+#include "studies/camera/camera.hpp"
+
+namespace millscope::calibrate {
+namespace {
+
+using config::UserError;
+
+std::vector<std::size_t> evenly(std::size_t count, int wished) {
+  const std::size_t n = std::min(count, static_cast<std::size_t>(wished));
+  std::vector<std::size_t> chosen(n);
+  for (std::size_t i = 0; i < n; ++i) chosen[i] = i * count / n;
+  return chosen;
+}
+
+}  // namespace
+
+BeadPaths::BeadPaths(const std::filesystem::path& run, int beads, const AxialPlace& place, const host::Registry& registry)
+    : case_file_(run / "case.resolved.yaml"), mill_(studies::read_mill_of_case(case_file_, registry)), place_(place) {
+  const output::FrameReader reader(run / "frames.h5");
+  const double from = config::read_case(case_file_.string()).time.analyze_from;
+  const std::vector<double>& time = reader.scalars().time;
+  const auto first = static_cast<std::size_t>(
+      std::lower_bound(time.begin(), time.begin() + static_cast<std::ptrdiff_t>(reader.frame_count()), from - 1e-9) - time.begin());
+  const std::size_t frames = reader.frame_count() - first;
+  if (frames < 4)
+    throw UserError(
+        fmt::format("{}: has {} frames after {} s, at least 4 are needed; simulate longer", reader.path().string(), frames, from));
+  time_.assign(time.begin() + static_cast<std::ptrdiff_t>(first), time.begin() + static_cast<std::ptrdiff_t>(first + frames));
+  const std::vector<std::size_t> chosen = evenly(reader.beads().size(), beads);
+  for (const std::size_t b : chosen) {
+    ids_.push_back(reader.beads().id[b]);
+    radius_.push_back(reader.beads().radius[b]);
+  }
+  std::vector<float> all(reader.beads().size() * 3);
+  const auto load = [&](output::BeadField field, std::vector<float>& values) {
+    values.reserve(frames * chosen.size() * 3);
+    for (std::size_t f = 0; f < frames; ++f) {
+      reader.read(field, first + f, 1, all);
+      for (const std::size_t b : chosen) values.insert(values.end(), {all[3 * b], all[3 * b + 1], all[3 * b + 2]});
+    }
+  };
+  load(output::BeadField::position, position_);
+  load(output::BeadField::velocity, velocity_);
+}
+
+output::TrackSamples BeadPaths::path(std::size_t i) const {
+  output::TrackSamples track;
+  const auto at = [&](const std::vector<float>& values, std::size_t frame, std::size_t axis) {
+    return static_cast<double>(values[(frame * ids_.size() + i) * 3 + axis]);
+  };
+  double shift = 0;  // along z, by whole periods
+  if (mill_.period > 0 && place_.high - place_.low > mill_.period) {
+    const double room = place_.high - place_.low - mill_.period;
+    shift = place_.low - mill_.context.mill_low + room * (static_cast<double>(i) + 0.5) / static_cast<double>(ids_.size());
+  }
+  for (std::size_t f = 0; f + 1 < time_.size(); ++f) {
+    const double h = time_[f + 1] - time_[f];
+    const int parts = std::max(1, static_cast<int>(std::lround(h / kPathStep)));
+    const double jump = mill_.period > 0 ? mill_.period * std::round((at(position_, f + 1, 2) - at(position_, f, 2)) / mill_.period) : 0.0;
+    for (int k = 0; k < parts; ++k) {
+      const double s = static_cast<double>(k) / parts, s2 = s * s, s3 = s2 * s;
+      track.time.push_back(time_[f] + s * h);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double end = at(position_, f + 1, axis) - (axis == 2 ? jump : 0.0);
+        const double place = (2 * s3 - 3 * s2 + 1) * at(position_, f, axis) + (3 * s2 - 2 * s3) * end +
+                             h * ((s3 - 2 * s2 + s) * at(velocity_, f, axis) + (s3 - s2) * at(velocity_, f + 1, axis));
+        track.position[axis].push_back(place + (axis == 2 ? shift : 0.0));
+      }
+    }
+    shift -= jump;
+  }
+  return track;
+}
+
+TrackContext BeadPaths::context(std::size_t i, std::uint64_t seed) const {
+  const bool part = mill_.period > 0 && place_.high - place_.low > mill_.period;
+  TrackContext context{};
+  context.seed = studies::bead_seed(seed, ids_[i]);
+  context.bead_radius = radius_[i];
+  context.mill_radius = mill_.context.mill_radius;
+  context.mill_low = part ? place_.low : mill_.context.mill_low;
+  context.mill_high = part ? place_.high : mill_.context.mill_high;
+  context.omega = mill_.context.omega;
+  return context;
+}
+
+}  // namespace millscope::calibrate

@@ -1,0 +1,50 @@
+// The whole charge of a simulation as tracers: paths of many beads from frames.h5, fine enough for the virtual camera.
+//
+// Between two frames a bead moves on the cubic that has the places and velocities of both: with frames every 5 ms it is off by at most
+// Δv h/8 (Δv: jump of velocity in an impact between them), some 0.1 mm where a camera leaves 0.5 mm.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "kernel/host/registry.hpp"
+#include "kernel/output/track_reader.hpp"
+#include "millscope/observation.hpp"
+#include "studies/analysis/mill.hpp"
+
+namespace millscope::calibrate {
+
+inline constexpr double kFrameStep = 0.005;  ///< s, between the frames that a calibration asks for
+inline constexpr double kPathStep = 0.0005;  ///< s, between the points of a path
+
+/// Where a real mill lies along its axis, m.
+struct AxialPlace {
+  double low = 0, high = 0;
+};
+
+class BeadPaths {
+ public:
+  /// At most `beads` of the run, evenly over their ids, from the time on at which the case begins its analysis. `place`: of a periodic
+  /// slice, the mill of which it is a part: its beads are spread over that length, so that the camera sees them as far away as it would.
+  /// Throws config::UserError when the run has no frames or fewer than four.
+  BeadPaths(const std::filesystem::path& run, int beads, const AxialPlace& place, const host::Registry& registry);
+
+  std::size_t size() const { return ids_.size(); }
+  const studies::MillOfCase& mill() const { return mill_; }
+  const std::filesystem::path& case_file() const { return case_file_; }
+  double seconds() const { return time_.back() - time_.front(); }  ///< of each path
+
+  output::TrackSamples path(std::size_t i) const;
+  TrackContext context(std::size_t i, std::uint64_t seed) const;
+
+ private:
+  std::filesystem::path case_file_;
+  studies::MillOfCase mill_;
+  AxialPlace place_;
+  std::vector<std::uint32_t> ids_;
+  std::vector<double> radius_, time_;
+  std::vector<float> position_, velocity_;  ///< [frames, beads, 3]
+};
+
+}  // namespace millscope::calibrate

@@ -1,0 +1,163 @@
+#include "studies/calibrate/evaluator.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "studies/calibrate/observe.hpp"
+
+namespace millscope::calibrate {
+namespace {
+
+using config::UserError;
+
+std::string point_text(const Study& study, const Eigen::VectorXd& point) {
+  std::string text;
+  for (std::size_t i = 0; i < study.parameters.size(); ++i) {
+    text += fmt::format("{}{} {:.4g}", i > 0 ? ", " : "", study.parameters[i].name, point[static_cast<Eigen::Index>(i)]);
+  }
+  return text;
+}
+
+campaign::Simulation simulation(const Study& study, const Eigen::VectorXd& point, int replicate, std::size_t condition) {
+  campaign::Simulation s;
+  s.case_file = study.base;
+  s.settings = study.conditions[condition].settings;
+  for (std::string& setting : settings_of(study, point)) s.settings.push_back(std::move(setting));
+  for (std::string& setting : observed_outputs()) s.settings.push_back(std::move(setting));
+  if (replicate > 0) s.settings.push_back(fmt::format("seed={}", 7919 * replicate + 17));
+  s.label = fmt::format("{}: {}{}", study.conditions[condition].name, point_text(study, point),
+                        replicate > 0 ? fmt::format(", seed {}", replicate) : "");
+  return s;
+}
+
+void score(const Study& study, const std::vector<Observation>& recorded, Trial& trial) {
+  for (std::size_t k = 0; k < trial.conditions.size(); ++k) {
+    const Observation& of = recorded[trial.conditions[k]];
+    const double share = 1.0 / static_cast<double>(trial.conditions.size());
+    const ChagasObjective one = chagas2015(of, trial.observed[k], study.objective.terms);
+    trial.chagas.power += share * one.power;
+    trial.chagas.x += share * one.x;
+    trial.chagas.speed += share * one.speed;
+    trial.chagas.terms += share * one.terms;
+    trial.misfit += misfit(of, trial.observed[k]);
+  }
+  if (!std::isfinite(trial.misfit) || !std::isfinite(trial.chagas.value())) {
+    trial.failed = true;
+    trial.message = "its observables are not finite";
+  }
+}
+
+}  // namespace
+
+Evaluator::Evaluator(const Study& study, Machinery machinery) : study_(study), machinery_(std::move(machinery)) {}
+
+void Evaluator::say(const std::string& line) const {
+  if (machinery_.say) machinery_.say(line);
+}
+
+double Evaluator::objective(const Trial& trial) const {
+  if (trial.failed) return std::numeric_limits<double>::infinity();
+  return study_.objective.kind == ObjectiveKind::chagas2015 ? trial.chagas.value() : trial.misfit;
+}
+
+int Evaluator::left() const {
+  const auto per_set = static_cast<int>(study_.with_role(Role::fit).size());
+  int sets = (study_.budget.simulations - simulations_) / per_set;
+  if (study_.budget.wall > 0 && simulations_ > 0) {
+    const double spent = wall_ / machinery_.slots, each = spent / simulations_ * per_set;
+    sets = std::min(sets, each > 0 ? static_cast<int>((study_.budget.wall - spent) / each) : sets);
+  }
+  return std::max(0, sets);
+}
+
+const Trial* Evaluator::known(const Wanted& wanted) const {
+  const auto found = std::find_if(trials_.begin(), trials_.end(),
+                                  [&](const Trial& t) { return t.replicate == wanted.replicate && t.point == wanted.point; });
+  return found == trials_.end() ? nullptr : &*found;
+}
+
+std::vector<Trial> Evaluator::run(const std::vector<Wanted>& wanted, const std::vector<std::size_t>& conditions,
+                                  const std::string& stage) const {
+  std::vector<campaign::Simulation> simulations;
+  for (const Wanted& w : wanted) {
+    for (const std::size_t c : conditions) simulations.push_back(simulation(study_, w.point, w.replicate, c));
+  }
+  const std::vector<campaign::Outcome> outcomes = machinery_.run(simulations);
+  std::vector<Trial> done;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    Trial trial;
+    trial.point = wanted[i].point;
+    trial.replicate = wanted[i].replicate;
+    trial.stage = stage;
+    trial.conditions = conditions;
+    for (std::size_t k = 0; k < conditions.size() && !trial.failed; ++k) {
+      const campaign::Outcome& outcome = outcomes[i * conditions.size() + k];
+      trial.wall_s += outcome.wall_s;
+      trial.folders.push_back(outcome.folder);
+      try {
+        if (outcome.state == campaign::State::failed) throw UserError(outcome.message);
+        trial.observed.push_back(machinery_.observe(conditions[k], outcome));
+      } catch (const campaign::Interrupted&) {
+        throw;
+      } catch (const UserError& e) {
+        trial.failed = true;
+        trial.message = fmt::format("condition '{}': {}", study_.conditions[conditions[k]].name, e.what());
+      }
+    }
+    if (!trial.failed) score(study_, machinery_.recorded, trial);
+    if (trial.failed) say(fmt::format("left out: {} ({})", point_text(study_, trial.point), trial.message));
+    done.push_back(std::move(trial));
+  }
+  return done;
+}
+
+std::vector<Trial> Evaluator::remember(const std::vector<Wanted>& wanted, const std::string& stage) {
+  std::vector<Wanted> fresh;
+  for (const Wanted& w : wanted) {
+    const bool twice =
+        std::any_of(fresh.begin(), fresh.end(), [&](const Wanted& f) { return f.replicate == w.replicate && f.point == w.point; });
+    if (known(w) == nullptr && !twice) fresh.push_back(w);
+  }
+  const std::vector<std::size_t> conditions = study_.with_role(Role::fit);
+  if (!fresh.empty()) {
+    say(fmt::format("{}: {} parameter sets ({} of {} simulations used so far)", stage, fresh.size(), simulations_,
+                    study_.budget.simulations));
+    for (Trial& trial : run(fresh, conditions, stage)) {
+      simulations_ += static_cast<int>(conditions.size());
+      wall_ += trial.wall_s;
+      trials_.push_back(std::move(trial));
+    }
+  }
+  if (!trials_.empty() && std::all_of(trials_.begin(), trials_.end(), [](const Trial& t) { return t.failed; })) {
+    throw UserError(fmt::format(
+        "all {} simulations have failed, the first so: {}; nothing is lost: correct the base case or the ranges and start again",
+        simulations_, trials_.front().message));
+  }
+  std::vector<Trial> all;
+  for (const Wanted& w : wanted) all.push_back(*known(w));
+  return all;
+}
+
+std::vector<Trial> Evaluator::evaluate(const std::vector<Eigen::VectorXd>& points, const std::string& stage, int first_replicate) {
+  std::vector<Wanted> wanted;
+  for (const Eigen::VectorXd& point : points) wanted.push_back({point, first_replicate});
+  return remember(wanted, stage);
+}
+
+std::vector<Trial> Evaluator::replicate(const Eigen::VectorXd& point, int replicates, const std::string& stage) {
+  std::vector<Wanted> wanted;
+  for (int r = 0; r < replicates; ++r) wanted.push_back({point, r});
+  return remember(wanted, stage);
+}
+
+std::vector<Trial> Evaluator::evaluate_in(const std::vector<Eigen::VectorXd>& points, const std::vector<std::size_t>& conditions,
+                                          const std::string& stage) {
+  std::vector<Wanted> wanted;
+  for (const Eigen::VectorXd& point : points) wanted.push_back({point, 0});
+  return run(wanted, conditions, stage);
+}
+
+}  // namespace millscope::calibrate

@@ -1,0 +1,83 @@
+// Parameter sets in, objectives out: every set is simulated in all fit conditions, through the campaign's cache.
+//
+// Nothing is kept between calls but the cache of simulations: a driver that is run again asks for the same points in the same order and
+// gets the same answers, so a study that was killed ends as if it had not been.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "studies/calibrate/objective.hpp"
+#include "studies/calibrate/study.hpp"
+#include "studies/campaign/campaign.hpp"
+
+namespace millscope::calibrate {
+
+/// What the drivers work with; tests put their own in place.
+struct Machinery {
+  std::function<std::vector<campaign::Outcome>(std::span<const campaign::Simulation>)> run;
+  std::function<Observation(std::size_t condition, const campaign::Outcome&)> observe;  ///< throws UserError: counts as failed
+  std::vector<Observation> recorded;                                                    ///< of every condition of the study
+  int slots = 1;                                                                        ///< simulations at once, for the wall budget
+  std::function<void(const std::string&)> say;                                          ///< one line of progress; may be empty
+};
+
+/// A parameter set with what it gave.
+struct Trial {
+  Eigen::VectorXd point;  ///< natural units, in the order of the study's parameters
+  int replicate = 0;      ///< another seed
+  std::string stage;      ///< "screening", "descent", …
+  bool failed = false;
+  std::string message;                  ///< why it failed
+  std::vector<std::size_t> conditions;  ///< of the study
+  std::vector<Observation> observed;    ///< of each of them
+  std::vector<std::filesystem::path> folders;
+  ChagasObjective chagas;  ///< mean over the conditions
+  double misfit = 0;       ///< sum over the conditions
+  double wall_s = 0;       ///< of its simulations
+};
+
+class Evaluator {
+ public:
+  Evaluator(const Study& study, Machinery machinery);
+
+  /// Runs the sets in the fit conditions, remembers and returns them in their order. A set that was tried before is not counted twice.
+  /// Throws UserError when all that have been tried so far have failed.
+  std::vector<Trial> evaluate(const std::vector<Eigen::VectorXd>& points, const std::string& stage, int first_replicate = 0);
+  /// One set, one per replicate number 0 … replicates − 1 (other seeds).
+  std::vector<Trial> replicate(const Eigen::VectorXd& point, int replicates, const std::string& stage);
+  /// In other conditions, not counted against the budget and not remembered.
+  std::vector<Trial> evaluate_in(const std::vector<Eigen::VectorXd>& points, const std::vector<std::size_t>& conditions,
+                                 const std::string& stage);
+
+  const std::vector<Trial>& trials() const { return trials_; }  ///< in the order of their evaluation, each once
+  int simulations() const { return simulations_; }              ///< that the budget counts
+  /// How many more sets the budget allows.
+  int left() const;
+  double objective(const Trial& trial) const;  ///< as the study chose; +infinity for a failed one
+  const Study& study() const { return study_; }
+  const Machinery& machinery() const { return machinery_; }
+  void say(const std::string& line) const;
+
+ private:
+  struct Wanted {
+    Eigen::VectorXd point;
+    int replicate;
+  };
+  std::vector<Trial> run(const std::vector<Wanted>& wanted, const std::vector<std::size_t>& conditions, const std::string& stage) const;
+  std::vector<Trial> remember(const std::vector<Wanted>& wanted, const std::string& stage);
+  const Trial* known(const Wanted& wanted) const;
+
+  const Study& study_;
+  Machinery machinery_;
+  std::vector<Trial> trials_;
+  int simulations_ = 0;
+  double wall_ = 0;  ///< s, of all simulations
+};
+
+}  // namespace millscope::calibrate

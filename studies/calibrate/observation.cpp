@@ -1,0 +1,79 @@
+#include "studies/calibrate/observation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace millscope::calibrate {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json histogram_json(const Histogram& h) { return {{"edges", h.edges}, {"percent", h.percent}, {"sem", h.sem}}; }
+
+Histogram histogram_from(const Json& j) {
+  return {j.at("edges").get<std::vector<double>>(), j.at("percent").get<std::vector<double>>(), j.at("sem").get<std::vector<double>>()};
+}
+
+}  // namespace
+
+Json to_json(const Observation& o) {
+  Json observables = Json::array();
+  for (Eigen::Index i = 0; i < o.value.size(); ++i) {
+    const Observable& what = o.observables[static_cast<std::size_t>(i)];
+    observables.push_back({{"name", what.name}, {"unit", what.unit}, {"group", what.group}, {"value", o.value[i]}});
+  }
+  std::vector<double> covariance(o.covariance.data(), o.covariance.data() + o.covariance.size());
+  return {{"observables", observables},
+          {"covariance", covariance},
+          {"power", {{"value_W", o.power.value}, {"sem_W", o.power.sem}, {"how", o.power.how}}},
+          {"x", histogram_json(o.x)},
+          {"speed", histogram_json(o.speed)},
+          {"bead_seconds", o.bead_seconds},
+          {"blocks", o.blocks},
+          {"notes", o.notes}};
+}
+
+Observation observation_from(const Json& j) {
+  Observation o;
+  const Json& observables = j.at("observables");
+  const auto n = static_cast<Eigen::Index>(observables.size());
+  o.value.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Json& item = observables.at(static_cast<std::size_t>(i));
+    o.observables.push_back({item.at("name"), item.at("unit"), item.at("group")});
+    o.value[i] = item.at("value");
+  }
+  const auto covariance = j.at("covariance").get<std::vector<double>>();
+  o.covariance = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), n, n);
+  o.power = {j.at("power").at("value_W"), j.at("power").at("sem_W"), j.at("power").at("how")};
+  o.x = histogram_from(j.at("x"));
+  o.speed = histogram_from(j.at("speed"));
+  o.bead_seconds = j.at("bead_seconds");
+  o.blocks = j.at("blocks");
+  o.notes = j.at("notes").get<std::vector<std::string>>();
+  return o;
+}
+
+Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& draws, double blocks) {
+  const Eigen::MatrixXd centred = draws.rowwise() - draws.colwise().mean();
+  Eigen::MatrixXd c = centred.transpose() * centred / static_cast<double>(std::max<Eigen::Index>(1, draws.rows() - 1));
+  const Eigen::VectorXd deviation = c.diagonal().cwiseSqrt();
+  double chance = 0, found = 0;
+  for (Eigen::Index i = 0; i < c.rows(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const double scale = deviation[i] * deviation[j];
+      const double r = scale > 0 ? c(i, j) / scale : 0;
+      chance += std::pow(1 - r * r, 2) / std::max(1.0, blocks - 1);
+      found += r * r;
+    }
+  }
+  const double kept = found > 0 ? 1 - std::min(1.0, chance / found) : 0;
+  for (Eigen::Index i = 0; i < c.rows(); ++i) {
+    for (Eigen::Index j = 0; j < c.cols(); ++j) {
+      if (i != j) c(i, j) *= kept;
+    }
+  }
+  return c;
+}
+
+}  // namespace millscope::calibrate

@@ -1,0 +1,47 @@
+// What is compared: a vector of summaries of a recording, or of a simulation seen in the same way, with its covariance.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+
+namespace millscope::calibrate {
+
+struct Observable {
+  std::string name;   ///< "speed 0.3–0.45 of the shell's"
+  std::string unit;   ///< SI or %
+  std::string group;  ///< power, centre, x, y, speed, occupancy, region_speed, term
+};
+
+/// A distribution, percent per bin.
+struct Histogram {
+  std::vector<double> edges;         ///< one more than bins
+  std::vector<double> percent, sem;  ///< %
+};
+
+struct PowerFigure {
+  double value = 0, sem = 0;  ///< W of the recorded mill
+  std::string how;            ///< "measured", "whole charge, scaled by mass 11.3", …
+};
+
+struct Observation {
+  std::vector<Observable> observables;
+  Eigen::VectorXd value;
+  Eigen::MatrixXd covariance;
+  PowerFigure power;
+  Histogram x, speed;       ///< fine bins, for Eq. 4.3 of Chagas 2015 and pictures
+  double bead_seconds = 0;  ///< behind it
+  double blocks = 0;        ///< independent blocks, median over the observables
+  std::vector<std::string> notes;
+};
+
+nlohmann::ordered_json to_json(const Observation& observation);
+Observation observation_from(const nlohmann::ordered_json& json);
+
+/// Covariance of the columns of `draws` [draws, values], correlations shrunk towards none by λ = Σ Var(r)/Σ r² over the pairs, with
+/// Var(r) ≈ (1 − r²)²/(blocks − 1) (Schäfer and Strimmer 2005): draws from few blocks have correlations of chance.
+Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& draws, double blocks);
+
+}  // namespace millscope::calibrate

@@ -1,0 +1,184 @@
+#include "studies/calibrate/observe.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+
+#include "kernel/output/summary.hpp"
+#include "studies/analysis/parallel.hpp"
+#include "studies/calibrate/recorded.hpp"
+#include "studies/camera/camera.hpp"
+#include "studies/camera/ctrack_writer.hpp"
+#include "studies/compare/mirror.hpp"
+
+namespace millscope::calibrate {
+namespace {
+
+namespace fs = std::filesystem;
+using config::UserError;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLeastPoints = 30;  // of a bead that the camera saw too little of
+constexpr std::uint64_t kCameraSeed = 20150101;
+
+/// A folder that goes with its maker.
+struct Scratch {
+  fs::path path;
+  explicit Scratch(fs::path where) : path(std::move(where)) {
+    fs::remove_all(path);
+    fs::create_directories(path);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+};
+
+Json read_json(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return Json::parse(in, nullptr, false);
+}
+
+/// The frame of a simulation is known: a link that shifts it is left out, as a recording's shift is taken off.
+studies::Camera without_frame(const studies::Camera& camera) {
+  std::vector<studies::CameraLink> links;
+  for (const studies::CameraLink& link : camera.links()) {
+    if (link.plugin.name() != "frame_error") links.push_back(link);
+  }
+  return studies::Camera(std::move(links));
+}
+
+studies::Condition condition_of(const BeadPaths& paths) {
+  const studies::MillOfCase& mill = paths.mill();
+  const AnalyzerContext& c = mill.context;
+  studies::Condition condition;
+  condition.angular_velocity = c.omega;
+  condition.speed = std::fabs(c.omega);
+  if (c.filling > 0) condition.filling = c.filling, condition.porosity = c.porosity;
+  condition.bead_diameter = 2 * c.bead_radius;
+  condition.bead_density = c.bead_density;
+  condition.tracer = {2 * c.bead_radius, c.bead_density};
+  condition.mill_diameter = 2 * c.mill_radius;
+  condition.geometry = fs::absolute(paths.case_file());
+  return condition;
+}
+
+/// What the camera makes of the beads, written and read as a recording is.
+studies::Recording film(const BeadPaths& paths, const studies::Camera& camera, const fs::path& folder, int threads) {
+  std::vector<std::string> texts(paths.size());
+  studies::for_each_item(paths.size(), studies::worker_count(threads, paths.size()), [&](std::size_t i, std::size_t) {
+    const studies::Run run = studies::observe(paths.path(i), camera, paths.context(i, kCameraSeed));
+    if (run.size() >= kLeastPoints) texts[i] = studies::ctrack_text(run);
+  });
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (texts[i].empty()) continue;
+    names.push_back(fmt::format("b{}.a", i));
+    std::ofstream(folder / names.back(), std::ios::binary) << texts[i];
+  }
+  if (names.empty())
+    throw UserError(fmt::format("{}: the camera saw none of the beads for long enough; loosen it", paths.case_file().string()));
+  std::ofstream(folder / "film.yaml") << studies::recording_text(names, condition_of(paths), "simulated") << "frame: {axis: [0, 0, mm]}\n";
+  return studies::read_recording(folder / "film.yaml");
+}
+
+/// Power and mass of the whole simulated charge over the analysed time, from the run's own summary.
+PowerFigure whole_charge_power(const fs::path& run, double mass, double recorded_mass) {
+  const Json j = read_json(run / "summary.json");
+  const auto power = j.is_object() && j.contains("power_W") ? j["power_W"] : Json{};
+  if (!power.is_object() || !power.contains("com") || !power["com"].is_number()) {
+    throw UserError(fmt::format("{}: its summary.json tells no power; the run has not come to its end", run.string()));
+  }
+  const double factor = recorded_mass / mass;
+  const double sem = power.contains("com_sem") && power["com_sem"].is_number() ? power["com_sem"].get<double>() : 0.0;
+  return {factor * power["com"].get<double>(), factor * sem,
+          fmt::format("whole simulated charge, times {:.4g} for the recorded mass", factor)};
+}
+
+void set_power(Observation& o, const PowerFigure& power) {
+  o.power = power;
+  for (Eigen::Index i = 0; i < o.value.size(); ++i) {
+    if (o.observables[static_cast<std::size_t>(i)].group != "power") continue;
+    o.value[i] = power.value;
+    o.covariance.row(i).setZero();
+    o.covariance.col(i).setZero();
+    o.covariance(i, i) = std::pow(std::max(power.sem, 1e-6 * std::fabs(power.value)), 2);
+  }
+}
+
+}  // namespace
+
+struct Observer::Impl {
+  const Study& study;
+  const host::Registry& registry;
+  fs::path cache;
+  int threads;
+  std::vector<RecordedCondition> recorded;
+
+  Observation simulated(std::size_t condition, const fs::path& run, const fs::path& scratch) const {
+    const RecordedCondition& r = recorded[condition];
+    const BeadPaths paths(run, study.observing.beads, r.place, registry);
+    const studies::Camera camera =
+        without_frame(studies::parse_camera(r.camera, "camera of condition '" + study.conditions[condition].name + "'", registry));
+    const Scratch folder(scratch);
+    const studies::Recording recording = film(paths, camera, folder.path, threads);
+    studies::TrajectoryOptions options;
+    options.step = 0.002;
+    options.gap_limit = r.gap_limit;
+    if (study.observing.camera != "exact") {
+      options.noise = r.noise;
+      options.noise_correlation = r.noise_correlation;
+    }
+    studies::ResultSet results = process(recording, options, {study, registry, threads});
+    std::vector<std::string> done;
+    if (results.meta.context.omega * r.omega < 0) results = studies::mirrored(results, done);
+    Observation o = summarise(results, r.summaries);
+    o.bead_seconds = paths.seconds() * static_cast<double>(paths.size());
+    const double mass = paths.mill().context.charge_mass;
+    if (r.measured_power) {
+      set_power(o, whole_charge_power(run, mass, r.mass));
+    } else {
+      const studies::ResultArray* specific = results.find("power", "specific_power_gravity");
+      o.power = {r.mass * specific->value.at(0), r.mass * specific->sem.at(0),
+                 fmt::format("M g <x> Omega of the beads seen, M = {:.4g} kg as recorded", r.mass)};
+    }
+    if (!done.empty()) o.notes.push_back("the simulation turns the other way and was mirrored");
+    return o;
+  }
+};
+
+Observer::Observer(const Study& study, const host::Registry& registry, fs::path cache, int threads,
+                   std::function<void(const std::string&)> say)
+    : impl_(new Impl{study, registry, std::move(cache), threads, {}}) {
+  for (std::size_t c = 0; c < study.conditions.size(); ++c) {
+    if (say) say(fmt::format("looking at the recording of condition '{}'", study.conditions[c].name));
+    impl_->recorded.push_back(look_at_recording(c, {study, registry, threads}, impl_->cache));
+  }
+}
+
+Observer::~Observer() = default;
+
+const Observation& Observer::recorded(std::size_t condition) const { return impl_->recorded[condition].observation; }
+
+Observation Observer::simulated(std::size_t condition, const fs::path& run, const std::string& key) const {
+  const std::string id = key + "-" + impl_->recorded[condition].identity;
+  const fs::path file = impl_->cache / ("simulation-" + id + ".json");
+  if (fs::exists(file)) {
+    const Json known = read_json(file);
+    if (!known.is_discarded()) return observation_from(known);
+  }
+  const Observation o = impl_->simulated(condition, run, impl_->cache / fmt::format("film-{}-{}", id, ::getpid()));
+  output::write_json(file, to_json(o));
+  return o;
+}
+
+std::vector<std::string> observed_outputs() {
+  return {fmt::format("output.frames.every_s={}", kFrameStep), "output.tracks=~", "output.vtk=~"};
+}
+
+}  // namespace millscope::calibrate

@@ -1,0 +1,39 @@
+// From a recording, and from simulations seen as that recording was made, to observations that can be compared.
+//
+// Of each condition, once: the recording's camera is estimated (or given), its noise and gaps decide how every track is smoothed, and its
+// own distributions decide the bins and regions that are compared. A simulation then goes the same way: paths of many beads → camera →
+// .a files → the same cleaning, spline and analyzers → the same bins. Both are kept in the cache.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "studies/calibrate/observation.hpp"
+#include "studies/calibrate/study.hpp"
+
+namespace millscope::calibrate {
+
+class Observer {
+ public:
+  /// Looks at the recordings of all conditions, or at those with `role` alone. `cache`: results are kept below it. `threads` 0: all cores;
+  /// no influence on results. `say`: one line on what is being done; may be empty. Throws config::UserError.
+  Observer(const Study& study, const host::Registry& registry, std::filesystem::path cache, int threads,
+           std::function<void(const std::string&)> say);
+  ~Observer();
+
+  /// What the recording of a condition shows.
+  const Observation& recorded(std::size_t condition) const;
+  /// What a finished run shows, with exactly the same observables. `key`: of the run's cache entry. Throws config::UserError.
+  Observation simulated(std::size_t condition, const std::filesystem::path& run, const std::string& key) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Settings that every simulation of a study gets: what the observer needs, and nothing else written.
+std::vector<std::string> observed_outputs();
+
+}  // namespace millscope::calibrate

@@ -1,0 +1,52 @@
+// A recording as the measure of a condition; for the files of this room.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "studies/analysis/instances.hpp"
+#include "studies/analysis/results.hpp"
+#include "studies/analysis/source.hpp"
+#include "studies/calibrate/bead_paths.hpp"
+#include "studies/calibrate/summaries.hpp"
+#include "studies/recording/recording.hpp"
+
+namespace millscope::calibrate {
+
+/// What a recording fixes for every simulation of its condition.
+struct RecordedCondition {
+  Observation observation;
+  std::vector<Summary> summaries;
+  std::string camera;             ///< text of the camera file
+  std::array<double, 3> noise{};  ///< m, that decides the smoothing
+  double noise_correlation = 0;
+  double gap_limit = 0;  ///< s
+  AxialPlace place;      ///< of the recorded mill
+  double mass = 0;       ///< kg, of the recorded charge
+  double omega = 0;      ///< rad/s
+  bool measured_power = false;
+  std::string identity;  ///< hash of all that the above depends on
+};
+
+/// How tracks become results; the same for recordings and simulations.
+struct Processing {
+  const Study& study;
+  const host::Registry& registry;
+  int threads = 0;
+};
+
+/// Tracks through spline and analyzers; runs of which nothing is left after cleaning are left out and noted. `z_range` cuts the samples.
+studies::ResultSet process(const studies::Recording& recording, const studies::TrajectoryOptions& options, const Processing& how);
+
+/// Reads, estimates the camera, analyses; `cache`: a folder for the outcome.
+RecordedCondition look_at_recording(std::size_t condition, const Processing& how, const std::filesystem::path& cache);
+
+/// FNV-1a over texts.
+std::string hash_of(const std::vector<std::string>& texts);
+
+/// A subtree of the study as text, for hashes.
+std::string dump(const config::Node& node);
+
+}  // namespace millscope::calibrate

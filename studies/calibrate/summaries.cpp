@@ -1,0 +1,211 @@
+#include "studies/calibrate/summaries.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "kernel/config/error.hpp"
+#include "studies/compare/regions.hpp"
+
+namespace millscope::calibrate {
+namespace {
+
+using config::UserError;
+using studies::ResultArray;
+using studies::ResultSet;
+
+constexpr double kShare = 12.5;           // % of the time in a group of bins
+constexpr std::size_t kRegions = 6;       // most visited ones
+constexpr double kLeastDeviation = 1e-9;  // of a value's magnitude: an exact number must not make a covariance singular
+
+const ResultArray& array_of(const ResultSet& results, const std::string& analyzer, const std::string& name) {
+  const ResultArray* found = results.find(analyzer, name);
+  if (found == nullptr) throw UserError(fmt::format("{}.{}: the analyzers give no such result here", analyzer, name));
+  return *found;
+}
+
+bool left_out(const Study& study, const char* group) {
+  const auto& without = study.objective.without;
+  return std::find(without.begin(), without.end(), group) != without.end();
+}
+
+/// Neighbouring bins together, up to an eighth of the time.
+void add_distribution(const ResultSet& recorded, const std::string& axis, const char* group, double shown, const std::string& unit,
+                      std::vector<Summary>& out) {
+  const ResultArray& percent = array_of(recorded, "distributions", axis + "_percent");
+  const std::vector<double>& edges = array_of(recorded, "distributions", axis + "_edges").value;
+  std::vector<Summary> groups;
+  Summary open{{"", "%", group}, Summary::sum, "distributions", axis + "_percent", "", {}, 1};
+  double share = 0;
+  for (std::size_t b = 0; b < percent.size(); ++b) {
+    open.cells.push_back(b);
+    share += percent.value[b];
+    if (share < kShare && b + 1 < percent.size()) continue;
+    open.observable.name = fmt::format("{} {:.3g} to {:.3g}{}", group, shown * edges[open.cells.front()], shown * edges[b + 1], unit);
+    groups.push_back(open);
+    open.cells.clear();
+    share = 0;
+  }
+  if (groups.size() > 1) groups.pop_back();  // follows from the others: all together are 100 %
+  out.insert(out.end(), groups.begin(), groups.end());
+}
+
+studies::CellAxis cells(const ResultSet& results, const ResultArray& map, std::size_t dimension, const char* label) {
+  return {label, "m", results.axis(map, dimension)->value};
+}
+
+void add_regions(const ResultSet& recorded, const Study& study, std::vector<Summary>& out) {
+  const ResultArray& occupancy = array_of(recorded, "pept_grid", "occupancy");
+  const double omega = recorded.meta.context.omega;
+  const studies::MillPlace mill{recorded.meta.context.mill_radius, omega > 0 ? 1.0 : omega < 0 ? -1.0 : 0.0};
+  std::vector<studies::Region> regions = studies::regions_of(cells(recorded, occupancy, 0, "y"), cells(recorded, occupancy, 1, "x"), mill);
+  const auto share = [&](const studies::Region& r) {
+    return std::accumulate(r.cells.begin(), r.cells.end(), 0.0,
+                           [&](double s, std::size_t c) { return s + (std::isnan(occupancy.value[c]) ? 0.0 : occupancy.value[c]); });
+  };
+  std::stable_sort(regions.begin(), regions.end(), [&](const auto& a, const auto& b) { return share(a) > share(b); });
+  if (regions.size() > kRegions) regions.resize(kRegions);
+  for (const studies::Region& r : regions) {
+    if (!left_out(study, "occupancy"))
+      out.push_back({{"occupancy " + r.name, "%", "occupancy"}, Summary::sum, "pept_grid", "occupancy", "", r.cells, 100});
+    if (!left_out(study, "region_speed"))
+      out.push_back({{"speed " + r.name, "m/s", "region_speed"}, Summary::mean, "pept_grid", "speed", "occupancy", r.cells, 1});
+  }
+}
+
+double evaluate(const ResultSet& results, const Summary& s, std::optional<std::size_t> draw) {
+  const ResultArray& values = array_of(results, s.analyzer, s.result);
+  const auto at = [&](const ResultArray& array, std::size_t c) {
+    return array.value[c] + (draw ? static_cast<double>(array.draws[*draw * array.size() + c]) : 0.0);
+  };
+  if (s.kind == Summary::number) return s.factor * at(values, 0);
+  double sum = 0, weight = 0;
+  const ResultArray* weights = s.kind == Summary::mean ? &array_of(results, s.analyzer, s.weight) : nullptr;
+  for (const std::size_t c : s.cells) {
+    const double value = at(values, c), w = weights != nullptr ? std::max(0.0, at(*weights, c)) : 1.0;
+    if (!std::isfinite(value) || !std::isfinite(w) || (weights != nullptr && w == 0)) continue;
+    sum += w * value;
+    weight += w;
+  }
+  return s.factor * (weights != nullptr ? sum / weight : sum);
+}
+
+Histogram histogram(const ResultSet& results, const std::string& axis) {
+  const ResultArray& percent = array_of(results, "distributions", axis + "_percent");
+  Histogram h{array_of(results, "distributions", axis + "_edges").value, percent.value, percent.sem};
+  std::replace_if(
+      h.sem.begin(), h.sem.end(), [](double e) { return !std::isfinite(e); }, 0.0);  // a bin without a visit
+  return h;
+}
+
+double median_blocks(const ResultSet& results) {
+  std::vector<double> blocks;
+  for (const char* axis : {"x_percent", "y_percent"}) {
+    for (const double b : array_of(results, "distributions", axis).effective_blocks) {
+      if (std::isfinite(b)) blocks.push_back(b);
+    }
+  }
+  if (blocks.empty()) return static_cast<double>(results.meta.blocks.size());
+  std::nth_element(blocks.begin(), blocks.begin() + static_cast<std::ptrdiff_t>(blocks.size() / 2), blocks.end());
+  return blocks[blocks.size() / 2];
+}
+
+/// Draws of the summaries; where a draw leaves one undefined (a region without a visit) it counts as no deviation.
+Eigen::MatrixXd drawn(const ResultSet& results, const std::vector<Summary>& summaries, const Eigen::VectorXd& value) {
+  const auto draws = static_cast<Eigen::Index>(results.meta.draws);
+  Eigen::MatrixXd all(draws, value.size());
+  for (Eigen::Index d = 0; d < draws; ++d) {
+    for (Eigen::Index i = 0; i < value.size(); ++i) {
+      const double v = evaluate(results, summaries[static_cast<std::size_t>(i)], static_cast<std::size_t>(d));
+      all(d, i) = std::isfinite(v) ? v : value[i];
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<Summary> choose_summaries(const ResultSet& recorded, const Study& study, const SummaryChoice& choice) {
+  std::vector<Summary> out;
+  if (!left_out(study, "power"))
+    out.push_back({{"power", "W", "power"}, Summary::number, "power", "specific_power_gravity", "", {}, choice.mass});
+  if (!left_out(study, "centre")) {
+    if (choice.measured_power)
+      out.push_back({{"centre of mass x", "mm", "centre"}, Summary::number, "power", "centre_of_mass_x", "", {}, 1e3});
+    out.push_back({{"centre of mass y", "mm", "centre"}, Summary::number, "power", "centre_of_mass_y", "", {}, 1e3});
+  }
+  if (!left_out(study, "x")) add_distribution(recorded, "x", "x", 1e3, " mm", out);
+  if (!left_out(study, "y")) add_distribution(recorded, "y", "y", 1e3, " mm", out);
+  if (!left_out(study, "speed")) add_distribution(recorded, "speed_ratio", "speed", 1, " of the shell's", out);
+  add_regions(recorded, study, out);
+  for (const Term& term : study.objective.terms) {
+    const ResultArray* array = recorded.find(term.analyzer, term.result);
+    if (array == nullptr || !array->shape.empty() || array->is_axis) {
+      throw UserError(
+          term.where,
+          fmt::format("term '{}': {}; name a single number of an analyzer that runs on recordings ('millscope analyze' lists them)",
+                      term.name(), array == nullptr ? "the analyzers give no such result for the recording" : "is no single number"));
+    }
+    out.push_back({{term.name(), array->unit, "term"}, Summary::number, term.analyzer, term.result, "", {}, 1});
+  }
+  return out;
+}
+
+Observation summarise(const ResultSet& results, const std::vector<Summary>& summaries) {
+  Observation o;
+  o.value.resize(static_cast<Eigen::Index>(summaries.size()));
+  for (std::size_t i = 0; i < summaries.size(); ++i) {
+    const double value = evaluate(results, summaries[i], std::nullopt);
+    if (!std::isfinite(value)) {
+      throw UserError(
+          fmt::format("'{}' is undefined in {}: no bead was seen there", summaries[i].observable.name, results.meta.description));
+    }
+    o.observables.push_back(summaries[i].observable);
+    o.value[static_cast<Eigen::Index>(i)] = value;
+  }
+  o.blocks = median_blocks(results);
+  if (results.meta.draws < 2)
+    throw UserError(fmt::format("{}: too short for an uncertainty: it holds fewer than two blocks", results.meta.description));
+  o.covariance = shrunk_covariance(drawn(results, summaries, o.value), o.blocks);
+  for (Eigen::Index i = 0; i < o.value.size(); ++i) {
+    o.covariance(i, i) = std::max(o.covariance(i, i), std::pow(kLeastDeviation * std::max(std::fabs(o.value[i]), 1e-3), 2));
+  }
+  o.x = histogram(results, "x");
+  o.speed = histogram(results, "speed_ratio");
+  return o;
+}
+
+nlohmann::ordered_json to_json(const std::vector<Summary>& summaries) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const Summary& s : summaries) {
+    all.push_back({{"name", s.observable.name},
+                   {"unit", s.observable.unit},
+                   {"group", s.observable.group},
+                   {"kind", static_cast<int>(s.kind)},
+                   {"analyzer", s.analyzer},
+                   {"result", s.result},
+                   {"weight", s.weight},
+                   {"cells", s.cells},
+                   {"factor", s.factor}});
+  }
+  return all;
+}
+
+std::vector<Summary> summaries_from(const nlohmann::ordered_json& json) {
+  std::vector<Summary> all;
+  for (const auto& j : json) {
+    all.push_back({{j.at("name"), j.at("unit"), j.at("group")},
+                   static_cast<Summary::Kind>(j.at("kind").get<int>()),
+                   j.at("analyzer"),
+                   j.at("result"),
+                   j.at("weight"),
+                   j.at("cells").get<std::vector<std::size_t>>(),
+                   j.at("factor")});
+  }
+  return all;
+}
+
+}  // namespace millscope::calibrate
