@@ -14,6 +14,7 @@ struct SamplerOptions {
   int chains = 0;     ///< per population, of two; 0: 2 parameters + 4
   int draws = 1000;   ///< per chain, after as many that are thrown away; doubled until the chains agree
   int doublings = 4;  ///< at most
+  int threads = 1;    ///< the result does not depend on it
 };
 
 enum class Determined { well, weakly, hardly };

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <stdexcept>
+
 #include "kernel/config/error.hpp"
 #include "studies/emulate/prior.hpp"
 #include "studies/emulate/random.hpp"

@@ -1,0 +1,128 @@
+#include "studies/emulate/chains.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace millscope::emulate {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Weights exp((l − max)/T) with the smallest T, from 1 upwards, at which a twentieth of the candidates carries them.
+VectorXd flattened_weights(const VectorXd& log_density) {
+  const double most = log_density.maxCoeff();
+  if (!std::isfinite(most)) throw std::domain_error("no candidate has a density");
+  VectorXd weights;
+  for (double temperature = 1; temperature < 1e12; temperature *= 1.5) {
+    weights = ((log_density.array() - most) / temperature).exp();
+    const double effective = weights.sum() * weights.sum() / weights.squaredNorm();
+    if (effective >= 0.05 * static_cast<double>(log_density.size())) break;
+  }
+  return weights;
+}
+
+double mirrored(double u) {
+  u = std::fmod(u + 1, 4);
+  if (u < 0) u += 4;
+  return (u > 2 ? 4 - u : u) - 1;
+}
+
+}  // namespace
+
+Population::Population(const LogDensity& density, const MatrixXd& candidates, int chains, std::uint64_t seed, std::uint64_t stream)
+    : density_(density), random_(seed, stream), position_(candidates.rows(), chains), value_(chains) {
+  VectorXd value(candidates.cols());
+  for (Index i = 0; i < value.size(); ++i) value[i] = density(candidates.col(i));
+  VectorXd weights = flattened_weights(value);
+  for (Index c = 0; c < chains; ++c) {
+    double left = random_.uniform() * weights.sum();
+    Index pick = 0;
+    weights.maxCoeff(&pick);
+    for (Index i = 0; i < weights.size(); ++i) {
+      left -= weights[i];
+      if (left < 0 && weights[i] > 0) {
+        pick = i;
+        break;
+      }
+    }
+    position_.col(c) = candidates.col(pick);
+    value_[c] = value[pick];
+    weights[pick] = 0;  // each but once: the steps come from the differences
+  }
+}
+
+void Population::step(Index chain) {
+  constexpr double kJitter = 1e-4, kLongSteps = 0.1;
+  const Index n = position_.rows(), count = position_.cols();
+  auto other = [&](Index a, Index b) {
+    Index pick;
+    do pick = static_cast<Index>(random_.below(static_cast<std::uint64_t>(count)));
+    while (pick == a || pick == b);
+    return pick;
+  };
+  const Index a = other(chain, chain), b = other(chain, a);
+  const double gamma = random_.uniform() < kLongSteps ? 1.0 : 2.38 / std::sqrt(2.0 * static_cast<double>(n));
+  VectorXd proposal = position_.col(chain) + gamma * (position_.col(a) - position_.col(b)) + kJitter * random_.normals(n);
+  proposal = proposal.unaryExpr(&mirrored);
+  const double value = density_(proposal);
+  ++proposed_;
+  if (std::log(1 - random_.uniform()) > value - value_[chain]) return;
+  ++accepted_;
+  position_.col(chain) = proposal;
+  value_[chain] = value;
+}
+
+void Population::sample(int draws) {
+  const auto count = static_cast<std::size_t>(position_.cols());
+  draws_.assign(count, MatrixXd(position_.rows(), draws));
+  values_.assign(count, VectorXd(draws));
+  accepted_ = 0;
+  proposed_ = 0;
+  for (Index t = 0; t < draws; ++t) {
+    for (std::size_t c = 0; c < count; ++c) {
+      const auto chain = static_cast<Index>(c);
+      step(chain);
+      draws_[c].col(t) = position_.col(chain);
+      values_[c][t] = value_[chain];
+    }
+  }
+}
+
+Agreement agreement(const std::vector<VectorXd>& chains) {
+  std::vector<VectorXd> halves;
+  const Index n = chains.front().size() / 2;
+  for (const VectorXd& chain : chains) {
+    halves.emplace_back(chain.head(n));
+    halves.emplace_back(chain.tail(n));
+  }
+  const auto m = static_cast<Index>(halves.size());
+  const auto length = static_cast<double>(n);
+  VectorXd means(m);
+  double within = 0;
+  for (Index c = 0; c < m; ++c) {
+    VectorXd& half = halves[static_cast<std::size_t>(c)];
+    means[c] = half.mean();
+    half.array() -= means[c];
+    within += half.squaredNorm() / (length - 1) / static_cast<double>(m);
+  }
+  const double between = (means.array() - means.mean()).square().sum() / static_cast<double>(m - 1);
+  const double variance = (length - 1) / length * within + between;
+  if (!(within > 0)) return {between > 0 ? INFINITY : 1.0, static_cast<double>(m)};
+  // Autocorrelation by lag over all halves; pairs are added up while their sum is positive (Geyer 1992).
+  double sum = 0, pair = 0;
+  for (Index lag = 1; lag < n - 1; ++lag) {
+    double products = 0;
+    for (const VectorXd& half : halves) products += half.head(n - lag).dot(half.tail(n - lag)) / (length - 1);
+    pair += 1 - (within - products / static_cast<double>(m)) / variance;
+    if (lag % 2 == 1) continue;
+    if (pair < 0) break;
+    sum += pair;
+    pair = 0;
+  }
+  return {std::sqrt(variance / within), static_cast<double>(m) * length / (1 + 2 * sum)};
+}
+
+}  // namespace millscope::emulate

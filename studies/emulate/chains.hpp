@@ -1,0 +1,48 @@
+// Markov chains that learn their steps from each other: differential evolution (ter Braak 2006, Statistics and Computing 16, 239).
+//
+//   proposal of chain i:  u_i + γ (u_a − u_b) + ε,  a ≠ b ≠ i drawn among the population;  γ = 2.38/√(2 parameters), now and then 1 (from
+//   mode to mode)
+//
+// A proposal beyond an end of the box is mirrored back, which keeps the steps symmetric. Two populations that know nothing of each other:
+// their agreement is the evidence that the chains have forgotten their starts.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "studies/emulate/random.hpp"
+
+namespace millscope::emulate {
+
+using LogDensity = std::function<double(const Eigen::VectorXd& coded)>;
+
+class Population {
+ public:
+  /// Starts from candidates (parameters × many), drawn by their density flattened until half of them would do.
+  Population(const LogDensity& density, const Eigen::MatrixXd& candidates, int chains, std::uint64_t seed, std::uint64_t stream);
+
+  /// Goes on for `draws` steps; the draws before are forgotten.
+  void sample(int draws);
+  /// [chain]: parameters × draws, and their log densities.
+  const std::vector<Eigen::MatrixXd>& draws() const { return draws_; }
+  const std::vector<Eigen::VectorXd>& log_density() const { return values_; }
+  double acceptance() const { return static_cast<double>(accepted_) / static_cast<double>(proposed_); }
+
+ private:
+  void step(Eigen::Index chain);
+  LogDensity density_;
+  Random random_;
+  Eigen::MatrixXd position_;
+  Eigen::VectorXd value_;
+  std::vector<Eigen::MatrixXd> draws_;
+  std::vector<Eigen::VectorXd> values_;
+  long accepted_ = 0, proposed_ = 1;
+};
+
+/// Of one parameter, over chains of equal length: split R̂ and the effective number of draws (Gelman et al. 2013, 11.4–11.5).
+struct Agreement {
+  double r_hat, effective;
+};
+Agreement agreement(const std::vector<Eigen::VectorXd>& chains);
+
+}  // namespace millscope::emulate
