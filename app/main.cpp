@@ -29,6 +29,7 @@ constexpr Command kCommands[] = {
     {"campaign-task", nullptr, campaign_task},
     {"analyze", "measure a simulation or a recording", analyze},
     {"compare", "what differs between two results of analyze", compare},
+    {"doe", "plan runs, and what planned runs tell", design_of_experiments},
     {"pept", "how good a recording of a tracer is", pept},
     {"describe", "what a plugin does and which parameters it takes", describe},
     {"plugins", "list the plugins", plugins},

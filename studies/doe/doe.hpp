@@ -139,7 +139,7 @@ struct Axis {
 /// Box and Hunter 1954: the points whose gradient cannot be told from zero, as far as the plan's runs reach.
 struct StationaryRegion {
   double confidence = kConfidence;
-  Eigen::VectorXd low, high;  ///< coded ends along each factor
+  Eigen::VectorXd low, high;  ///< coded ends along each factor; NaN: no point of the region in the range of the runs
   std::vector<bool> bounded;  ///< false: the region reaches the end of the runs' range, so the data do not bound this factor
   double share = kUndefined;  ///< of the box that the runs span
 };
