@@ -20,7 +20,8 @@ Objective misfit_objective(const Emulator& emulator, const Observed& observed);
 Eigen::VectorXd next_point(const Emulator& emulator, const Box& box, const Objective& objective, std::uint64_t seed);
 Eigen::VectorXd next_point(const Emulator& emulator, const Box& box, const Observed& observed, std::uint64_t seed);
 
-/// Several at once, for several cores: each is chosen as if the ones before had said what is predicted of them (Ginsbourger et al. 2010).
+/// Several at once, for several cores: each is chosen as if the ones before had said what is predicted of them (Ginsbourger et al. 2010),
+/// at least a fiftieth of the ranges from them.
 std::vector<Eigen::VectorXd> next_points(const Emulator& emulator, const Box& box, const Objective& objective, int count,
                                          std::uint64_t seed);
 
