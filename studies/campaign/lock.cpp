@@ -55,15 +55,17 @@ std::string own_text() {
 
 }  // namespace
 
-std::unique_ptr<Lock> Lock::try_take(const fs::path& cache, const fs::path& file) {
-  const fs::path guard_path = cache / ".guard";
-  output::File guard(guard_path, O_RDWR | O_CREAT);
-  while (::flock(guard.descriptor(), LOCK_EX) != 0) {
-    if (errno != EINTR) output::throw_write_error(guard_path, errno);
+Guard::Guard(const fs::path& cache) : file_(cache / ".guard", O_RDWR | O_CREAT) {
+  while (::flock(file_.descriptor(), LOCK_EX) != 0) {
+    if (errno != EINTR) output::throw_write_error(file_.path(), errno);
   }
-  ::futimens(guard.descriptor(), nullptr);
+  ::futimens(file_.descriptor(), nullptr);
+}
+
+std::unique_ptr<Lock> Lock::try_take(const fs::path& cache, const fs::path& file) {
+  const Guard guard(cache);
   if (const std::optional<std::string> text = text_of(file)) {
-    if (!is_stale(file, *text, guard_path)) return nullptr;
+    if (!is_stale(file, *text, guard.file())) return nullptr;
   }
   output::AtomicFile out(file);
   const std::string text = own_text();

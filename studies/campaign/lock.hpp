@@ -6,7 +6,19 @@
 #include <memory>
 #include <string>
 
+#include "kernel/output/file.hpp"
+
 namespace millscope::campaign {
+
+/// Held by one head at a time, briefly: while it looks at locks or writes into entries. Waits for its turn.
+class Guard {
+ public:
+  explicit Guard(const std::filesystem::path& cache);
+  const std::filesystem::path& file() const { return file_.path(); }
+
+ private:
+  output::File file_;
+};
 
 /// Holds a lock file; removes it at the end.
 class Lock {

@@ -1,6 +1,7 @@
 #include "studies/campaign/progress.hpp"
 
 #include <fmt/core.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +18,13 @@ std::string duration(double seconds) {
   return fmt::format("{}:{:02d}", s / 60, s % 60);
 }
 
+/// A line longer than the terminal would wrap, and then not be rewritten.
+std::string cut_to_terminal(std::string line) {
+  struct winsize size {};
+  if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 && line.size() >= size.ws_col) line.resize(size.ws_col - 1U);
+  return line;
+}
+
 }  // namespace
 
 ProgressLine::ProgressLine(bool quiet, std::size_t total) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0), total_(total) {}
@@ -25,7 +33,7 @@ double ProgressLine::elapsed() const { return std::chrono::duration<double>(std:
 
 void ProgressLine::count(bool done, bool cached, double work, double wall) {
   ++(done ? done_ : failed_);
-  if (cached) ++cached_;
+  if (done && cached) ++cached_;
   if (!done || wall <= 0) return;
   known_work_ += work;
   known_wall_ += wall;
@@ -65,9 +73,9 @@ void ProgressLine::update(const std::vector<Underway>& underway, double waiting,
   if (!due()) return;
   const std::optional<double> left = time_left(underway, waiting, slots);
   const std::string text = fmt::format("campaign: {}, {} running, {}", counts(), underway.size(),
-                                       left ? "ETA " + duration(*left) : "ETA after the first results");
+                                       left ? "ETA " + duration(*left) : "ETA not known yet");
   if (terminal_) {
-    fmt::print(stderr, "\r\033[K{}", text);
+    fmt::print(stderr, "\r\033[K{}", cut_to_terminal(text));
     drawn_ = true;
     next_ = elapsed() + 0.5;
   } else {

@@ -41,7 +41,10 @@ Board::Board(std::span<const Simulation> simulations, const Options& options)
       continue;
     }
     const Entry entry(options.cache, id.key);
-    entry.prepare(id, simulations[i].label);
+    {
+      const Guard guard(options.cache);
+      entry.prepare(id, simulations[i].label);
+    }
     const TaskRecord record = entry.read();
     const bool failed = record.stage == Stage::failed;
     if (record.stage == Stage::done || (failed && !options.retry_failed)) {
@@ -103,8 +106,8 @@ std::unique_ptr<Lock> take(const Job& job, const Board& board) {
 }
 
 std::vector<Outcome> run(std::span<const Simulation> simulations, const Options& given) {
+  check(given);
   const Options options = with_absolute_paths(given);
-  check(options);
   Board board(simulations, options);
   if (!board.open().empty()) options.runner == "slurm" ? run_on_slurm(board) : run_here(board);
   board.progress().clear();
