@@ -9,6 +9,7 @@
 #include "kernel/config/error.hpp"
 #include "studies/camera/estimate_parts.hpp"
 #include "studies/inspect/mill_motion.hpp"
+#include "studies/inspect/windows.hpp"
 
 namespace millscope::studies {
 namespace {
@@ -37,15 +38,6 @@ camera::Point middle_of(const Recording& recording, const std::optional<std::arr
   const bool ends = frame && frame->high > frame->low;
   return {axis ? (*axis)[0].value : middle_of(recording, 0), axis ? (*axis)[1].value : middle_of(recording, 1),
           ends ? 0.5 * (frame->low + frame->high) : middle_of(recording, 2)};
-}
-
-double median_interval(const Recording& recording) {
-  std::vector<double> d;
-  for (const Run& run : recording.runs) {
-    for (std::size_t i = 1; i < run.size(); ++i) d.push_back(run.time[i] - run.time[i - 1]);
-  }
-  std::nth_element(d.begin(), d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2), d.end());
-  return d[d.size() / 2];
 }
 
 /// Share that the reader has set aside as too far off.

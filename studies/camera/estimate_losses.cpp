@@ -1,12 +1,16 @@
 // How the rate of locations falls with distance and speed: a Poisson regression over short windows of the bead's own trajectory.
 //
 //   λ(d, v) = λ_0 Φ(a − b d − c v),   count in a window of length h ~ Poisson(λ h)
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "kernel/config/error.hpp"
 #include "studies/camera/estimate_parts.hpp"
 #include "studies/camera/maximise.hpp"
+#include "studies/recording/select.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
 namespace millscope::studies::camera {
@@ -21,13 +25,6 @@ constexpr double kUsualMargin = 3.5, kMarginDeviation = 1.5, kFixed = 0.1;
 constexpr double kTellingError = 0.25;  // relative, of the rate
 
 double normal_share(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 void add_windows(const Piece& piece, const std::vector<double>& times, const Point& middle, std::size_t& group,
                  std::vector<RateWindow>& out) {
@@ -85,6 +82,12 @@ std::vector<RateWindow> rate_windows(const Recording& recording, const Point& mi
     options.gap_limit = pause;
     const Trajectory trajectory = fit_trajectory(run, options);
     for (const Piece& piece : trajectory.pieces) add_windows(piece, trajectory.location_time, middle, group, windows);
+  }
+  if (windows.empty()) {
+    throw config::UserError(
+        fmt::format("{}: no {:.0f} ms without a pause of {:.3g} s; the rate of locations is told from such spans; give a recording whose "
+                    "locations do not come in short bursts",
+                    recording.file.string(), 1e3 * kWindow, pause));
   }
   return windows;
 }

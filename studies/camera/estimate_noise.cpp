@@ -7,6 +7,7 @@
 
 #include "studies/camera/maximise.hpp"
 #include "studies/camera/stretches.hpp"
+#include "studies/recording/select.hpp"
 
 namespace millscope::studies::camera {
 namespace {
@@ -93,12 +94,6 @@ struct Estimator {
                 {point.memory, std::log(0.1), std::log(20)}});
   }
 };
-
-double quantile(std::vector<double> values, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 Estimated of_logarithm(double scale, double logarithm, double variance) {
   const double value = scale * std::exp(logarithm);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "kernel/config/error.hpp"
+#include "studies/recording/select.hpp"
 
 namespace millscope::studies::camera {
 namespace {
@@ -18,12 +19,6 @@ constexpr std::size_t kFewest = 20;  // stretches
 constexpr double kImpact = 8;        // contrasts beyond so many medians: an impact or a stray location
 constexpr std::size_t kStride = 4;   // between candidates for quiet stretches
 constexpr double kQuietShare = 0.06;
-
-double median(std::vector<double> values) {
-  const auto at = static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 Stretch stretch_of(const Run& run, std::size_t first, const Point& middle) {
   Stretch s;
@@ -72,7 +67,8 @@ std::vector<Stretch> stretches_of(const Recording& recording, const Point& middl
   }
   std::vector<double> bends;
   for (const Stretch& s : all) bends.push_back(largest_bend(s));
-  const double limit = kImpact * median(bends);
+  std::vector<double> ordered = bends;
+  const double limit = kImpact * quantile(ordered, 0.5);
   std::vector<Stretch> calm;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (bends[i] <= limit) calm.push_back(std::move(all[i]));

@@ -127,6 +127,21 @@ TEST_CASE("a recording that is too short says so") {
   CHECK_THROWS_WITH(estimate_camera(recording), Contains("150 locations are too few"));
 }
 
+TEST_CASE("a recording of short bursts says that it has no span to tell the rate from") {
+  Recording recording;
+  recording.file = "bursts.a";
+  Run& run = recording.runs.emplace_back();
+  Random random(5);
+  for (int i = 0; i < 800; ++i) {
+    const double t = 0.2 * (i / 8) + 1e-3 * (i % 8);
+    run.time.push_back(t);
+    const double at[3] = {0.1 * std::cos(3 * t), 0.1 * std::sin(3 * t), 0.03};
+    for (std::size_t axis = 0; axis < 3; ++axis) run.position[axis].push_back(at[axis] + 3e-4 * random.normal());
+  }
+  recording.gap_limit = 0.01;
+  CHECK_THROWS_WITH(estimate_camera(recording), Contains("bursts.a: no 20 ms without a pause"));
+}
+
 TEST_CASE("an .a file reads back as it was written") {
   const Run run = observe(circulating(10, 1), parse_camera(kKnown, "camera.yaml", registry()), context_of(5));
   const fs::path folder = fs::temp_directory_path() / fmt::format("camera_test_{}", getpid());
