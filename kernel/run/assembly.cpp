@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 #include <thread>
 
 #include "kernel/config/values.hpp"
+#include "kernel/run/bodies.hpp"
 
 namespace millscope::run {
 namespace {
@@ -17,58 +17,6 @@ using config::UserError;
 
 int index_of(const std::vector<std::string>& names, const std::string& name) {
   return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
-dem::Motion motion_of(const config::MotionCase& m) {
-  dem::Motion r;
-  if (m.rotation) {
-    r.speed = m.rotation->speed;
-    r.axis = m.rotation->axis;
-    r.point = m.rotation->point;
-    r.start = m.rotation->start;
-    r.ramp = m.rotation->ramp;
-    if (m.rotation->ripple) {
-      r.ripple_amplitude = m.rotation->ripple->amplitude;
-      r.ripple_frequency = m.rotation->ripple->frequency;
-      r.ripple_phase = m.rotation->ripple->phase;
-    }
-  }
-  if (m.translation) {
-    r.velocity = m.translation->velocity;
-    r.oscillation_amplitude = m.translation->amplitude;
-    r.oscillation_frequency = m.translation->frequency;
-    r.oscillation_phase = m.translation->phase;
-    r.translation_start = m.translation->start;
-  }
-  return r;
-}
-
-/// Greatest distance of the surface's vertices from the axis of rotation.
-double greatest_distance(const Surface& s, const dem::Motion& m) {
-  double greatest = 0;
-  for (std::uint64_t v = 0; v < s.vertex_count; ++v) {
-    double d[3], along = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      d[a] = s.vertices[3 * v + a] - m.point[a];
-      along += d[a] * m.axis[a];
-    }
-    double square = 0;
-    for (std::size_t a = 0; a < 3; ++a) square += (d[a] - along * m.axis[a]) * (d[a] - along * m.axis[a]);
-    greatest = std::max(greatest, std::sqrt(square));
-  }
-  return greatest;
-}
-
-GeometryUse make_geometry(const config::GeometryCase& g, const host::Registry& registry) {
-  const host::Loaded& plugin = registry.find(Kind::geometry, g.plugin.kind, g.plugin.where);
-  const config::ResolvedValues values = config::resolve(*plugin.descriptor, g.plugin.node, Scope::instance);
-  GeometryUse use;
-  use.object = host::GeometryObject::create(plugin, values.view(), g.plugin.where);
-  std::stringstream slots(use.object.table().material_slots(use.object.self()));
-  for (std::string slot; std::getline(slots, slot, '|');) use.slots.push_back(slot);
-  use.object.table().surface(use.object.self(), &use.surface);
-  use.object.table().interior(use.object.self(), &use.interior);
-  return use;
 }
 
 /// Materials in the order: those of beads, then those of walls.
@@ -203,35 +151,6 @@ void check_time_step(const Assembly& a) {
   }
 }
 
-/// Bounds of all places that a body's surface takes until the run's end.
-config::Box swept(const Surface& s, const dem::Motion& m, double end) {
-  config::Box box;
-  box.low.fill(1e300);
-  box.high.fill(-1e300);
-  for (std::uint64_t v = 0; v < s.vertex_count; ++v) {
-    const double* x = s.vertices + 3 * v;
-    double along = 0, square = 0;
-    for (std::size_t a = 0; a < 3; ++a) along += (x[a] - m.point[a]) * m.axis[a];
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double off = x[a] - m.point[a] - along * m.axis[a];
-      square += off * off;
-    }
-    for (std::size_t a = 0; a < 3; ++a) {
-      // A vertex that turns runs on a circle round the axis.
-      const double centre = m.speed != 0 ? m.point[a] + along * m.axis[a] : x[a];
-      const double reach = m.speed != 0 ? std::sqrt(square * std::max(0.0, 1 - m.axis[a] * m.axis[a])) : 0.0;
-      box.low[a] = std::min(box.low[a], centre - reach);
-      box.high[a] = std::max(box.high[a], centre + reach);
-    }
-  }
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double shift = m.velocity[a] * std::max(0.0, end - m.translation_start), swing = 2 * std::abs(m.oscillation_amplitude[a]);
-    box.low[a] += std::min(0.0, shift) - swing;
-    box.high[a] += std::max(0.0, shift) + swing;
-  }
-  return box;
-}
-
 /// The box that no bead may leave: what the user gave, else the bounds of the bodies on their way, with a margin of a bead. A plane has
 /// no end and bounds nothing.
 void set_domain(const Assembly& a, dem::Settings& s) {
@@ -282,7 +201,7 @@ int Assembly::wall_body_of_mill() const {
 Assembly assemble(config::Case c, const host::Registry& registry, const AssemblyOptions& options) {
   Assembly a;
   a.c = std::move(c);
-  for (const config::GeometryCase& g : a.c.geometry) a.geometries.push_back(make_geometry(g, registry));
+  a.geometries = make_geometries(a.c, registry);
   a.materials = material_order(a.c, a.geometries);
   a.mill_speed = a.c.mill ? a.c.mill->speed : 0.0;
   const int body = a.wall_body_of_mill();
