@@ -23,7 +23,8 @@ constexpr Parameter kParameters[] = {
     number_parameter("fluid_density", "kg/m^3", 1.204, 0.0, 100.0, "Density of the gas; air at 20 C and 1 atm: 1.204."),
     number_parameter("viscosity", "Pa s", 1.82e-5, 0.0, 1.0, "Dynamic viscosity; air at 20 C: 1.82e-5."),
     choice_parameter("flow", "at_rest|turning", "at_rest", "Velocity of the fluid: none, or rigid rotation about the mill axis."),
-    number_parameter("angular_velocity", "rad/s", 0.0, -1000.0, 1000.0, "Of the turning fluid about z, counter-clockwise."),
+    number_parameter("angular_velocity", "rad/s", 0.0, -1000.0, 1000.0,
+                     "Of the turning fluid about z, counter-clockwise; needed where flow is turning."),
     number_parameter("strength", "1", 1.0, 0.0, 100.0, "Factor on the drag; 0 switches it off."),
 };
 
@@ -41,6 +42,9 @@ class AirDrag {
         turning_(values.text("flow") == "turning" ? values.number("angular_velocity") : 0.0) {
     if (values.text("flow") == "at_rest" && values.number("angular_velocity") != 0.0) {
       throw Refusal("air_drag: angular_velocity is given but flow is at_rest; write flow: turning or leave it out");
+    }
+    if (values.text("flow") == "turning" && values.number("angular_velocity") == 0.0) {
+      throw Refusal("air_drag: flow is turning but angular_velocity is 0; give that of the mill in rad/s, or write flow: at_rest");
     }
   }
 

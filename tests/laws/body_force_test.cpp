@@ -81,4 +81,6 @@ TEST_CASE("a fluid that turns with the mill does not brake a bead that turns wit
   CHECK(drag.on({0.1, 0.0, 0}, {0, -0.3, 0}, 2.5e-3)[3] < 0.0);  // driven by the fluid
   values.set("flow", "at_rest");
   CHECK_THROWS_WITH(Force(values), Catch::Contains("flow: turning"));
+  values.set("flow", "turning").set("angular_velocity", 0.0);
+  CHECK_THROWS_WITH(Force(values), Catch::Contains("flow: at_rest"));
 }
