@@ -7,8 +7,9 @@
 //
 //   T_i = −μ_r L F_n ω/|ω|,   T_j = −T_i
 //
-// Near rest the moment is no larger than what would stop the pair's rolling within about one step, m* R*² |ω|/(10 Δt): without this it
-// would flip from step to step. The tenth is 2/5 of a sphere's inertia, shared among four contacts.
+// Near rest the moment is no larger than m* R*² |ω|/(10 Δt): without this it would flip from step to step. The rolling then fades with a
+// time constant of 4 steps at a wall and of 16 steps between two equal beads (their m* and R* are half of each, and both are braked). The
+// tenth is a quarter of a sphere's 2/5 m R², so that even four contacts at walls together do not turn a bead round within a step.
 // `spin: absolute` is the study's form, −μ_r L F_n ω_i/|ω_i| on each body with its own spin: it depends on the frame, brakes a bead that
 // turns with the shell as a rigid body, and its two moments are no pair. It is there to repeat the study only.
 #include "options.hpp"
