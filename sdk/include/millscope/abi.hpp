@@ -1,9 +1,8 @@
 // What crosses the boundary between millscope and a plugin: plain data only.
 //
-// A plugin library exports one data symbol, `millscope_plugins`, a list of descriptors. The host reads magic, size, ABI version
-// and layout hash before it calls any function of the plugin. (The system's loader runs a library's constructors when it opens it: that is
-// why libraries are opened only where nobody else can write.) Layout rule: the first five members of Descriptor never move, so that a
-// host of any age can say what differs.
+// A plugin library exports one data symbol, `millscope_plugins`, a list of descriptors. The host reads magic, size, ABI version and
+// layout hash before it calls a function of the plugin (a library's constructors run at dlopen). Layout rule: the first five members of
+// Descriptor never move, so that a host of any age can say what differs.
 #pragma once
 
 #include <cstddef>
