@@ -79,42 +79,45 @@ const Trial* Evaluator::known(const Wanted& wanted) const {
   return found == trials_.end() ? nullptr : &*found;
 }
 
-std::vector<Trial> Evaluator::run(const std::vector<Wanted>& wanted, const std::vector<std::size_t>& conditions,
-                                  const std::string& stage) const {
+Trial Evaluator::look(const Job& job, std::span<const campaign::Outcome> outcomes) const {
+  Trial trial;
+  trial.point = job.wanted.point;
+  trial.replicate = job.wanted.replicate;
+  trial.conditions = job.conditions;
+  for (std::size_t k = 0; k < outcomes.size(); ++k) {
+    trial.wall_s += outcomes[k].wall_s;
+    trial.folders.push_back(outcomes[k].folder);
+    if (trial.failed) continue;
+    try {
+      if (outcomes[k].state == campaign::State::failed) throw UserError(outcomes[k].message);
+      trial.observed.push_back(machinery_.observe(job.conditions[k], outcomes[k]));
+    } catch (const UserError& e) {
+      trial.failed = true;
+      trial.message = fmt::format("condition '{}': {}", study_.conditions[job.conditions[k]].name, e.what());
+    }
+  }
+  if (!trial.failed) score(study_, machinery_.recorded, trial);
+  if (trial.failed) say(fmt::format("left out: {} ({})", point_text(study_, trial.point), trial.message));
+  return trial;
+}
+
+std::vector<Trial> Evaluator::run(const std::vector<Job>& jobs, const std::string& stage) const {
   std::vector<campaign::Simulation> simulations;
-  for (const Wanted& w : wanted) {
-    for (const std::size_t c : conditions) simulations.push_back(simulation(study_, w.point, w.replicate, c));
+  for (const Job& job : jobs) {
+    for (const std::size_t c : job.conditions) simulations.push_back(simulation(study_, job.wanted.point, job.wanted.replicate, c));
   }
   const std::vector<campaign::Outcome> outcomes = machinery_.run(simulations);
   std::vector<Trial> done;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    Trial trial;
-    trial.point = wanted[i].point;
-    trial.replicate = wanted[i].replicate;
-    trial.stage = stage;
-    trial.conditions = conditions;
-    for (std::size_t k = 0; k < conditions.size() && !trial.failed; ++k) {
-      const campaign::Outcome& outcome = outcomes[i * conditions.size() + k];
-      trial.wall_s += outcome.wall_s;
-      trial.folders.push_back(outcome.folder);
-      try {
-        if (outcome.state == campaign::State::failed) throw UserError(outcome.message);
-        trial.observed.push_back(machinery_.observe(conditions[k], outcome));
-      } catch (const campaign::Interrupted&) {
-        throw;
-      } catch (const UserError& e) {
-        trial.failed = true;
-        trial.message = fmt::format("condition '{}': {}", study_.conditions[conditions[k]].name, e.what());
-      }
-    }
-    if (!trial.failed) score(study_, machinery_.recorded, trial);
-    if (trial.failed) say(fmt::format("left out: {} ({})", point_text(study_, trial.point), trial.message));
-    done.push_back(std::move(trial));
+  std::size_t next = 0;
+  for (const Job& job : jobs) {
+    done.push_back(look(job, std::span(outcomes).subspan(next, job.conditions.size())));
+    done.back().stage = stage;
+    next += job.conditions.size();
   }
   return done;
 }
 
-std::vector<Trial> Evaluator::remember(const std::vector<Wanted>& wanted, const std::string& stage) {
+std::vector<Trial> Evaluator::evaluate(const std::vector<Wanted>& wanted, const std::string& stage) {
   std::vector<Wanted> fresh;
   for (const Wanted& w : wanted) {
     const bool twice =
@@ -125,7 +128,9 @@ std::vector<Trial> Evaluator::remember(const std::vector<Wanted>& wanted, const 
   if (!fresh.empty()) {
     say(fmt::format("{}: {} parameter sets ({} of {} simulations used so far)", stage, fresh.size(), simulations_,
                     study_.budget.simulations));
-    for (Trial& trial : run(fresh, conditions, stage)) {
+    std::vector<Job> jobs;
+    for (const Wanted& w : fresh) jobs.push_back({w, conditions});
+    for (Trial& trial : run(jobs, stage)) {
       simulations_ += static_cast<int>(conditions.size());
       wall_ += trial.wall_s;
       trials_.push_back(std::move(trial));
@@ -141,23 +146,20 @@ std::vector<Trial> Evaluator::remember(const std::vector<Wanted>& wanted, const 
   return all;
 }
 
-std::vector<Trial> Evaluator::evaluate(const std::vector<Eigen::VectorXd>& points, const std::string& stage, int first_replicate) {
-  std::vector<Wanted> wanted;
-  for (const Eigen::VectorXd& point : points) wanted.push_back({point, first_replicate});
-  return remember(wanted, stage);
-}
-
-std::vector<Trial> Evaluator::replicate(const Eigen::VectorXd& point, int replicates, const std::string& stage) {
-  std::vector<Wanted> wanted;
-  for (int r = 0; r < replicates; ++r) wanted.push_back({point, r});
-  return remember(wanted, stage);
-}
-
-std::vector<Trial> Evaluator::evaluate_in(const std::vector<Eigen::VectorXd>& points, const std::vector<std::size_t>& conditions,
-                                          const std::string& stage) {
+std::vector<Trial> Evaluator::evaluate(const std::vector<Eigen::VectorXd>& points, const std::string& stage) {
   std::vector<Wanted> wanted;
   for (const Eigen::VectorXd& point : points) wanted.push_back({point, 0});
-  return run(wanted, conditions, stage);
+  return evaluate(wanted, stage);
+}
+
+std::vector<std::pair<std::size_t, Trial>> Evaluator::each_in(const Eigen::VectorXd& point,
+                                                              const std::vector<std::size_t>& conditions) const {
+  std::vector<Job> jobs;
+  for (const std::size_t c : conditions) jobs.push_back({{point, 0}, {c}});
+  std::vector<Trial> trials = run(jobs, "validation");
+  std::vector<std::pair<std::size_t, Trial>> each;
+  for (std::size_t i = 0; i < trials.size(); ++i) each.emplace_back(conditions[i], std::move(trials[i]));
+  return each;
 }
 
 }  // namespace millscope::calibrate

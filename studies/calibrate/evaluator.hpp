@@ -8,6 +8,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -46,14 +47,16 @@ class Evaluator {
  public:
   Evaluator(const Study& study, Machinery machinery);
 
+  struct Wanted {
+    Eigen::VectorXd point;
+    int replicate = 0;  ///< not 0: another seed
+  };
   /// Runs the sets in the fit conditions, remembers and returns them in their order. A set that was tried before is not counted twice.
   /// Throws UserError when all that have been tried so far have failed.
-  std::vector<Trial> evaluate(const std::vector<Eigen::VectorXd>& points, const std::string& stage, int first_replicate = 0);
-  /// One set, one per replicate number 0 … replicates − 1 (other seeds).
-  std::vector<Trial> replicate(const Eigen::VectorXd& point, int replicates, const std::string& stage);
-  /// In other conditions, not counted against the budget and not remembered.
-  std::vector<Trial> evaluate_in(const std::vector<Eigen::VectorXd>& points, const std::vector<std::size_t>& conditions,
-                                 const std::string& stage);
+  std::vector<Trial> evaluate(const std::vector<Wanted>& wanted, const std::string& stage);
+  std::vector<Trial> evaluate(const std::vector<Eigen::VectorXd>& points, const std::string& stage);
+  /// One set in single conditions, all in one campaign; not counted against the budget and not remembered.
+  std::vector<std::pair<std::size_t, Trial>> each_in(const Eigen::VectorXd& point, const std::vector<std::size_t>& conditions) const;
 
   const std::vector<Trial>& trials() const { return trials_; }  ///< in the order of their evaluation, each once
   int simulations() const { return simulations_; }              ///< that the budget counts
@@ -65,12 +68,12 @@ class Evaluator {
   void say(const std::string& line) const;
 
  private:
-  struct Wanted {
-    Eigen::VectorXd point;
-    int replicate;
+  struct Job {
+    Wanted wanted;
+    std::vector<std::size_t> conditions;
   };
-  std::vector<Trial> run(const std::vector<Wanted>& wanted, const std::vector<std::size_t>& conditions, const std::string& stage) const;
-  std::vector<Trial> remember(const std::vector<Wanted>& wanted, const std::string& stage);
+  std::vector<Trial> run(const std::vector<Job>& jobs, const std::string& stage) const;
+  Trial look(const Job& job, std::span<const campaign::Outcome> outcomes) const;
   const Trial* known(const Wanted& wanted) const;
 
   const Study& study_;

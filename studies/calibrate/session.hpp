@@ -1,0 +1,41 @@
+// Everything together: study → recordings → campaign → method → files.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "studies/calibrate/methods.hpp"
+#include "studies/calibrate/observe.hpp"
+#include "studies/calibrate/validate.hpp"
+
+namespace millscope::calibrate {
+
+struct SessionOptions {
+  std::filesystem::path output;
+  std::filesystem::path cache;  ///< empty: OUTPUT/cache
+  std::string runner;           ///< empty: the study's
+  int slots = 0;                ///< simulations at once; 0: as many as cores
+  std::vector<std::filesystem::path> plugin_directories;
+  std::vector<std::string> slurm_options;
+  bool quiet = false;
+  bool retry_failed = false;
+  std::function<void(const std::string&)> say;  ///< one line of progress; may be empty
+};
+
+/// The study's recordings and campaign, ready for an Evaluator.
+class Session {
+ public:
+  /// Checks the study and looks at its recordings. Throws config::UserError.
+  Session(const Study& study, const host::Registry& registry, SessionOptions options);
+  Evaluator& evaluator() { return *evaluator_; }
+
+ private:
+  const Study& study_;
+  SessionOptions options_;
+  std::unique_ptr<Observer> observer_;
+  std::unique_ptr<Evaluator> evaluator_;
+};
+
+}  // namespace millscope::calibrate

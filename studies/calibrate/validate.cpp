@@ -1,0 +1,178 @@
+#include "studies/calibrate/validate.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "kernel/output/file.hpp"
+#include "kernel/output/summary.hpp"
+#include "studies/calibrate/outputs.hpp"
+
+namespace millscope::calibrate {
+namespace {
+
+namespace fs = std::filesystem;
+using config::UserError;
+using Json = nlohmann::ordered_json;
+
+constexpr double kNormal90 = 1.645;
+
+Judged judge(const Observable& what, double recorded, double simulated, double error) {
+  Judged j{what, recorded, simulated, simulated - recorded, error, 0, 0, 1, false};
+  j.low = j.difference - kNormal90 * error;
+  j.high = j.difference + kNormal90 * error;
+  j.p = std::erfc(std::fabs(j.difference) / (error * std::sqrt(2.0)));
+  return j;
+}
+
+ValidatedCondition judge_condition(const Evaluator& evaluator, const Trial& trial, std::size_t condition) {
+  ValidatedCondition v;
+  v.condition = condition;
+  v.failed = trial.failed;
+  v.message = trial.message;
+  if (!trial.folders.empty()) v.folder = trial.folders.front();
+  if (trial.failed) return v;
+  const Observation &recorded = evaluator.machinery().recorded[condition], &simulated = trial.observed.front();
+  for (Eigen::Index i = 0; i < recorded.value.size(); ++i) {
+    v.observables.push_back(judge(recorded.observables[static_cast<std::size_t>(i)], recorded.value[i], simulated.value[i],
+                                  std::sqrt(recorded.covariance(i, i) + simulated.covariance(i, i))));
+  }
+  v.power =
+      judge({"power", "W", "power"}, recorded.power.value, simulated.power.value, std::hypot(recorded.power.sem, simulated.power.sem));
+  v.chagas = trial.chagas;
+  v.misfit = trial.misfit;
+  v.simulated = simulated;
+  return v;
+}
+
+/// Šidák: each element at 1 − (1 − level)^(1/n).
+void pass_or_fail(Validation& validation) {
+  for (const ValidatedCondition& c : validation.conditions) validation.judged += c.observables.size();
+  const double level = 1 - std::pow(1 - kFamilyLevel, 1.0 / static_cast<double>(std::max<std::size_t>(1, validation.judged)));
+  for (ValidatedCondition& c : validation.conditions) {
+    c.power.pass = c.power.p >= level;
+    for (Judged& j : c.observables) {
+      j.pass = j.p >= level;
+      validation.passed += j.pass ? 1 : 0;
+    }
+  }
+}
+
+Json judged_json(const Judged& j) {
+  return {{"name", j.observable.name},
+          {"unit", j.observable.unit},
+          {"recorded", j.recorded},
+          {"simulated", j.simulated},
+          {"difference", j.difference},
+          {"error", j.error},
+          {"low90", j.low},
+          {"high90", j.high},
+          {"p", j.p},
+          {"pass", j.pass}};
+}
+
+void add_row(std::string& out, const Judged& j) {
+  fmt::format_to(std::back_inserter(out), "| {} | {} | {:.4g} | {:.4g} | {:+.3g} | {:+.3g} … {:+.3g} | {} |\n", j.observable.name,
+                 j.observable.unit, j.recorded, j.simulated, j.difference, j.low, j.high, j.pass ? "pass" : "**fail**");
+}
+
+}  // namespace
+
+Eigen::VectorXd calibrated_set(const fs::path& file, const Study& study) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw UserError(fmt::format("{}: cannot be read; give the calibration.json that 'millscope calibrate' wrote", file.string()));
+  const Json j = Json::parse(in, nullptr, false);
+  if (!j.is_object() || !j.contains("parameters") || !j["parameters"].is_array())
+    throw UserError(fmt::format("{}: is no calibration.json; give the one that 'millscope calibrate' wrote", file.string()));
+  Eigen::VectorXd point(static_cast<Eigen::Index>(study.parameters.size()));
+  for (std::size_t p = 0; p < study.parameters.size(); ++p) {
+    bool found = false;
+    for (const Json& parameter : j["parameters"]) {
+      if (parameter.value("path", "") != study.parameters[p].path || !parameter.contains("value") || !parameter["value"].is_number())
+        continue;
+      point[static_cast<Eigen::Index>(p)] = parameter["value"];
+      found = true;
+    }
+    if (!found)
+      throw UserError(study.parameters[p].where, fmt::format("parameter '{}' has no value in {}; calibrate this study again",
+                                                             study.parameters[p].path, file.string()));
+  }
+  return point;
+}
+
+Validation validate(Evaluator& evaluator, const Eigen::VectorXd& point, const std::vector<std::size_t>& conditions) {
+  Validation validation;
+  validation.point = point;
+  for (const auto& [condition, trial] : evaluator.each_in(point, conditions))
+    validation.conditions.push_back(judge_condition(evaluator, trial, condition));
+  pass_or_fail(validation);
+  if (validation.judged == 0)
+    throw UserError(
+        fmt::format("no simulation of the validation came to its end, the first so: {}", validation.conditions.front().message));
+  return validation;
+}
+
+Json validation_json(const Validation& v, const Evaluator& evaluator) {
+  Json j{{"schema_version", 1}, {"study", evaluator.study().file.string()}, {"pass", v.pass()}, {"judged", v.judged},
+         {"passed", v.passed},  {"family_wise_level", kFamilyLevel}};
+  for (std::size_t p = 0; p < evaluator.study().parameters.size(); ++p)
+    j["parameters"][evaluator.study().parameters[p].name] = v.point[static_cast<Eigen::Index>(p)];
+  for (const ValidatedCondition& c : v.conditions) {
+    const Condition& of = evaluator.study().conditions[c.condition];
+    Json one{{"role", of.role == Role::fit ? "fit" : "held_out"}, {"folder", c.folder.string()}};
+    if (c.failed) {
+      one["failed"] = c.message;
+    } else {
+      one["power"] = judged_json(c.power);
+      one["power"]["percent"] = 100 * c.power.difference / c.power.recorded;
+      one["chagas2015"] = {
+          {"value", c.chagas.value()}, {"power_W", c.chagas.power}, {"x_percent", c.chagas.x}, {"speed_percent", c.chagas.speed}};
+      one["misfit"] = c.misfit;
+      for (const Judged& o : c.observables) one["observables"].push_back(judged_json(o));
+    }
+    j["conditions"][of.name] = one;
+  }
+  return j;
+}
+
+std::string validation_text(const Validation& v, const Evaluator& evaluator) {
+  std::string out =
+      fmt::format("# Validation\n\n{} of {} observables pass at {:.0f} % family-wise: {}.\n\n", v.passed, v.judged, 100 * kFamilyLevel,
+                  v.pass() ? "the simulation agrees with the recordings" : "the simulation and the recordings differ");
+  for (const ValidatedCondition& c : v.conditions) {
+    const Condition& of = evaluator.study().conditions[c.condition];
+    fmt::format_to(std::back_inserter(out), "## {} ({})\n\n", of.name, of.role == Role::fit ? "was fitted" : "held out");
+    if (c.failed) {
+      out += "The simulation failed: " + c.message + "\n\n";
+      continue;
+    }
+    fmt::format_to(std::back_inserter(out),
+                   "Power {:.4g} W recorded, {:.4g} W simulated: {:+.2f} % ({:+.2f} … {:+.2f} %), {}. Eq. 4.3: {:.3g}. Misfit {:.4g} of {} "
+                   "observables.\n\n",
+                   c.power.recorded, c.power.simulated, 100 * c.power.difference / c.power.recorded, 100 * c.power.low / c.power.recorded,
+                   100 * c.power.high / c.power.recorded, c.power.pass ? "pass" : "fail", c.chagas.value(), c.misfit, c.observables.size());
+    out += "| observable | unit | recorded | simulated | difference | 90 % interval | |\n|---|---|---|---|---|---|---|\n";
+    for (const Judged& j : c.observables) add_row(out, j);
+    out += "\n";
+  }
+  return out;
+}
+
+void write_validation(const Validation& v, const Evaluator& evaluator, const fs::path& folder) {
+  fs::create_directories(folder / "pictures");
+  std::string text = validation_text(v, evaluator);
+  for (const ValidatedCondition& c : v.conditions) {
+    if (c.failed) continue;
+    const std::string& name = evaluator.study().conditions[c.condition].name;
+    for (const fs::path& file : draw_distributions(name, evaluator.machinery().recorded[c.condition], c.simulated, folder / "pictures"))
+      text += fmt::format("![{}](pictures/{})\n\n", file.stem().string(), file.filename().string());
+  }
+  output::AtomicFile out(folder / "validation.md");
+  out.write(text);
+  out.commit();
+  output::write_json(folder / "validation.json", validation_json(v, evaluator));
+}
+
+}  // namespace millscope::calibrate
