@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
@@ -36,16 +38,34 @@ TEST_CASE("a directory or library that others can write is refused with the reme
   const fs::path library = place(kGood, folder.path() / "plugins" / "libplugin.so");
   const std::string directory = library.parent_path().string();
   REQUIRE(refusal_of(directory).empty());
-  for (const fs::perms extra : {fs::perms::others_write, fs::perms::group_write}) {
+  const auto check = [&](fs::perms extra, const std::string& who) {
     fs::permissions(directory, extra, fs::perm_options::add);
-    CHECK_THAT(refusal_of(directory), Contains("chmod go-w '" + directory + "'"));
+    CHECK_THAT(refusal_of(directory), Contains("chmod go-w '" + directory + "'") && Contains(who));
     fs::permissions(directory, extra, fs::perm_options::remove);
     fs::permissions(library, extra, fs::perm_options::add);
-    CHECK_THAT(refusal_of(directory), Contains("chmod go-w '" + library.string() + "'"));
+    CHECK_THAT(refusal_of(directory), Contains("chmod go-w '" + library.string() + "'") && Contains(who));
     fs::permissions(library, extra, fs::perm_options::remove);
+    fs::permissions(folder.path(), extra, fs::perm_options::add);
+    CHECK_THAT(refusal_of(directory), Contains(who + " can write to '" + folder.text() + "' above it"));
+    fs::permissions(folder.path(), fs::perms::sticky_bit, fs::perm_options::add);
+    CHECK(refusal_of(directory).empty());
+    fs::permissions(folder.path(), extra | fs::perms::sticky_bit, fs::perm_options::remove);
+  };
+  check(fs::perms::others_write, "anyone");
+  if (::geteuid() != 0) {
+    WARN("only root can give files to a group of others and to another user: that part is left out");
+    return;
   }
-  fs::permissions(folder.path(), fs::perms::others_write, fs::perm_options::add);
-  CHECK_THAT(refusal_of(directory), Contains("anyone can write to '" + folder.text() + "'"));
+  // Root's own group has no other member: what it can write, root alone can write.
+  fs::permissions(folder.path(), fs::perms::group_write, fs::perm_options::add);
+  CHECK(refusal_of(directory).empty());
+  fs::permissions(folder.path(), fs::perms::group_write, fs::perm_options::remove);
+  constexpr gid_t kOthers = 1;
+  for (const std::string& path : {folder.text(), directory, library.string()}) REQUIRE(::chown(path.c_str(), 0, kOthers) == 0);
+  check(fs::perms::group_write, "its group");
+  constexpr uid_t kStranger = 12345;
+  REQUIRE(::chown(folder.text().c_str(), kStranger, 0) == 0);
+  CHECK_THAT(refusal_of(directory), Contains("'" + folder.text() + "' above it belongs to user id 12345"));
 }
 
 TEST_CASE("a link does not hide where a library lies") {
@@ -57,6 +77,9 @@ TEST_CASE("a link does not hide where a library lies") {
   REQUIRE(refusal_of((folder.path() / "plugins").string()).empty());
   fs::permissions(library, fs::perms::others_write, fs::perm_options::add);
   CHECK_THAT(refusal_of((folder.path() / "plugins").string()), Contains("libreal.so"));
+  fs::permissions(library, fs::perms::others_write, fs::perm_options::remove);
+  fs::permissions(library.parent_path(), fs::perms::others_write, fs::perm_options::add);
+  CHECK_THAT(refusal_of((folder.path() / "plugins").string()), Contains("anyone can write to '" + library.parent_path().string() + "'"));
 }
 
 TEST_CASE("a named directory must exist and hold a plugin") {
