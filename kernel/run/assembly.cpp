@@ -75,6 +75,13 @@ PairContext context_of(const Assembly& a, int first, int second, bool wall) {
   return p;
 }
 
+/// Of the smallest beads of a pair at the speed to expect, undamped: 2.87 (m*²/(R* E*² v))^{1/5}, s (Johnson 1985, eq. 11.24). Stands in
+/// for a law that gives no estimate of its own.
+double hertz_contact_time(const PairContext& p) {
+  const double young = p.effective_young;
+  return 2.87 * std::pow(p.smallest_mass * p.smallest_mass / (p.smallest_radius * young * young * p.typical_speed), 0.2);
+}
+
 struct Channels {
   std::vector<std::string> names;
   std::vector<int> signs;
@@ -115,8 +122,9 @@ dem::PairPhysics make_pair(Assembly& a, const host::Registry& registry, int firs
     const std::uint64_t features = i.plugin().descriptor->features;
     p.pair_parameters.push_back({&i.table(), i.self(), (features & kGivesRestitution) != 0, (features & kGivesFriction) != 0});
   }
-  const double time = law.table().contact_time(law.self(), context.smallest_radius, context.smallest_mass, a.typical_speed);
-  if (time > 0) a.hertz_contact_time = a.hertz_contact_time > 0 ? std::min(a.hertz_contact_time, time) : time;
+  double time = law.table().contact_time(law.self(), context.smallest_radius, context.smallest_mass, a.typical_speed);
+  if (!(time > 0)) time = hertz_contact_time(context);
+  a.hertz_contact_time = a.hertz_contact_time > 0 ? std::min(a.hertz_contact_time, time) : time;
   return p;
 }
 

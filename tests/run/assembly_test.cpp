@@ -6,6 +6,7 @@
 
 #include "dem/support.hpp"
 #include "kernel/config/error.hpp"
+#include "kernel/host/registry.hpp"
 
 using namespace dem_test;
 
@@ -33,6 +34,21 @@ TEST_CASE("an unstable step is refused at its line, a step that hardly resolves 
   s.law = "{kind: linear_spring_dashpot}";
   s.pairs = "restitution: 0.8, static_friction: 0.3, contact_time: 1e-4 s";
   CHECK_THROWS_WITH(assembled(s), Catch::Contains("fewer than 10 steps"));
+}
+
+TEST_CASE("a law that gives no contact time is checked against that of Hertz") {
+  host::RegistryOptions options;
+  options.directories = {std::string(MILLSCOPE_BINARY_DIR) + "/lib/millscope/plugins", TEMPLATE_LAW};
+  options.own = false;
+  const host::Registry registry(options);
+  Setup s;
+  const double hertz = assembled(s).hertz_contact_time;
+  s.law = "{kind: template_law}";
+  s.pairs = "static_friction: 0.3, damping: 0.2, tangential_stiffness: 1e4";
+  const auto of_template = [&] { return run::assemble(config::parse_case(s.text(), "test.yaml"), registry, {1, ""}); };
+  CHECK(of_template().hertz_contact_time == Approx(hertz));
+  s.time = "{end_s: 1, step_fraction: 0.5}";
+  CHECK_THROWS_WITH(of_template(), Catch::Contains("test.yaml:") && Catch::Contains("fewer than 10 steps"));
 }
 
 TEST_CASE("every pair that can meet has its own law, walls among themselves none") {
