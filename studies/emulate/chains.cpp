@@ -11,19 +11,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Weights exp((l − max)/T) with the smallest T, from 1 upwards, at which a twentieth of the candidates carries them.
-VectorXd flattened_weights(const VectorXd& log_density) {
-  const double most = log_density.maxCoeff();
-  if (!std::isfinite(most)) throw std::domain_error("no candidate has a density");
-  VectorXd weights;
-  for (double temperature = 1; temperature < 1e12; temperature *= 1.5) {
-    weights = ((log_density.array() - most) / temperature).exp();
-    const double effective = weights.sum() * weights.sum() / weights.squaredNorm();
-    if (effective >= 0.05 * static_cast<double>(log_density.size())) break;
-  }
-  return weights;
-}
-
 double mirrored(double u) {
   u = std::fmod(u + 1, 4);
   if (u < 0) u += 4;
@@ -32,44 +19,43 @@ double mirrored(double u) {
 
 }  // namespace
 
-Population::Population(const LogDensity& density, const MatrixXd& candidates, int chains, std::uint64_t seed, std::uint64_t stream)
-    : density_(density), random_(seed, stream), position_(candidates.rows(), chains), value_(chains) {
-  VectorXd value(candidates.cols());
-  for (Index i = 0; i < value.size(); ++i) value[i] = density(candidates.col(i));
-  VectorXd weights = flattened_weights(value);
-  for (Index c = 0; c < chains; ++c) {
-    double left = random_.uniform() * weights.sum();
-    Index pick = 0;
-    weights.maxCoeff(&pick);
-    for (Index i = 0; i < weights.size(); ++i) {
-      left -= weights[i];
-      if (left < 0 && weights[i] > 0) {
-        pick = i;
-        break;
-      }
-    }
-    position_.col(c) = candidates.col(pick);
-    value_[c] = value[pick];
-    weights[pick] = 0;  // each but once: the steps come from the differences
-  }
+Population::Population(const LogDensity& density, const MatrixXd& prior_points, int chains, std::uint64_t seed, std::uint64_t stream)
+    : density_(density),
+      random_(seed, stream),
+      mixture_(density, prior_points, random_),
+      position_(mixture_.starts(chains, random_)),
+      value_(chains) {
+  for (Index c = 0; c < chains; ++c) value_[c] = density(position_.col(c));
 }
 
-void Population::step(Index chain) {
+VectorXd Population::difference_step(Index chain) {
   constexpr double kJitter = 1e-4, kLongSteps = 0.1;
   const Index n = position_.rows(), count = position_.cols();
-  auto other = [&](Index a, Index b) {
-    Index pick;
-    do pick = static_cast<Index>(random_.below(static_cast<std::uint64_t>(count)));
-    while (pick == a || pick == b);
+  const auto other = [&](Index a, Index b) {
+    Index pick = a;
+    while (pick == a || pick == b) pick = static_cast<Index>(random_.below(static_cast<std::uint64_t>(count)));
     return pick;
   };
   const Index a = other(chain, chain), b = other(chain, a);
   const double gamma = random_.uniform() < kLongSteps ? 1.0 : 2.38 / std::sqrt(2.0 * static_cast<double>(n));
-  VectorXd proposal = position_.col(chain) + gamma * (position_.col(a) - position_.col(b)) + kJitter * random_.normals(n);
-  proposal = proposal.unaryExpr(&mirrored);
+  const VectorXd proposal = position_.col(chain) + gamma * (position_.col(a) - position_.col(b)) + kJitter * random_.normals(n);
+  return proposal.unaryExpr(&mirrored);
+}
+
+void Population::step(Index chain) {
+  constexpr double kFromMixture = 0.1;
+  if (random_.uniform() < kFromMixture) {
+    const VectorXd proposal = mixture_.draw(random_);
+    accept(chain, proposal, mixture_.log_density(position_.col(chain)) - mixture_.log_density(proposal));
+  } else {
+    accept(chain, difference_step(chain), 0);
+  }
+}
+
+void Population::accept(Index chain, const VectorXd& proposal, double log_correction) {
   const double value = density_(proposal);
   ++proposed_;
-  if (std::log(1 - random_.uniform()) > value - value_[chain]) return;
+  if (std::log(1 - random_.uniform()) > value - value_[chain] + log_correction) return;
   ++accepted_;
   position_.col(chain) = proposal;
   value_[chain] = value;

@@ -3,23 +3,22 @@
 //   proposal of chain i:  u_i + γ (u_a − u_b) + ε,  a ≠ b ≠ i drawn among the population;  γ = 2.38/√(2 parameters), now and then 1 (from
 //   mode to mode)
 //
-// A proposal beyond an end of the box is mirrored back, which keeps the steps symmetric. Two populations that know nothing of each other:
-// their agreement is the evidence that the chains have forgotten their starts.
+// A proposal beyond an end of the box is mirrored back, which keeps the steps symmetric. One proposal in ten comes from the mixture instead
+// (independence sampler: its density enters the acceptance), so that hills far apart are visited as often as they deserve. Two populations
+// that know nothing of each other: their agreement is the evidence that the chains have forgotten their starts.
 #pragma once
 
 #include <functional>
 #include <vector>
 
-#include "studies/emulate/random.hpp"
+#include "studies/emulate/mixture.hpp"
 
 namespace millscope::emulate {
 
-using LogDensity = std::function<double(const Eigen::VectorXd& coded)>;
-
 class Population {
  public:
-  /// Starts from candidates (parameters × many), drawn by their density flattened until half of them would do.
-  Population(const LogDensity& density, const Eigen::MatrixXd& candidates, int chains, std::uint64_t seed, std::uint64_t stream);
+  /// Learns the mixture from the prior's points (parameters × many; coded) and starts from its draws.
+  Population(const LogDensity& density, const Eigen::MatrixXd& prior_points, int chains, std::uint64_t seed, std::uint64_t stream);
 
   /// Goes on for `draws` steps; the draws before are forgotten.
   void sample(int draws);
@@ -30,8 +29,11 @@ class Population {
 
  private:
   void step(Eigen::Index chain);
+  void accept(Eigen::Index chain, const Eigen::VectorXd& proposal, double log_correction);
+  Eigen::VectorXd difference_step(Eigen::Index chain);
   LogDensity density_;
   Random random_;
+  Mixture mixture_;
   Eigen::MatrixXd position_;
   Eigen::VectorXd value_;
   std::vector<Eigen::MatrixXd> draws_;

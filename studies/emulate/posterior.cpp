@@ -20,6 +20,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kPopulations = 2, kPriorDraws = 4000;
+constexpr int kLearning = 300;  // draws per parameter and round for the mixture
 constexpr double kEdge = 0.01;  // of coded units: half a hundredth of the range
 constexpr double kMostRHat = 1.05, kLeastEffective = 400;
 
@@ -71,7 +72,7 @@ std::vector<Population> run_chains(const Likelihood& likelihood, const SamplerOp
   const LogDensity density = [&](const VectorXd& coded) { return likelihood.log_density(coded); };
   std::vector<Population> populations;
   for (std::uint64_t stream = 0; stream < kPopulations; ++stream) {
-    MatrixXd candidates = prior_points(likelihood.box(), 40 * chains, options.seed + 1000 * stream);
+    MatrixXd candidates = prior_points(likelihood.box(), kLearning * static_cast<int>(p), options.seed + 1000 * stream);
     for (Index i = 0; i < candidates.cols(); ++i) candidates.col(i) = likelihood.box().coded(candidates.col(i));
     populations.emplace_back(density, candidates, chains, options.seed, stream);
   }

@@ -70,15 +70,14 @@ VectorXd trend_terms(Trend trend, const VectorXd& coded) {
 
 Process::Process(Sample sample, Shape shape) : sample_(std::move(sample)), shape_(std::move(shape)) {
   const Index n = sample_.output.size();
-  const VectorXd per_length = (-shape_.log_length).array().exp();
-  const MatrixXd scaled = per_length.asDiagonal() * sample_.input;
-  const double variance = std::exp(shape_.log_variance), nugget = std::exp(shape_.log_nugget);
-  MatrixXd a(n, n), h(n, trend_size(shape_.trend, scaled.rows()));
+  per_length_ = (-shape_.log_length).array().exp();
+  scaled_ = per_length_.asDiagonal() * sample_.input;
+  variance_ = std::exp(shape_.log_variance);
+  const double nugget = std::exp(shape_.log_nugget);
+  MatrixXd a(n, n), h(n, trend_size(shape_.trend, scaled_.rows()));
   for (Index i = 0; i < n; ++i) {
-    for (Index j = 0; j < i; ++j) {
-      a(i, j) = a(j, i) = variance * correlation(shape_.kernel, (scaled.col(i) - scaled.col(j)).squaredNorm()).value;
-    }
-    a(i, i) = variance + sample_.noise[i] + nugget;
+    a.col(i) = correlations(scaled_.col(i));
+    a(i, i) = variance_ + sample_.noise[i] + nugget;
     h.row(i) = trend_terms(shape_.trend, sample_.input.col(i)).transpose();
   }
   const Eigen::LLT<MatrixXd> root(a);
@@ -95,22 +94,19 @@ Process::Process(Sample sample, Shape shape) : sample_(std::move(sample)), shape
 }
 
 Process::Value Process::at(const VectorXd& coded) const {
-  const Index n = sample_.output.size(), p = coded.size();
-  const double variance = std::exp(shape_.log_variance);
-  const VectorXd per_length = (-shape_.log_length).array().exp();
-  VectorXd k(n);
-  for (Index i = 0; i < n; ++i) {
-    double r2 = 0;
-    for (Index d = 0; d < p; ++d) {
-      const double x = (coded[d] - sample_.input(d, i)) * per_length[d];
-      r2 += x * x;
-    }
-    k[i] = variance * correlation(shape_.kernel, r2).value;
-  }
+  const VectorXd k = correlations(coded.cwiseProduct(per_length_));
   const VectorXd h = trend_terms(shape_.trend, coded);
   const VectorXd v = inverse_root_.triangularView<Eigen::Lower>() * k;
   const VectorXd t = h - trend_root_.transpose() * v;
-  return {h.dot(beta_) + k.dot(weights_), std::max(0.0, variance - v.squaredNorm() + t.dot(trend_inverse_ * t))};
+  return {h.dot(beta_) + k.dot(weights_), std::max(0.0, variance_ - v.squaredNorm() + t.dot(trend_inverse_ * t))};
+}
+
+/// Of a point with all runs, whole arrays at once: this is what a posterior's time goes into.
+VectorXd Process::correlations(const VectorXd& scaled) const {
+  const Eigen::ArrayXd r2 = (scaled_.colwise() - scaled).colwise().squaredNorm().transpose();
+  if (shape_.kernel == Kernel::squared_exponential) return variance_ * (-0.5 * r2).exp();
+  const Eigen::ArrayXd q = (5 * r2).sqrt();
+  return variance_ * (1 + q + 5.0 / 3.0 * r2) * (-q).exp();
 }
 
 Process::LeftOut Process::leave_one_out() const {
@@ -136,15 +132,14 @@ double Process::log_likelihood(VectorXd* slope) const {
   m.noalias() -= inverse_root_.transpose() * inverse_root_;
   m.noalias() += weights_ * weights_.transpose();  // αα' − Q
   const VectorXd per_length2 = (-2 * shape_.log_length).array().exp();
-  const double variance = std::exp(shape_.log_variance);
   slope->setZero(p + 2);
   for (Index i = 0; i < n; ++i) {
-    (*slope)[p] += 0.5 * m(i, i) * variance;
+    (*slope)[p] += 0.5 * m(i, i) * variance_;
     for (Index j = 0; j < i; ++j) {
       const VectorXd d2 = (sample_.input.col(i) - sample_.input.col(j)).array().square() * per_length2.array();
       const Correlation c = correlation(shape_.kernel, d2.sum());
-      (*slope)[p] += m(i, j) * variance * c.value;
-      slope->head(p) -= (2 * m(i, j) * variance * c.slope) * d2;
+      (*slope)[p] += m(i, j) * variance_ * c.value;
+      slope->head(p) -= (2 * m(i, j) * variance_ * c.slope) * d2;
     }
   }
   for (Index k = 0; k < p; ++k) (*slope)[k] += kLength.slope(shape_.log_length[k]);

@@ -56,8 +56,12 @@ class Process {
   const Sample& sample() const { return sample_; }
 
  private:
+  Eigen::VectorXd correlations(const Eigen::VectorXd& scaled) const;
   Sample sample_;
   Shape shape_;
+  double variance_ = 1;            // s²
+  Eigen::VectorXd per_length_;     // 1/l
+  Eigen::MatrixXd scaled_;         // inputs in lengths
   Eigen::MatrixXd inverse_root_;   // L⁻¹ of A = L L'
   Eigen::MatrixXd trend_root_;     // L⁻¹ H
   Eigen::MatrixXd trend_inverse_;  // (H'A⁻¹H)⁻¹

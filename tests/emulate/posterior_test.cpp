@@ -150,7 +150,7 @@ TEST_CASE("ninety of a hundred truths lie in their 90 % intervals") {
   const Function f = [](const VectorXd& x) { return VectorXd{{std::sin(2 * x[0]) + 0.3 * x[1], x[0] * x[1], std::exp(-x[0])}}; };
   const Emulator emulator = Emulator::fit(box, runs_of(f, latin(box, 25, 1), 0.02, 1));
   const MatrixXd noise = 9e-4 * MatrixXd::Identity(3, 3);
-  constexpr int kTruths = 150;
+  constexpr int kTruths = 110;
   Random random(5);
   double inside[2] = {0, 0};
   for (int i = 0; i < kTruths; ++i) {
@@ -158,7 +158,7 @@ TEST_CASE("ninety of a hundred truths lie in their 90 % intervals") {
     const Prediction p = emulator.at(truth);
     const MatrixXd root = (noise + emulator.covariance(p)).llt().matrixL();
     const VectorXd value = p.mean + root * random.normals(3);
-    const Posterior posterior = sample_posterior(emulator, box, {value, noise}, {.seed = 7 + static_cast<std::uint64_t>(i), .draws = 250});
+    const Posterior posterior = sample_posterior(emulator, box, {value, noise}, {.seed = 7 + static_cast<std::uint64_t>(i), .draws = 150});
     for (const Index k : {Index{0}, Index{1}}) {
       const Marginal& m = posterior.marginal[static_cast<std::size_t>(k)];
       if (m.low90 <= truth[k] && truth[k] <= m.high90) inside[k] += 100.0 / kTruths;
