@@ -9,7 +9,7 @@ import unittest
 
 from support import CASE, SOURCE, CliTest
 
-COMMANDS = ("run", "resume", "check", "describe", "plugins", "schema", "geometry", "plugin")
+COMMANDS = ("run", "resume", "check", "campaign", "describe", "plugins", "schema", "geometry", "plugin")
 
 
 class Help(CliTest):
