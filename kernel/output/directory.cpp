@@ -31,9 +31,9 @@ constexpr std::array<std::string_view, 9> kOwnNames{"checkpoint.h5", "checkpoint
                                                     "series.csv",    "case.resolved.yaml",     "summary.json", "vtk"};
 
 bool is_own(const fs::path& entry) {
-  fs::path name = entry.filename();
-  if (name.extension() == ".tmp") name = name.stem();
-  return name == kLockName || std::find(kOwnNames.begin(), kOwnNames.end(), name.string()) != kOwnNames.end();
+  const fs::path name = entry.filename();
+  return name == kLockName || std::any_of(kOwnNames.begin(), kOwnNames.end(),
+                                          [&name](std::string_view own) { return name == own || is_temporary_of(name, own); });
 }
 
 std::vector<fs::path> entries_of(const fs::path& directory) {
@@ -66,6 +66,18 @@ void check_contents(const fs::path& path, Mode mode) {
   if (foreign == entries.end()) return;
   throw UserError(fmt::format("{}: --force removes only what a run wrote, and {} is something else; move it away or choose another -o",
                               name, foreign->filename().string()));
+}
+
+// What a run that was killed left half written. The directory is locked and all of it the run's own.
+void remove_temporaries(const fs::path& directory) {
+  std::vector<fs::path> entries = entries_of(directory);
+  if (const fs::path pictures = directory / "vtk"; fs::is_directory(pictures)) {
+    for (fs::path& picture : entries_of(pictures)) entries.push_back(std::move(picture));
+  }
+  for (const fs::path& entry : entries) {
+    const bool pictures = entry.parent_path() != directory;
+    if (entry.extension() == ".tmp" && (pictures || is_own(entry))) fs::remove(entry);
+  }
 }
 
 // Makes `path` and its missing parents; returns those that were made, outermost first.
@@ -148,6 +160,7 @@ OutputDirectory::~OutputDirectory() { impl_->let_go(); }
 
 void OutputDirectory::start() {
   impl_->started = true;
+  if (impl_->mode == Mode::resume) remove_temporaries(impl_->path);
   if (impl_->mode != Mode::overwrite) return;
   for (const fs::path& entry : entries_of(impl_->path)) fs::remove_all(entry);
 }

@@ -24,7 +24,8 @@ class OutputDirectory {
   OutputDirectory(const OutputDirectory&) = delete;
   OutputDirectory& operator=(const OutputDirectory&) = delete;
 
-  /// The run begins: from here on the directory stays. With Mode::overwrite the earlier run's files are removed now.
+  /// The run begins: from here on the directory stays. With Mode::overwrite the earlier run's files are removed now,
+  /// with Mode::resume those that a kill left half written (*.tmp).
   void start();
   /// The run could not begin: removes what was written since `start`, and the directories that the constructor made. Not with
   /// Mode::resume.

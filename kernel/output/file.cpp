@@ -64,6 +64,26 @@ void File::close() {
 
 std::filesystem::path temporary_name(const std::filesystem::path& path) { return path.string() + ".tmp"; }
 
+std::filesystem::path reserve_temporary(const std::filesystem::path& path) {
+  constexpr int kAttempts = 100;
+  for (int attempt = 0;; ++attempt) {
+    const std::filesystem::path name = attempt == 0 ? temporary_name(path) : temporary_name(path.string() + "." + std::to_string(attempt));
+    const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (descriptor >= 0) {
+      ::close(descriptor);
+      return name;
+    }
+    if (errno != EEXIST || attempt == kAttempts) throw_write_error(name, errno);
+  }
+}
+
+bool is_temporary_of(const std::filesystem::path& temporary, const std::filesystem::path& path) {
+  const std::string name = temporary.string(), wanted = path.string(), end = ".tmp";
+  if (name.size() < wanted.size() + end.size() || !name.starts_with(wanted) || !name.ends_with(end)) return false;
+  const std::string number = name.substr(wanted.size(), name.size() - wanted.size() - end.size());
+  return number.empty() || (number.size() > 1 && number[0] == '.' && number.find_first_not_of("0123456789", 1) == std::string::npos);
+}
+
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& path) {
   File file(temporary, O_RDONLY);
   file.sync();
@@ -72,10 +92,10 @@ void publish(const std::filesystem::path& temporary, const std::filesystem::path
   sync_directory(path.parent_path());
 }
 
-AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), file_(temporary_name(path_), O_WRONLY | O_CREAT | O_TRUNC) {}
+AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), file_(reserve_temporary(path_), O_WRONLY | O_NOFOLLOW) {}
 
 AtomicFile::~AtomicFile() {
-  if (!committed_) ::unlink(temporary_name(path_).c_str());
+  if (!committed_) ::unlink(file_.path().c_str());
 }
 
 void AtomicFile::write(std::string_view bytes) {
@@ -86,7 +106,7 @@ void AtomicFile::write(std::string_view bytes) {
 void AtomicFile::commit() {
   write_through();
   file_.close();
-  publish(temporary_name(path_), path_);
+  publish(file_.path(), path_);
   committed_ = true;
 }
 

@@ -17,8 +17,15 @@ inline constexpr int kExitDisk = 4;
 /// Throws the disk-full error when `bytes` and a small reserve do not fit on the disk of `file`.
 void require_space(const std::filesystem::path& file, std::uint64_t bytes);
 
-/// `path` with ".tmp" appended.
+/// `path` with ".tmp" appended: for files in a directory that the program holds as its own (OutputDirectory).
 std::filesystem::path temporary_name(const std::filesystem::path& path);
+
+/// Makes an empty file beside `path` to write to: `path`.tmp, or `path`.1.tmp, … where that exists; nothing that exists is touched, and no
+/// link is followed.
+std::filesystem::path reserve_temporary(const std::filesystem::path& path);
+
+/// Whether a name is one that `reserve_temporary` gives for `path`.
+bool is_temporary_of(const std::filesystem::path& temporary, const std::filesystem::path& path);
 
 /// Syncs `temporary` and renames it to `path`; throws through throw_write_error.
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& path);

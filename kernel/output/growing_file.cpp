@@ -99,8 +99,7 @@ void write_fixed(hid_t parent, const std::string& name, hid_t type, hsize_t coun
 void GrowingFile::create(const fs::path& path, const std::function<void(hid_t)>& build) {
   prepare();
   refuse_existing(path);
-  const fs::path temporary = temporary_name(path);
-  File(temporary, O_WRONLY | O_CREAT | O_TRUNC);
+  const fs::path temporary = reserve_temporary(path);
   try {
     require_space(temporary, 0);
     Handle file =

@@ -13,9 +13,8 @@ void write_tracks(const Recording& recording, const std::filesystem::path& file)
     tracks.push_back(
         {run.name, 0, tracer.diameter.value_or(0), tracer.density.value_or(0), std::filesystem::path(run.source).filename().string()});
   }
-  const std::filesystem::path aside = output::temporary_name(file);
-  std::error_code ignored;
-  std::filesystem::remove(aside, ignored);  // of a run that was killed; where this fails, creating says why
+  const std::filesystem::path aside = output::reserve_temporary(file);
+  std::filesystem::remove(aside);  // the name is ours now, and the writer makes its files itself
   auto writer = output::TrackWriter::create(aside, tracks);
   for (std::size_t k = 0; k < recording.runs.size(); ++k) {
     const Run& run = recording.runs[k];

@@ -55,6 +55,19 @@ TEST_CASE("existing output is not overwritten") {
   CHECK(fs::is_empty(scratch.path));
 }
 
+TEST_CASE("what a killed run left half written goes when it is resumed, and nothing else") {
+  const Scratch scratch;
+  for (const char* name : {"checkpoint.h5", "summary.json.tmp", "frames.h5.2.tmp", "notes.tmp", "notes.txt"}) spill(scratch / name, "x");
+  fs::create_directory(scratch / "vtk");
+  spill(scratch / "vtk/beads_000001.vtp.tmp", "x");
+  spill(scratch / "vtk/beads_000001.vtp", "x");
+  OutputDirectory directory(scratch.path, Mode::resume);
+  CHECK(fs::exists(scratch / "summary.json.tmp"));
+  directory.start();
+  for (const char* name : {"summary.json.tmp", "frames.h5.2.tmp", "vtk/beads_000001.vtp.tmp"}) CHECK_FALSE(fs::exists(scratch / name));
+  for (const char* name : {"checkpoint.h5", "notes.tmp", "notes.txt", "vtk/beads_000001.vtp"}) CHECK(fs::exists(scratch / name));
+}
+
 TEST_CASE("resume needs a run") {
   const Scratch scratch;
   CHECK_THAT(opens(scratch / "none", Mode::resume), Contains("no such directory"));
