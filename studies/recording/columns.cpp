@@ -12,11 +12,39 @@
 namespace millscope::studies {
 
 std::optional<Quantity> quantity_of(std::string_view name) {
-  std::string word(name);
-  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  constexpr std::pair<const char*, Quantity> kNames[] = {{"t", kTime},  {"time", kTime},    {"x", kX},           {"y", kY},
-                                                         {"z", kZ},     {"error", kError},  {"e", kError},       {"err", kError},
-                                                         {"u", kError}, {"spread", kError}, {"events", kEvents}, {"n", kEvents}};
+  std::string word;
+  for (const char c : name) {
+    if (c != ' ' && c != '_' && c != '-' && c != '.') word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  constexpr std::pair<const char*, Quantity> kNames[] = {{"t", kTime},
+                                                         {"time", kTime},
+                                                         {"timestamp", kTime},
+                                                         {"x", kX},
+                                                         {"xpos", kX},
+                                                         {"posx", kX},
+                                                         {"xposition", kX},
+                                                         {"positionx", kX},
+                                                         {"y", kY},
+                                                         {"ypos", kY},
+                                                         {"posy", kY},
+                                                         {"yposition", kY},
+                                                         {"positiony", kY},
+                                                         {"z", kZ},
+                                                         {"zpos", kZ},
+                                                         {"posz", kZ},
+                                                         {"zposition", kZ},
+                                                         {"positionz", kZ},
+                                                         {"error", kError},
+                                                         {"e", kError},
+                                                         {"err", kError},
+                                                         {"u", kError},
+                                                         {"spread", kError},
+                                                         {"residual", kError},
+                                                         {"uncertainty", kError},
+                                                         {"sigma", kError},
+                                                         {"events", kEvents},
+                                                         {"n", kEvents},
+                                                         {"nevents", kEvents}};
   for (const auto& [known, quantity] : kNames) {
     if (word == known) return quantity;
   }

@@ -19,6 +19,15 @@ std::optional<double> number(const Node& section, std::string_view key, std::str
   return node ? std::optional(read_number(*node, unit, range)) : std::nullopt;
 }
 
+config::Range positive_up_to(double highest, const char* reason) {
+  config::Range range = positive(reason);
+  range.high = highest;
+  return range;
+}
+
+/// Of beads: from light polymers to tungsten and beyond.
+config::Range bead_densities() { return config::between(100, 25000, "it is in kg/m^3, or say the unit, e.g. 2.5 g/cm^3"); }
+
 /// The diameter of the bare shell that a case file gives in its section `mill`.
 std::optional<double> diameter_of_case(const std::string& file) {
   const Node root = config::load_document(file);
@@ -50,19 +59,18 @@ void read_speed(const Node& section, Condition& condition) {
   const config::Quantity quantity = config::read_quantity(*node);
   double speed = 0;
   if (quantity.has_unit && quantity.unit.dimension == config::parse_unit("%critical").dimension) {
-    const double fraction = quantity.unit.to_si(quantity.number);
-    condition.critical_fraction = std::fabs(fraction);
-    const bool known = condition.mill_diameter && condition.bead_diameter;
-    speed = fraction * (known ? config::critical_speed(*condition.mill_diameter, *condition.bead_diameter) : 1);
-    if (known) condition.speed = std::fabs(speed);
+    if (!condition.mill_diameter || !condition.bead_diameter) {
+      node->fail(fmt::format("is '{}', which needs mill_diameter and bead_diameter; add them or give rpm", node->text()));
+    }
+    speed = quantity.unit.to_si(quantity.number) * config::critical_speed(*condition.mill_diameter, *condition.bead_diameter);
   } else {
     speed = read_number(*node, "rad/s");
-    condition.speed = std::fabs(speed);
   }
+  condition.speed = std::fabs(speed);
   if (speed == 0) node->fail("is 0; a mill at rest needs no 'speed'");
   if (direction && speed < 0) node->fail("has a sign beside 'direction'; leave one of them out");
   const bool clockwise = direction && config::read_choice(*direction, "counter_clockwise|clockwise") == "clockwise";
-  if ((direction || speed < 0) && condition.speed) condition.angular_velocity = (clockwise || speed < 0 ? -1 : 1) * *condition.speed;
+  if (direction || speed < 0) condition.angular_velocity = (clockwise || speed < 0 ? -1 : 1) * *condition.speed;
 }
 
 }  // namespace
@@ -72,16 +80,18 @@ Condition read_condition(const Node& section) {
                   "power", "geometry"});
   Condition condition;
   condition.filling = number(section, "filling", "1", config::between(0, 1, "it is a part of the bare shell's volume"));
-  condition.porosity = number(section, "porosity", "1", config::between(0, 1, "it is a part of the charge's volume"));
+  config::Range part = config::between(0, 1, "it is the part of the charge's volume that is no bead");
+  part.open_high = true;
+  condition.porosity = number(section, "porosity", "1", part);
   condition.bead_diameter = number(section, "bead_diameter", "m", positive());
-  condition.bead_density = number(section, "bead_density", "kg/m^3", positive());
+  condition.bead_density = number(section, "bead_density", "kg/m^3", bead_densities());
   if (const auto tracer = section.find("tracer")) {
     tracer->expect({"diameter", "density"});
     condition.tracer.diameter = number(*tracer, "diameter", "m", positive());
-    condition.tracer.density = number(*tracer, "density", "kg/m^3", positive());
+    condition.tracer.density = number(*tracer, "density", "kg/m^3", bead_densities());
   }
-  condition.mill_diameter = number(section, "mill_diameter", "m", positive());
-  condition.mill_length = number(section, "mill_length", "m", positive());
+  condition.mill_diameter = number(section, "mill_diameter", "m", positive_up_to(20, "no mill is larger; say the unit, e.g. 300 mm"));
+  condition.mill_length = number(section, "mill_length", "m", positive_up_to(40, "no mill is longer; say the unit, e.g. 60 mm"));
   if (const auto power = section.find("power")) {
     power->expect({"value", "sem"});
     condition.power = MeasuredPower{read_number(power->at("value", "the power given to the charge, e.g. 7.34 W"), "W"),

@@ -94,6 +94,7 @@ std::vector<ColumnEntry> read_columns(const Node& section) {
     ColumnEntry& entry = entries.back();
     const bool has_place = entry.number >= 0 || !entry.header.empty();
     placed += has_place;
+    entry.placed = has_place;
     if (!has_place) entry.number = static_cast<int>(entries.size()) - 1;
     if (!entry.quantity) continue;
     if (there[*entry.quantity]) section.at(key).fail("is the second column for one quantity; write 'skip' for the other");
@@ -177,6 +178,12 @@ Format read_format(const Node& node) {
 
 }  // namespace
 
+config::Range gap_limit_range() {
+  config::Range range = config::positive("a spline across a longer pause is a guess: give e.g. 50 ms");
+  range.high = 1;
+  return range;
+}
+
 Description read_description(const fs::path& file) {
   const Node root = config::load_document(file.string());
   root.expect({"files", "format", "columns", "separator", "skip_lines", "axes", "mirror", "condition", "frame", "gap_limit", "encoder"});
@@ -193,9 +200,13 @@ Description read_description(const fs::path& file) {
     description.columns = read_columns(*node);
     description.columns_place = node->where();
   }
-  if (const auto node = root.find("separator")) description.separator = read_separator(*node);
+  if (const auto node = root.find("separator")) {
+    description.separator = read_separator(*node);
+    description.separator_place = node->where();
+  }
   if (const auto node = root.find("skip_lines")) {
     description.skip_lines = static_cast<std::size_t>(config::read_integer(*node, config::between(0, 1e6)));
+    description.skip_lines_place = node->where();
   }
   const auto mirror = root.find("mirror");
   if (const auto node = root.find("axes")) {
@@ -205,7 +216,7 @@ Description read_description(const fs::path& file) {
   }
   if (const auto node = root.find("condition")) description.condition = read_condition(*node);
   if (const auto node = root.find("frame")) description.frame = read_frame(*node);
-  if (const auto node = root.find("gap_limit")) description.gap_limit = config::read_number(*node, "s", config::positive());
+  if (const auto node = root.find("gap_limit")) description.gap_limit = config::read_number(*node, "s", gap_limit_range());
   if (const auto node = root.find("encoder")) config::read_choice(*node, "none");
   root.finish();
   return description;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kernel/config/document.hpp"
+#include "kernel/config/units.hpp"
 #include "studies/recording/recording.hpp"
 #include "studies/recording/table.hpp"
 
@@ -25,8 +26,9 @@ struct ColumnUnit {
 struct ColumnEntry {
   std::optional<Quantity> quantity;  ///< nothing: a column that is skipped
   ColumnUnit unit;
-  int number = -1;     ///< from 0; −1: named by its head
-  std::string header;  ///< of the column
+  int number = -1;      ///< from 0; −1: named by its head
+  std::string header;   ///< of the column
+  bool placed = false;  ///< the user said where it stands
 };
 
 /// Where a coordinate of the mill's frame comes from: `x: -z`.
@@ -46,7 +48,9 @@ struct Description {
   std::optional<std::vector<ColumnEntry>> columns;
   config::Location columns_place;
   std::optional<char> separator;
+  config::Location separator_place;
   std::size_t skip_lines = 0;
+  config::Location skip_lines_place;
   std::array<AxisSource, 3> axes{{{0, 1}, {1, 1}, {2, 1}}};
   Condition condition;
   std::optional<MillFrame> frame;
@@ -56,13 +60,17 @@ struct Description {
 /// Reads a recording.yaml; throws config::UserError.
 Description read_description(const std::filesystem::path& file);
 
+/// What `gap_limit` may be, s.
+config::Range gap_limit_range();
+
 /// The section `condition`.
 Condition read_condition(const config::Node& section);
 
 /// The unit of a quantity, e.g. "mm"; throws std::invalid_argument where it is none, or of the wrong kind.
 ColumnUnit column_unit(Quantity quantity, std::string_view text);
 
-/// The quantity of a column's name: t, time; x, y, z; error, e, u; events, n. Nothing for others.
+/// The quantity of a column's name: t, time, timestamp; x, xpos, position x; error, e, u, residual; events, n; whatever its capitals,
+/// blanks and underscores. Nothing for others.
 std::optional<Quantity> quantity_of(std::string_view name);
 
 /// The unit that a column without one has: ms, mm, none.

@@ -1,6 +1,9 @@
 // Time order: rows that run backwards, false times, a clock that was set back, duplicates.
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <numeric>
+#include <set>
 
 #include "studies/recording/clean.hpp"
 #include "studies/recording/select.hpp"
@@ -31,7 +34,6 @@ std::vector<char> true_times(const std::vector<double>& time) {
 struct Stretch {
   std::size_t first = 0, last = 0;
   double low = 0, high = 0;  ///< s
-  bool overlaps(const Stretch& other) const { return low < other.high && other.low < high; }
   bool is_long() const { return last - first >= kLeastRows; }
 };
 
@@ -47,41 +49,98 @@ std::vector<Stretch> stretches(const std::vector<double>& time) {
   return found;
 }
 
+/// The rows of a part by their time, to which more are added as the part grows: a sorted list, and beside it a small set of the newest.
+class PartRows {
+ public:
+  PartRows(const Run& rows, std::size_t first) : rows_(&rows), next_(first), newest_(Earlier{&rows}) {}
+
+  /// Takes in the rows before `last`; those that are there already, to the bit, need no second place.
+  void grow(std::size_t last) {
+    const bool many = last - next_ > sorted_.size() / 4;
+    for (; next_ < last; ++next_) {
+      latest_ = std::max(latest_, rows_->time[next_]);
+      if (many) sorted_.push_back(next_);
+      if (!many && !holds(next_)) newest_.insert(next_);
+    }
+    if (!many && newest_.size() <= sorted_.size() / 4) return;
+    sorted_.insert(sorted_.end(), newest_.begin(), newest_.end());
+    newest_.clear();
+    std::sort(sorted_.begin(), sorted_.end(), Earlier{rows_});
+  }
+
+  /// Whether a row of this time and place is there.
+  bool holds(std::size_t i) const {
+    const auto same = [&](std::size_t j) {
+      return std::all_of(rows_->position.begin(), rows_->position.end(),
+                         [&](const auto& component) { return component[i] == component[j]; });
+    };
+    const auto old = std::equal_range(sorted_.begin(), sorted_.end(), i, Earlier{rows_});
+    const auto fresh = newest_.equal_range(i);
+    return std::any_of(old.first, old.second, same) || std::any_of(fresh.first, fresh.second, same);
+  }
+  double latest() const { return latest_; }  ///< s
+
+ private:
+  struct Earlier {
+    const Run* rows;
+    bool operator()(std::size_t i, std::size_t j) const { return rows->time[i] < rows->time[j]; }
+  };
+  const Run* rows_;
+  std::size_t next_;
+  double latest_ = -std::numeric_limits<double>::infinity();
+  std::vector<std::size_t> sorted_;
+  std::multiset<std::size_t, Earlier> newest_;
+};
+
 /// Whether the rows of a stretch, as far as they lie in time that the part covers, are mostly rows of the part over again.
-bool repeats(const Run& rows, std::size_t part_first, const Stretch& stretch) {
-  const auto earlier = [&](std::size_t i, std::size_t j) { return rows.time[i] < rows.time[j]; };
-  std::vector<std::size_t> known(stretch.first - part_first);
-  std::iota(known.begin(), known.end(), part_first);
-  std::sort(known.begin(), known.end(), earlier);
+bool repeats(const Run& rows, PartRows& part, const Stretch& stretch) {
+  part.grow(stretch.first);
   std::size_t covered = 0, same = 0;
   for (std::size_t i = stretch.first; i < stretch.last; ++i) {
-    if (rows.time[i] > rows.time[known.back()]) continue;
+    if (rows.time[i] > part.latest()) continue;
     ++covered;
-    const auto [low, high] = std::equal_range(known.begin(), known.end(), i, earlier);
-    same += std::any_of(low, high, [&](std::size_t j) {
-      return std::all_of(rows.position.begin(), rows.position.end(), [&](const auto& component) { return component[i] == component[j]; });
-    });
+    same += part.holds(i);
   }
   return 2 * same > covered;
 }
 
+/// Times that a part covers, in spans that do not overlap.
+class Cover {
+ public:
+  bool empty() const { return spans_.empty(); }
+  bool overlaps(const Stretch& s) const {
+    const auto behind = spans_.lower_bound(s.high);
+    return behind != spans_.begin() && std::prev(behind)->second > s.low;
+  }
+  void add(const Stretch& s) {
+    double low = s.low, high = s.high;
+    for (auto at = spans_.lower_bound(high); at != spans_.begin() && std::prev(at)->second > low;) {
+      --at;
+      low = std::min(low, at->first);
+      high = std::max(high, at->second);
+      at = spans_.erase(at);
+    }
+    double& end = spans_.try_emplace(low, high).first->second;
+    end = std::max(end, high);
+  }
+
+ private:
+  std::map<double, double> spans_;  // s: from, to
+};
+
 /// Rows at which the clock was set back for good: a stretch begins that covers time which the part covers already, with other points.
 std::vector<std::size_t> resets(const Run& rows) {
   std::vector<std::size_t> found;
-  std::vector<Stretch> part;
-  Stretch hull;
+  Cover cover;
+  PartRows part(rows, 0);
   for (const Stretch& stretch : stretches(rows.time)) {
     if (!stretch.is_long()) continue;
-    const auto overlapped = [&](const Stretch& other) { return stretch.overlaps(other); };
-    const bool again = !part.empty() && stretch.overlaps(hull) && std::any_of(part.begin(), part.end(), overlapped);
-    if (again && !repeats(rows, hull.first, stretch)) {
+    if (cover.overlaps(stretch) && !repeats(rows, part, stretch)) {
       found.push_back(stretch.first);
-      part.clear();
+      cover = {};
     }
-    if (part.empty()) hull = stretch;
-    hull.low = std::min(hull.low, stretch.low);
-    hull.high = std::max(hull.high, stretch.high);
-    part.push_back(stretch);
+    if (cover.empty()) part = PartRows(rows, stretch.first);
+    cover.add(stretch);
   }
   return found;
 }

@@ -34,11 +34,25 @@ std::string plain_name(fs::path file) {
 [[noreturn]] void fail_unusable(const fs::path& file, const RunReport& report, const FirstFault& fault, const std::string& layout) {
   if (report.rows == 0)
     throw UserError(fmt::format("{}: holds no usable point: it has no row of numbers (read as {})", file.string(), layout));
-  throw UserError(
-      config::Location{file.string(), static_cast<int>(fault.line)},
-      fmt::format("'{}' {}; {} of {} rows are unreadable and {} not finite, so the file is of no use as it is read ({}); say what its "
-                  "columns are in a recording.yaml",
-                  fault.text, fault.why, report.unreadable, report.rows, report.not_finite, layout));
+  const char* remedy = fault.why == kDecimalCommas ? "replace them by points" : "say what its columns are in a recording.yaml";
+  const std::string first = fault.line > 0 ? fmt::format("'{}' {}; ", fault.text, fault.why) : "";
+  throw UserError(config::Location{file.string(), static_cast<int>(fault.line)},
+                  fmt::format("{}{} of {} rows are unreadable, {} not finite and {} have false times, so the file is of no use as it is "
+                              "read ({}); {}",
+                              first, report.unreadable, report.rows, report.not_finite, report.false_times, layout, remedy));
+}
+
+/// Beyond three thousand years doubles cannot tell one point from the next. The median, for a false time or two are set aside.
+void check_times(const std::vector<double>& times, const config::Location& where, const std::string& unit) {
+  constexpr double kLatest = 1e11;  // s
+  std::vector<double> some;
+  for (std::size_t i = 0; i < times.size(); i += times.size() / 10000 + 1) some.push_back(std::fabs(times[i]));
+  const double usual = quantile(some, 0.5);
+  if (usual <= kLatest) return;
+  throw UserError(where,
+                  fmt::format("has times of {:.3g} s (read in {}), more than three thousand years; say the right unit under 'columns' in "
+                              "a recording.yaml, e.g. {{t: ns, …}}",
+                              usual, unit));
 }
 
 std::vector<Run> read_table(const RecordingFile& file, const Description& description, Units& units) {
@@ -47,9 +61,13 @@ std::vector<Run> read_table(const RecordingFile& file, const Description& descri
   RunReport report;
   FirstFault fault;
   Rows rows = read_rows(text.text(), known.layout, report, fault);
-  if (rows.size() == 0 || report.unreadable + report.not_finite > report.rows / 2) fail_unusable(file.path, report, fault, known.words);
+  const auto mostly_bad = [&] { return report.unreadable + report.not_finite + report.false_times > report.rows / 2; };
+  if (rows.size() == 0 || mostly_bad()) fail_unusable(file.path, report, fault, known.words);
+  check_times(rows.time, description.columns ? description.columns_place : config::Location{file.path.string(), 0}, known.time_unit);
   units = {known.time_unit, known.length_unit};
   std::vector<Run> runs = order_rows(std::move(rows), report);
+  for (const Run& run : runs) report.false_times += run.report.false_times;
+  if (mostly_bad()) fail_unusable(file.path, report, fault, known.words);
   for (Run& run : runs) run.format = known.words;
   return runs;
 }
@@ -72,6 +90,7 @@ std::vector<Run> read_tracks(const RecordingFile& file, Recording& recording) {
     if (run.size() > 0) runs.push_back(std::move(run));
   }
   if (runs.empty()) throw UserError(fmt::format("{}: holds no usable point: its tracks are empty", file.path.string()));
+  for (const Run& run : runs) check_times(run.time, {file.path.string(), 0}, "s");
   return runs;
 }
 
@@ -122,6 +141,19 @@ std::array<double, 2> reach_of(std::size_t axis, const Extent& extent, const Rec
   return range;
 }
 
+/// A spline needs six points, and less says nothing of a motion.
+void refuse_few(const Recording& recording) {
+  constexpr std::size_t kFewest = 6;
+  std::size_t usable = 0, rows = 0;
+  for (const Run& run : recording.runs) {
+    usable += run.size();
+    rows += run.report.rows;
+  }
+  if (usable >= kFewest) return;
+  throw UserError(fmt::format("{}: holds {} usable points of {} rows, and fewer than {} say nothing of a motion; give a longer recording",
+                              recording.file.string(), usable, rows, kFewest));
+}
+
 void clean(Recording& recording) {
   const Extent extent = measure_extent(recording.runs);
   const Travel travel = measure_travel(recording.runs, recording.gap_limit);
@@ -165,6 +197,7 @@ Recording read_recording(const fs::path& file) {
   check_units(recording.runs, recording.condition, where, units.time, units.length);
   recording.gap_limit = description.gap_limit.value_or(default_gap_limit(recording.runs));
   clean(recording);
+  refuse_few(recording);
   return recording;
 }
 

@@ -26,10 +26,9 @@ struct MeasuredPower {
 
 /// What the user says of the mill; what is absent is unknown and is never guessed.
 struct Condition {
-  std::optional<double> angular_velocity;   ///< Ω about z, rad/s; the sign is the turning sense. Absent where the sense was not said
-  std::optional<double> speed;              ///< |Ω|, rad/s
-  std::optional<double> critical_fraction;  ///< of the critical speed, where the speed was given so
-  std::optional<double> filling;            ///< J on the bare shell's volume
+  std::optional<double> angular_velocity;  ///< Ω about z, rad/s; the sign is the turning sense. Absent where the sense was not said
+  std::optional<double> speed;             ///< |Ω|, rad/s
+  std::optional<double> filling;           ///< J on the bare shell's volume
   std::optional<double> porosity;
   std::optional<double> bead_diameter;  ///< m
   std::optional<double> bead_density;   ///< kg/m³

@@ -71,7 +71,10 @@ class RowReader {
       } else if (!read_value(p, end, values[static_cast<std::size_t>(quantity)])) {
         return "has something else than a number";
       }
-      if (!step_over(p, end, layout_.separator)) return "has something else than a number";
+      if (!step_over(p, end, layout_.separator)) {
+        const bool comma = end - p > 1 && *p == ',' && p[1] >= '0' && p[1] <= '9';
+        return comma ? kDecimalCommas : "has something else than a number";
+      }
     }
     for (std::size_t k = 0; k < kQuantities; ++k) {
       if (layout_.column[k] >= 0) values[k] = values[k] * layout_.multiplier[k] / layout_.divisor[k];
@@ -110,12 +113,11 @@ std::size_t decimals(std::string_view line) {
   return point == std::string_view::npos ? 0 : value.size() - point;
 }
 
-void append(Rows& rows, const Layout& layout, const std::array<double, kQuantities>& values, std::size_t line) {
+void append(Rows& rows, const Layout& layout, const std::array<double, kQuantities>& values) {
   rows.time.push_back(values[kTime]);
   for (std::size_t axis = 0; axis < 3; ++axis) rows.position[axis].push_back(values[kX + axis]);
   if (layout.column[kError] >= 0) rows.spread.push_back(values[kError]);
   if (layout.column[kEvents] >= 0) rows.events.push_back(std::llround(values[kEvents]));
-  rows.line.push_back(static_cast<std::uint32_t>(line));
 }
 
 void reserve(Rows& rows, const Layout& layout, std::size_t count) {
@@ -123,7 +125,6 @@ void reserve(Rows& rows, const Layout& layout, std::size_t count) {
   for (auto& component : rows.position) component.reserve(count);
   if (layout.column[kError] >= 0) rows.spread.reserve(count);
   if (layout.column[kEvents] >= 0) rows.events.reserve(count);
-  rows.line.reserve(count);
 }
 
 bool all_finite(const Layout& layout, const std::array<double, kQuantities>& values) {
@@ -173,7 +174,7 @@ Rows read_rows(std::string_view text, const Layout& layout, RunReport& report, F
       note(fault, number, line, "is not finite");
     } else {
       if (rows.size() == 0) reserve(rows, layout, text.size() / (line.size() + 1) + 16);
-      append(rows, layout, values, number);
+      append(rows, layout, values);
       above = line;
     }
   }

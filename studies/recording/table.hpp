@@ -35,9 +35,11 @@ struct Rows {
   std::array<std::vector<double>, 3> position;
   std::vector<double> spread;        ///< empty where there is no such column
   std::vector<std::int64_t> events;  ///< empty where there is no such column
-  std::vector<std::uint32_t> line;   ///< from 1
   std::size_t size() const { return time.size(); }
 };
+
+/// Why a line with decimal commas is no row: the one reason with a remedy of its own.
+inline constexpr const char* kDecimalCommas = "has decimal commas";
 
 /// The first line that was set aside, for messages.
 struct FirstFault {

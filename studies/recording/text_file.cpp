@@ -56,7 +56,17 @@ std::size_t read_bytes(const std::filesystem::path& file, std::unique_ptr<char[]
   }
 }
 
-/// Inflates all members of a gzip file (RFC 1952: members may follow one another).
+/// Refuses what no recording unpacks to, before the memory is gone.
+void check_unpacked(std::size_t unpacked, std::size_t packed, const std::filesystem::path& file) {
+  constexpr std::size_t kMost = std::size_t{8} << 30U, kHarmless = 100'000'000, kRatio = 200;
+  if (unpacked <= kHarmless || (unpacked <= kMost && unpacked / kRatio <= packed)) return;
+  throw UserError(
+      fmt::format("{}: this gzip file of {} bytes unpacks to more than {} bytes, which no recording does; check what it holds, or "
+                  "unpack it and name the parts",
+                  file.string(), packed, unpacked));
+}
+
+/// Inflates all members of a gzip file (RFC 1952: members may follow one another; zeros behind the last fill a block of a tape).
 std::string inflate_gzip(std::string_view packed, const std::filesystem::path& file) {
   constexpr int kGzipOnly = 15 + 16;  // largest window; 16: with a gzip head
   z_stream stream{};
@@ -66,6 +76,9 @@ std::string inflate_gzip(std::string_view packed, const std::filesystem::path& f
   int state = Z_OK;
   const char* fault = nullptr;
   char block[1 << 16];
+  const auto end = [](z_stream* open) { inflateEnd(open); };
+  const std::unique_ptr<z_stream, decltype(end)> guard(&stream, end);
+  const auto only_zeros = [](std::string_view bytes) { return bytes.find_first_not_of('\0') == std::string_view::npos; };
   while (fault == nullptr) {
     if (stream.avail_in == 0 && taken < packed.size()) {
       const std::size_t size = std::min<std::size_t>(packed.size() - taken, std::numeric_limits<uInt>::max());
@@ -77,9 +90,10 @@ std::string inflate_gzip(std::string_view packed, const std::filesystem::path& f
     stream.avail_out = sizeof block;
     state = inflate(&stream, Z_NO_FLUSH);
     text.append(block, sizeof block - stream.avail_out);
+    check_unpacked(text.size(), packed.size(), file);
     const bool at_end = stream.avail_in == 0 && taken == packed.size();
     if (state == Z_STREAM_END) {
-      if (at_end) break;
+      if (only_zeros(packed.substr(taken - stream.avail_in))) break;
       inflateReset(&stream);
     } else if (state == Z_BUF_ERROR || (state == Z_OK && at_end && stream.avail_out > 0)) {
       fault = "is cut short";
@@ -87,7 +101,6 @@ std::string inflate_gzip(std::string_view packed, const std::filesystem::path& f
       fault = "is damaged";
     }
   }
-  inflateEnd(&stream);
   if (fault != nullptr) throw UserError(fmt::format("{}: this gzip file {}; copy it again from where it was made", file.string(), fault));
   return text;
 }
@@ -97,10 +110,12 @@ std::string inflate_gzip(std::string_view packed, const std::filesystem::path& f
 TextFile::TextFile(const std::filesystem::path& file) {
   const std::size_t size = read_bytes(file, bytes_);
   text_ = {bytes_.get(), size};
-  if (size <= 2 || text_[0] != '\x1f' || text_[1] != '\x8b') return;
-  inflated_ = inflate_gzip(text_, file);
-  text_ = inflated_;
-  bytes_.reset();
+  if (size > 2 && text_[0] == '\x1f' && text_[1] == '\x8b') {
+    inflated_ = inflate_gzip(text_, file);
+    text_ = inflated_;
+    bytes_.reset();
+  }
+  if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // the byte-order mark of UTF-8
 }
 
 }  // namespace millscope::studies

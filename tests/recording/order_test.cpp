@@ -1,5 +1,6 @@
 // Times that are not in order.
 #include <catch2/catch.hpp>
+#include <ctime>
 
 #include "recording/support.hpp"
 
@@ -75,6 +76,33 @@ TEST_CASE("a single false time is set aside") {
   CHECK(run.report.false_times == 3);
   CHECK(run.report.used == 397);
   CHECK(run.time.back() == Approx(1.99));
+}
+
+TEST_CASE("times of thousands of years are refused, and false times count as bad rows") {
+  const Scratch scratch;
+  const auto why = [&](const std::function<std::string(int, std::string)>& change) {
+    const auto file = scratch.file("times.txt", circle_rows(100, change));
+    return refusal([&] { read_recording(file); });
+  };
+  const auto at = [](const std::string& time, const std::string& row) { return time + row.substr(row.find(' ')); };
+  const auto epoch = [&](int k, const std::string& row) { return at(std::to_string(1'700'000'000'000'000'000 + 5'000'000LL * k), row); };
+  CHECK_THAT(why(epoch), Catch::Contains("times.txt") && Catch::Contains("three thousand years") && Catch::Contains("t: ns"));
+  const auto part = [&](int k, const std::string& row) {
+    return k >= 60 ? row : k >= 30 ? std::string("1 lost 2 3") : at(std::to_string(k + 1) + "e12", row);
+  };
+  CHECK_THAT(why(part), Catch::Contains("30 of 100 rows are unreadable, 0 not finite and 30 have false times"));
+}
+
+TEST_CASE("many stretches written over again are read in little time") {
+  const Scratch scratch;
+  std::string text;
+  for (int part = 0; part < 4000; ++part) {
+    for (int k = 0; k < 30; ++k) text += circle_row(10 * (part % 7) + 50 * k) + "\n";
+  }
+  const std::clock_t start = std::clock();
+  const Recording recording = read_recording(scratch.file("over.txt", text));
+  CHECK(recording.runs[0].report.rows + recording.runs.back().report.rows > 0);
+  CHECK(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC < 4);
 }
 
 TEST_CASE("a clock that was set back begins another run") {

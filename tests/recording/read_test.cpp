@@ -1,5 +1,6 @@
 // The tracker's `.a` files, and lines that hold no point.
 #include <catch2/catch.hpp>
+#include <fstream>
 
 #include "recording/support.hpp"
 
@@ -111,6 +112,15 @@ TEST_CASE("a gzipped file is read whatever its name, and a cut or damaged one is
   CHECK_THAT(refusal([&] { read_recording(damaged); }), Contains("damaged.gz") && Contains("damaged"));
 }
 
+TEST_CASE("zeros behind a gzip file fill a block; a small file that unpacks to very much is refused") {
+  const Scratch scratch;
+  const auto file = scratch.packed("padded.gz", ctrack_circle(500));
+  std::ofstream(file, std::ios::app | std::ios::binary) << std::string(3000, '\0');
+  CHECK(read_recording(file).runs[0].size() == 500);
+  const auto bomb = scratch.packed("zeros.gz", std::string(120'000'000, ' '));
+  CHECK_THAT(refusal([&] { read_recording(bomb); }), Contains("zeros.gz") && Contains("unpacks to more than"));
+}
+
 TEST_CASE("a file without a usable point is refused with the reason") {
   const Scratch scratch;
   const auto why = [&](const std::string& text) {
@@ -121,7 +131,11 @@ TEST_CASE("a file without a usable point is refused with the reason") {
   CHECK_THAT(why("t x y z\nonly words here\n"), Contains("no usable point"));
   CHECK_THAT(why("1 nan nan nan\n2 nan nan nan\n"), Contains("x.txt:1:") && Contains("2 not finite"));
   CHECK_THAT(why("t x y z\n1 2 3 4\n2 a b c\n3 a b c\n"), Contains("x.txt:3:") && Contains("2 of 3 rows are unreadable"));
-  CHECK_THAT(why("1,5;2,5;3,5;4,5\n2,5;2,5;3,5;4,5\n"), Contains("x.txt:1:"));
+  for (const char* row : {"1,5;-2,5;3,5;4,5\n", "1,5 2,5 3,5 4,5\n", "1,5\t-93,3\t3,5\t4\n"})
+    CHECK_THAT(why(std::string("t x y z\n") + row + row), Contains("x.txt:2:") && Contains("has decimal commas; replace them by points"));
+  CHECK_THAT(why("0;0;0;0\n2,5;2,5;3,5;4,5\n3,5;2,5;3,5;4,5\n"), Contains("x.txt:2:") && Contains("replace them by points"));
+  const std::string all = circle_rows(5);
+  CHECK_THAT(why(all), Contains("5 usable points of 5 rows"));
   CHECK_THAT(refusal([&] { read_recording(scratch / "absent.a"); }), Contains("absent.a") && Contains("cannot be opened"));
   CHECK_THAT(refusal([&] { read_recording(scratch.path); }), Contains("is a folder"));
 }

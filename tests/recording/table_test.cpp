@@ -94,6 +94,39 @@ TEST_CASE("bare tables are known by the heads above their columns") {
   }
 }
 
+TEST_CASE("heads in other words and with a byte-order mark are understood") {
+  const Scratch scratch;
+  const auto read = [&](const std::string& text) { return read_recording(scratch.file("bare.csv", text)).runs[0]; };
+  SECTION("capitals and synonyms") { check_circle(read("TimeStamp,Residual,X,Y,Z\n" + table("texyz", ","))); }
+  SECTION("with words and units") {
+    const Run run = read("Label,Time Stamp [s],X Position (m),pos_y_m,z-pos / m\n" + table("lTXYZ", ","));
+    check_circle(run, 1e-6);
+    CHECK(run.spread.empty());
+  }
+  SECTION("a mark of UTF-8 before the heads") {
+    const Run run = read("\xEF\xBB\xBFt,error,x,y,z\n" + table("texyz", ","));
+    check_circle(run);
+    CHECK(run.spread[100] == Approx(0.6e-3));
+  }
+  SECTION("a mark of UTF-8 before the first row") { check_circle(read("\xEF\xBB\xBF" + table("txyz", ","))); }
+  SECTION("units apart by blanks") { check_circle(read("e (mm) t (s) x (m) y (m) z (m)\n" + table("eTXYZ", " ")), 1e-6); }
+  SECTION("a line of units below the heads") { check_circle(read("e t x y z\nmm s m m m\n" + table("eTXYZ", " ")), 1e-6); }
+  SECTION("a column without a head") { check_circle(read(",t,x,y,z\n" + table("ltxyz", ","))); }
+}
+
+TEST_CASE("heads that do not say where t, x, y and z are are refused, never passed over") {
+  const Scratch scratch;
+  const auto why = [&](const std::string& text) {
+    const auto file = scratch.file("bare.csv", text);
+    return refusal([&] { read_recording(file); });
+  };
+  CHECK_THAT(why("clock,quality,East,North,Up\n" + table("texyz", ",")),
+             Contains("bare.csv:1:") && Contains("'clock', 'quality', 'East', 'North', 'Up'") && Contains("recording.yaml"));
+  CHECK_THAT(why("# of Tuesday\nt,x,y,depth\n" + table("txyz", ",")), Contains("bare.csv:2:") && Contains("'depth'"));
+  CHECK_THAT(why("t,x,y,z,x\n" + table("txyzx", ",")), Contains("bare.csv:1:") && Contains("once each"));
+  CHECK_THAT(why("t x y z\n" + table("ttxyz", " ")), Contains("bare.csv:1:") && Contains("the first row has 5 columns"));  // row names
+}
+
 TEST_CASE("four or five columns without heads are t, x, y, z, error in ms and mm; with more the user has to say") {
   const Scratch scratch;
   check_circle(read_recording(scratch.file("four.txt", table("txyz", " "))).runs[0]);

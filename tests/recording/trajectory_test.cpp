@@ -130,24 +130,36 @@ TEST_CASE("lengths scale, and the axis is subtracted") {
   CHECK(b.location_time == run.time);
 }
 
-TEST_CASE("samples beyond the end faces have no weight and are counted") {
+TEST_CASE("samples beyond the end faces are left out, counted, and end a piece") {
   const Run run = see(Motion(), {.duration = 10});
   const Trajectory all = fit_trajectory(run, {});
   const Trajectory part = fit_trajectory(run, {.low = 0.002, .high = 0.02});
   CHECK(all.samples_trimmed == 0);
-  std::uint64_t outside = 0;
-  double inside = 0;
-  for (const Piece& piece : part.pieces) {
+  std::uint64_t outside = 0, kept = 0;
+  double inside = 0, weight = 0;
+  for (const Piece& piece : all.pieces) {
     for (std::size_t k = 0; k < piece.size(); ++k) {
       const bool in = piece.position[2][k] >= 0.002 && piece.position[2][k] <= 0.02;
       outside += !in;
-      if (!in) REQUIRE(piece.weight[k] == 0);
-      inside += piece.weight[k];
+      inside += in ? piece.weight[k] : 0;
+    }
+  }
+  for (const Piece& piece : part.pieces) {
+    kept += piece.size();
+    REQUIRE(piece.velocity_variance.size() == piece.size());
+    for (std::size_t k = 0; k < piece.size(); ++k) {
+      REQUIRE(piece.position[2][k] >= 0.002);
+      REQUIRE(piece.position[2][k] <= 0.02);
+      weight += piece.weight[k];
     }
   }
   CHECK(part.samples_trimmed == outside);
   CHECK(outside > 1000);
-  CHECK(inside > 1);
+  CHECK(kept > 1000);
+  CHECK(part.pieces.size() > all.pieces.size());  // the bead leaves and comes back: no track goes across
+  CHECK(weight == Approx(inside));
+  CHECK(part.covered == Approx(inside));
+  CHECK(fit_trajectory(run, {.low = 10, .high = 50}).pieces.empty());
 }
 
 TEST_CASE("a simulated bead without noise is followed exactly") {

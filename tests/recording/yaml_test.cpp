@@ -1,4 +1,6 @@
 // recording.yaml.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 
 #include <numbers>
@@ -67,7 +69,6 @@ encoder: none
 )")
                           .condition;
   const double critical = 42.3 / std::sqrt(0.29) * std::numbers::pi / 30;
-  CHECK(*c.critical_fraction == Approx(0.75));
   CHECK(*c.speed == Approx(0.75 * critical));
   CHECK(*c.angular_velocity == Approx(-0.75 * critical));
   CHECK(*c.filling == Approx(0.313));
@@ -92,8 +93,44 @@ TEST_CASE("a speed without a sense keeps the sense open") {
   CHECK_FALSE(condition("speed: 36 rpm").angular_velocity);
   CHECK(*condition("speed: -36 rpm").angular_velocity == Approx(-3.7699).epsilon(1e-4));
   CHECK(*condition("speed: 36 rpm, direction: counter_clockwise").angular_velocity == Approx(3.7699).epsilon(1e-4));
-  CHECK_FALSE(condition("speed: 75 %critical").speed);
-  CHECK(*condition("speed: 75 %critical").critical_fraction == Approx(0.75));
+  for (const char* half : {"", ", mill_diameter: 300 mm", ", bead_diameter: 10 mm"}) {
+    CHECK_THAT(folder.why(std::string("files: a.txt\ncondition: {speed: 75 %critical") + half + "}\n"),
+               Contains("r.yaml:2:") && Contains("needs mill_diameter and bead_diameter; add them or give rpm"));
+  }
+}
+
+TEST_CASE("numbers of the condition that cannot be meant are refused with the unit") {
+  const Folder folder;
+  const auto why = [&](const std::string& text) { return folder.why("files: a.txt\ncondition:\n  " + text + "\n"); };
+  CHECK_THAT(why("bead_diameter: 5"), Contains("'bead_diameter'") && Contains("5 m") && Contains("e.g. 5 mm"));
+  CHECK_THAT(why("tracer: {diameter: 5}"), Contains("tracer: diameter") && Contains("e.g. 5 mm"));
+  CHECK_THAT(why("mill_length: 60"), Contains("r.yaml:3:") && Contains("60 mm"));
+  CHECK_THAT(why("mill_length: 30"), Contains("'mill_length'") && Contains("along z"));
+  CHECK_THAT(why("mill_length: 2 mm"), Contains("'mill_length'") && Contains("along z"));
+  CHECK_THAT(why("bead_density: 2.5"), Contains("r.yaml:3:") && Contains("kg/m^3"));
+  CHECK_THAT(why("tracer: {density: 2.5}"), Contains("kg/m^3"));
+  CHECK_THAT(why("porosity: 1"), Contains("r.yaml:3:") && Contains("no bead"));
+  CHECK_THAT(why("mill_diameter: 300"), Contains("r.yaml:3:") && Contains("300 mm"));
+  CHECK(why("{bead_diameter: 5 mm, mill_length: 60 mm, bead_density: 2.5 g/cm^3, porosity: 0.4, mill_diameter: 300 mm}").empty());
+}
+
+TEST_CASE("a ctrack file's layout is fixed: keys that would change it are refused") {
+  const Folder folder;
+  std::string rows;
+  for (int k = 0; k < 200; ++k) rows += ctrack_row(5 * k, 100 * std::cos(0.02 * k), 100 * std::sin(0.02 * k), 30);
+  folder.file("run.a", ctrack_head() + rows);
+  for (const char* format : {"ctrack", "auto"}) {
+    const std::string head = fmt::format("files: run.a\nformat: {}\n", format);
+    CHECK_THAT(folder.why(head + "skip_lines: 20\n"), Contains("r.yaml:3:") && Contains("'skip_lines' is of no use"));
+    CHECK_THAT(folder.why(head + "separator: blank\n"), Contains("r.yaml:3:") && Contains("'separator' is of no use"));
+  }
+  const std::string head = "files: run.a\nformat: ctrack\ncolumns: ";
+  CHECK_THAT(
+      folder.why(head + "{t: {column: 1, unit: ms}, x: {column: 3, unit: mm}, y: {column: 2, unit: mm}, z: {column: 4, unit: mm}}\n"),
+      Contains("r.yaml:3:") && Contains("give the units alone"));
+  CHECK_THAT(folder.why(head + "{t: ms, x: mm, y: mm, z: mm, label: skip}\n"), Contains("give the units alone"));
+  CHECK(folder.read(head + "{t: ms, x: mm, y: mm, z: mm}\n").runs[0].size() == 200);
+  CHECK(folder.read(head + "{t: ms, x: cm, y: cm, z: cm}\n").runs[0].position[0][0] == Approx(1.0));
 }
 
 TEST_CASE("the mill's diameter comes from the geometry's case where it is not said") {
@@ -156,6 +193,7 @@ TEST_CASE("what is wrong is named with its line") {
   CHECK_THAT(folder.why("files: a.txt\ncondition: {power: {value: 7 W}}\n"), Contains("missing key 'sem'"));
   CHECK_THAT(folder.why("files: a.txt\nencoder: pulses.csv\n"), Contains("must be one of none"));
   CHECK_THAT(folder.why("files: a.txt\ngap_limit: 0\n"), Contains("gap_limit"));
+  CHECK_THAT(folder.why("files: a.txt\ngap_limit: 40\n"), Contains("r.yaml:2:") && Contains("50 ms"));
 }
 
 TEST_CASE("the examples that come with millscope are read") {
