@@ -34,8 +34,8 @@ double log_determinant(const Factor& llt) {
 }
 
 // What is thought of the hyper-parameters before the data speak, as normal distributions of their logarithms. Lengths: about the whole
-// range (2 in coded units), by a factor of 2.7. The nugget: a tenth of the known noise, by a factor of 7; nearly free where no noise is
-// known.
+// range (2 in coded units), by a factor of 2.7. The nugget: a hundredth of the known noise, by a factor of 12; nearly free where no noise
+// is known.
 struct Belief {
   double centre, deviation;
   double log_density(double x) const { return -0.5 * std::pow((x - centre) / deviation, 2); }
@@ -46,7 +46,7 @@ constexpr Belief kVariance{-1.2, 4.0};
 
 Belief nugget_belief(const VectorXd& noise) {
   const double mean = noise.mean();
-  return mean > 0 ? Belief{std::log(std::max(1e-8, 0.1 * mean)), 2.0} : Belief{std::log(1e-4), 4.0};
+  return mean > 0 ? Belief{std::log(std::max(1e-8, 0.01 * mean)), 2.5} : Belief{std::log(1e-4), 4.0};
 }
 
 }  // namespace
