@@ -9,6 +9,7 @@
 #include "kernel/output/summary.hpp"
 #include "studies/doe/analysis.hpp"
 #include "studies/doe/plan_table.hpp"
+#include "studies/doe/printed.hpp"
 
 namespace millscope::app {
 namespace {
@@ -63,6 +64,8 @@ void add_analyze_options(Options& options) {
   options.add()("descent-step", po::value<double>()->value_name("STEPS"),
                 "how far the strongest factor moves in a step of steepest descent (default: 0.5)");
   options.add()("descent-steps", po::value<int>()->value_name("N"), "how many (default: 4)");
+  options.add()("printed", po::value<Text>()->value_name("PRINTED.csv"),
+                "also hold published figures (columns response, term, figure, printed) against the table");
   options.add()("output,o", po::value<Text>()->value_name("FILE.json"), "write all figures as JSON");
   options.add()("pictures", po::value<Text>()->value_name("DIR"), "draw effects or surfaces, SVG and PNG");
   options.add()("force", "replace FILE.json");
@@ -90,6 +93,8 @@ int analyze_plan(const Arguments& arguments) {
   }
   const doe::TableAnalysis analysis =
       doe::analyze_table(doe::Table::read(options.text("TABLE")), choice, model_of(options), confidence_of(options), descent);
+  std::vector<doe::PrintedFigure> printed;
+  if (options.has("printed")) printed = doe::compare_printed(analysis, doe::Table::read(options.text("printed")));
   if (!output.empty()) output::write_json(output, doe::analysis_json(analysis));
   std::size_t drawn = 0;
   if (options.has("pictures")) {
@@ -100,6 +105,7 @@ int analyze_plan(const Arguments& arguments) {
     fmt::print("{}\n", doe::analysis_json(analysis).dump(2));
   } else if (!options.has("quiet")) {
     fmt::print("{}", doe::analysis_text(analysis));
+    if (!printed.empty()) fmt::print("\n{}", doe::printed_text(printed));
     if (!output.empty()) fmt::print("all figures: {}\n", output.string());
     if (drawn > 0) fmt::print("{} pictures in {}\n", drawn, options.text("pictures"));
   }

@@ -96,6 +96,8 @@ LeastSquares solve(const Eigen::MatrixXd& model, const Eigen::VectorXd& response
   const Eigen::MatrixXd inverse = (scaled.transpose() * scaled).inverse();
   fit.inverse = length.cwiseInverse().asDiagonal() * inverse * length.cwiseInverse().asDiagonal();
   fit.coefficient = qr.solve(response).cwiseQuotient(length);
+  fit.coefficient =
+      (fit.coefficient.cwiseProduct(length).array().abs() < kNothing * response.norm()).select(0, fit.coefficient);  // rounding
   fit.error = response - model * fit.coefficient;
   fit.residual_sum = fit.error.squaredNorm();
   fit.df = static_cast<int>(model.rows() - model.cols());

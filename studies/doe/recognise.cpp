@@ -43,7 +43,7 @@ bool varies(const Column& column) {
 /// Few levels that repeat, even about their middle: planned rather than measured.
 bool looks_planned(const Column& column) {
   const std::set<double> levels(column.value.begin(), column.value.end());
-  if (levels.size() < 2 || levels.size() > kMostLevels || 2 * levels.size() > column.value.size()) return false;
+  if (levels.size() < 2 || levels.size() > kMostLevels || levels.size() + 2 > column.value.size()) return false;
   const double twice_middle = *levels.begin() + *levels.rbegin();
   auto high = levels.rbegin();
   for (const double low : levels) {
@@ -124,8 +124,9 @@ std::vector<FactorColumn> factor_columns(const Table& table, const std::vector<s
 }
 
 Coded code(const std::vector<FactorColumn>& columns, const std::string& axial) {
-  if (auto coded = code_two_level(columns)) return std::move(*coded);
-  if (auto coded = code_composite(columns, axial)) return std::move(*coded);
+  auto two_level = code_two_level(columns);
+  if (two_level && axial == "auto") return std::move(*two_level);
+  if (auto composite = two_level ? std::nullopt : code_composite(columns, axial)) return std::move(*composite);
   if (axial != "auto") throw UserError("--axial: this table is no central composite plan; leave the option out");
   return code_range(columns);
 }

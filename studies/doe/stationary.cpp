@@ -5,18 +5,21 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "studies/doe/least_squares.hpp"
 #include "studies/doe/sequences.hpp"
+#include "studies/picture/scale.hpp"
 
 namespace millscope::doe {
 namespace {
 
 using Index = Eigen::Index;
+using studies::significant_text;
 
 constexpr double kNoCurvature = 1e-10;  // of the largest: rounding
 constexpr double kRidge = 0.02;         // of the largest: flat enough to be called a ridge, where it cannot be told from zero either
-constexpr Index kRegionPoints = 1 << 14;
+constexpr Index kRegionPoints = 4096, kFacePoints = 512;
 
 /// Delta method: dλ = vᵀ dB v.
 double standard_error_of_axis(const Surface& s, const Eigen::VectorXd& direction) {
@@ -81,41 +84,82 @@ class Membership {
     return gradient.dot(variance.ldlt().solve(gradient)) <= limit_;
   }
 
+  double limit() const { return limit_; }
+
  private:
   const Surface& surface_;
   Eigen::VectorXd coefficient_;
   double limit_ = 0;
 };
 
-/// Every point of Sobol's sequence in the box of the runs, and its shadow on each face, is asked.
-StationaryRegion region_of(const Surface& s, const StationaryPoint& point) {
-  const Index count = static_cast<Index>(s.factors.size());
-  const Membership belongs(s);
-  StationaryRegion region{s.confidence, s.upper, s.lower, std::vector<bool>(s.factors.size(), true), kUndefined};
-  const auto widen = [&region](const Eigen::VectorXd& x) {
-    region.low = region.low.cwiseMin(x);
-    region.high = region.high.cwiseMax(x);
+/// Members of the region among Sobol's points in a box and their shadows on its faces.
+struct Members {
+  Eigen::VectorXd low, high;                              ///< of the members; low > high: none
+  Eigen::Array<bool, Eigen::Dynamic, 1> at_low, at_high;  ///< some lie on this face
+  double share = 0;                                       ///< of the box
+};
+
+Members members_in(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper, const Membership& belongs) {
+  const Index count = lower.size();
+  Members m{upper, lower, Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(count, false), {}, 0};
+  m.at_high = m.at_low;
+  const auto ask = [&](const Eigen::VectorXd& x) {
+    const bool member = belongs(x);
+    if (member) m.low = m.low.cwiseMin(x), m.high = m.high.cwiseMax(x);
+    return member;
   };
-  if (point.inside) widen(point.coded);
   const Eigen::MatrixXd unit = sobol_points(kRegionPoints, count);
-  Index inside = 0;
-  for (Index p = 0; p < unit.rows(); ++p) {
-    Eigen::VectorXd x = s.lower + unit.row(p).transpose().cwiseProduct(s.upper - s.lower);
-    if (belongs(x)) {
-      ++inside;
-      widen(x);
-    }
-    for (Index face = 0; face < 2 * count && p < kRegionPoints / 8; ++face) {
-      const double kept = x[face / 2];
-      x[face / 2] = face % 2 == 0 ? s.lower[face / 2] : s.upper[face / 2];
-      if (belongs(x)) {
-        widen(x);
-        region.bounded[static_cast<std::size_t>(face / 2)] = false;
-      }
-      x[face / 2] = kept;
+  for (Index p = 0; p < kRegionPoints; ++p) {
+    Eigen::VectorXd x = lower + unit.row(p).transpose().cwiseProduct(upper - lower);
+    if (ask(x)) m.share += 1.0 / static_cast<double>(kRegionPoints);
+    for (Index i = 0; i < count && p < kFacePoints; ++i) {
+      const double kept = std::exchange(x[i], lower[i]);
+      m.at_low[i] = ask(x) || m.at_low[i];
+      x[i] = upper[i];
+      m.at_high[i] = ask(x) || m.at_high[i];
+      x[i] = kept;
     }
   }
-  region.share = static_cast<double>(inside) / static_cast<double>(kRegionPoints);
+  return m;
+}
+
+/// The box about the stationary point that holds all members near it: begun by the linear error of the point, x − x₀ ≈ −(2B)⁻¹ δg, and
+/// widened until no member lies on a face that is not an end of the runs' range.
+Members members_near(const Surface& s, const StationaryPoint& point, const Membership& belongs, double& volume) {
+  const Eigen::MatrixXd inverse = (2 * quadratic_of(s).form).inverse(), slopes = slopes_at(s.coefficients, point.coded);
+  const Eigen::VectorXd half =
+      1.5 * (belongs.limit() * (inverse * slopes * s.covariance * slopes.transpose() * inverse).diagonal()).cwiseSqrt();
+  const Eigen::VectorXd span = s.upper - s.lower;
+  Eigen::VectorXd below = half.array().isFinite().select(half, span), above = below;
+  for (;;) {
+    const Eigen::VectorXd lower = s.lower.cwiseMax(point.coded - below), upper = s.upper.cwiseMin(point.coded + above);
+    const Members m = members_in(lower, upper, belongs);
+    volume = (upper - lower).cwiseQuotient(span).prod();
+    const auto widen_low = m.at_low && lower.array() > s.lower.array(), widen_high = m.at_high && upper.array() < s.upper.array();
+    if (!widen_low.any() && !widen_high.any()) return m;
+    below = widen_low.select(2 * below, below).eval();
+    above = widen_high.select(2 * above, above).eval();
+  }
+}
+
+/// Members in the whole range of the runs, where the region may have other parts, and near the point, where it may be small.
+StationaryRegion region_of(const Surface& s, const StationaryPoint& point) {
+  const Membership belongs(s);
+  const Members all = members_in(s.lower, s.upper, belongs);
+  StationaryRegion region{s.confidence, all.low, all.high, std::vector<bool>(s.factors.size(), true), all.share};
+  for (std::size_t i = 0; i < s.factors.size(); ++i)
+    region.bounded[i] = !all.at_low[static_cast<Index>(i)] && !all.at_high[static_cast<Index>(i)];
+  if (point.inside) {
+    double volume = 1;
+    const Members near = members_near(s, point, belongs, volume);
+    if ((all.low.array() >= near.low.array()).all() && (all.high.array() <= near.high.array()).all()) region.share = near.share * volume;
+    region.low = region.low.cwiseMin(near.low).cwiseMin(point.coded);
+    region.high = region.high.cwiseMax(near.high).cwiseMax(point.coded);
+    for (std::size_t i = 0; i < s.factors.size(); ++i) {
+      const Index at = static_cast<Index>(i);
+      region.bounded[i] = region.bounded[i] && region.low[at] > s.lower[at] && region.high[at] < s.upper[at];
+    }
+  }
   if ((region.low.array() > region.high.array()).any()) {  // all of it lies outside the box
     region.low.setConstant(kUndefined);
     region.high.setConstant(kUndefined);
@@ -146,8 +190,8 @@ std::string sentence_of(const Surface& s, const StationaryPoint& point) {
   text += point.inside ? ", inside the range of the runs" : ", outside the range of the runs: an extrapolation";
   for (const Axis& axis : point.axes) {
     if (!axis.flat) continue;
-    text += fmt::format("; along {} the curvature {:.3g}{} cannot be told from zero, so these runs do not determine the place along it",
-                        text_of(axis, s.factors), axis.curvature,
+    text += fmt::format("; along {} the curvature {}{} cannot be told from zero, so these runs do not determine the place along it",
+                        text_of(axis, s.factors), significant_text(axis.curvature, 3),
                         std::isfinite(axis.standard_error) ? fmt::format(" ± {:.2g}", axis.standard_error) : "");
   }
   return text;
@@ -201,6 +245,8 @@ Quadratic quadratic_of(const Surface& s) {
   }
   return q;
 }
+
+bool gradient_may_vanish(const Surface& surface, const Eigen::VectorXd& coded) { return Membership(surface)(coded); }
 
 std::optional<StationaryPoint> find_stationary(const Surface& surface) {
   const Quadratic q = quadratic_of(surface);

@@ -19,6 +19,9 @@ struct Quadratic {
 };
 Quadratic quadratic_of(const Surface& surface);
 
+/// Whether the gradient at a coded point cannot be told from zero: the point belongs to the confidence region (Box, Hunter 1954).
+bool gradient_may_vanish(const Surface& surface, const Eigen::VectorXd& coded);
+
 /// Where the gradient vanishes, what kind of point it is, and its confidence region; nothing where there is no curvature at all. Uses the
 /// coefficients, their covariance, the residual's degrees of freedom and the box of the runs.
 std::optional<StationaryPoint> find_stationary(const Surface& surface);

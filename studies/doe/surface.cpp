@@ -139,6 +139,10 @@ Surface fit_surface(const Design& design, const Eigen::VectorXd& response, doubl
   s.upper = design.coded.colwise().maxCoeff().transpose();
   s.stationary = find_stationary(s);
   s.residuals = residuals_of(fit);
+  if (s.model.p > 1 - confidence) {
+    s.notes.push_back(
+        fmt::format("the surface is not significantly better than the mean (p = {:.2g}): its shape may be chance", s.model.p));
+  }
   if (fit.df == 0) s.notes.push_back("no degrees of freedom are left for the residual: no standard errors, F and p; add or repeat runs");
   return s;
 }

@@ -65,15 +65,14 @@ std::optional<double> number_of(const std::string& text) {
   return value;
 }
 
-/// Half a unit of the last digit: "0.16" gives 0.005, "30" 0.5, "1.5e-3" 0.00005.
+}  // namespace
+
 double half_digit_of(const std::string& text) {
   const std::size_t exponent = std::min(text.find_first_of("eE"), text.size()), point = text.find('.');
   const int decimals = point < exponent ? static_cast<int>(exponent - point) - 1 : 0;
   const int power = exponent < text.size() ? std::atoi(text.c_str() + exponent + 1) : 0;
   return 0.5 * std::pow(10.0, power - decimals);
 }
-
-}  // namespace
 
 void Table::read_line(const std::string& line, int number) {
   const Location where{file_, number};

@@ -14,6 +14,9 @@ struct Column {
   double half_digit = 0;  ///< half a unit of the last digit of the most finely written cell: what rounding may have changed
 };
 
+/// Half a unit of the last digit: "0.16" gives 0.005, "30" 0.5, "1.5e-3" 0.00005.
+double half_digit_of(const std::string& text);
+
 /// Comma-separated, quotes as in RFC 4180, lines that begin with '#' and empty lines apart.
 class Table {
  public:
