@@ -37,7 +37,7 @@ TableAnalysis analyze_table(const Table& table, const Choice& choice, ModelChoic
 std::string analysis_text(const TableAnalysis& analysis);
 nlohmann::ordered_json analysis_json(const TableAnalysis& analysis);
 
-/// Contours of the fitted surface over the two factors that matter most, or effects with their intervals; STEM-RESPONSE.svg and .png in
+/// A map of the fitted surface over the two factors that matter most, or effects with their intervals; STEM-RESPONSE.svg and .png in
 /// `directory`. Returns the paths without ending.
 std::vector<std::filesystem::path> draw_analysis(const TableAnalysis& analysis, const std::filesystem::path& directory);
 
