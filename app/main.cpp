@@ -25,6 +25,8 @@ constexpr Command kCommands[] = {
     {"run", "simulate a case", run},
     {"resume", "continue a run from its newest checkpoint", resume},
     {"check", "check a case and predict its cost", check},
+    {"calibrate", "contact parameters from recordings", calibrate_study},
+    {"validate", "whether what was calibrated holds elsewhere", validate},
     {"campaign", "run many simulations, each once", run_campaign},
     {"campaign-task", nullptr, campaign_task},
     {"analyze", "measure a simulation or a recording", analyze},
@@ -85,7 +87,7 @@ int main(int count, char** words) {
     fmt::print(stderr, "millscope: {}; check the room on the disk and this session's limits (ulimit -a)\n", e.what());
     return e.code() == std::errc::resource_unavailable_try_again ? app::kBadInput : app::kCannotWrite;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "millscope: out of memory; 'millscope check CASE.yaml' predicts what a case needs\n");
+    fmt::print(stderr, "millscope: out of memory; close other programs, take a smaller case or less data at once, or a larger machine\n");
     return app::kBadInput;
   } catch (const std::exception& e) {
     fmt::print(stderr, "millscope: internal error: {}; please report it with the case\n", e.what());

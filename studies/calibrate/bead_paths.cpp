@@ -90,6 +90,7 @@ TrackContext BeadPaths::context(std::size_t i, std::uint64_t seed) const {
   context.mill_low = part ? place_.low : mill_.context.mill_low;
   context.mill_high = part ? place_.high : mill_.context.mill_high;
   context.omega = mill_.context.omega;
+  context.period = part ? place_.high - place_.low : mill_.period;
   return context;
 }
 

@@ -109,12 +109,6 @@ Json parameters_json(const Study& study, const Calibration& c) {
   return all;
 }
 
-void write_text(const fs::path& file, const std::string& text) {
-  output::AtomicFile out(file);
-  out.write(text);
-  out.commit();
-}
-
 std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string out = "\"";
@@ -243,9 +237,9 @@ std::string runs_csv(const Evaluator& evaluator) {
 void write_outputs(const Evaluator& evaluator, const Calibration& calibration, const fs::path& folder) {
   fs::create_directories(folder / "pictures");
   const std::vector<fs::path> pictures = draw(evaluator, calibration, folder / "pictures");
-  write_text(folder / "runs.csv", runs_csv(evaluator));
-  write_text(folder / "calibrated.yaml", calibrated_yaml(evaluator.study(), calibration.best, folder));
-  write_text(folder / "report.md", report_text(evaluator, calibration, pictures));
+  output::write_file(folder / "runs.csv", runs_csv(evaluator));
+  output::write_file(folder / "calibrated.yaml", calibrated_yaml(evaluator.study(), calibration.best, folder));
+  output::write_file(folder / "report.md", report_text(evaluator, calibration, pictures));
   output::write_json(folder / "calibration.json", calibration_json(evaluator, calibration));
 }
 

@@ -169,9 +169,7 @@ void write_validation(const Validation& v, const Evaluator& evaluator, const fs:
     for (const fs::path& file : draw_distributions(name, evaluator.machinery().recorded[c.condition], c.simulated, folder / "pictures"))
       text += fmt::format("![{}](pictures/{})\n\n", file.stem().string(), file.filename().string());
   }
-  output::AtomicFile out(folder / "validation.md");
-  out.write(text);
-  out.commit();
+  output::write_file(folder / "validation.md", text);
   output::write_json(folder / "validation.json", validation_json(v, evaluator));
 }
 
