@@ -129,7 +129,11 @@ void System::size_ring(int slab) {
     }
     state.frontier.push_back(static_cast<std::uint32_t>(frontier));
     longest = std::max(longest, touched - finished);
-    if (last < list.count && last % (kTrail * kBatch) == 0) finished = list.owner[last];
+    if (last < list.count && last % (kTrail * kBatch) == 0) {
+      // Beads without pairs may lie before the next owner: walls and body forces reach them now.
+      longest = std::max<std::int64_t>(longest, list.owner[last] - finished);
+      finished = list.owner[last];
+    }
   }
   longest = std::max(longest, beads.end - finished);
   const std::int64_t ring = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(longest)));

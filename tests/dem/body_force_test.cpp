@@ -101,3 +101,30 @@ TEST_CASE("added mass slows contact forces too") {
   const double ratio = static_cast<double>(duration(loaded)) / duration(bare);
   CHECK(ratio == Approx(std::pow(1.5, 0.4)).epsilon(0.06));  // Hertz: t ∝ m^{2/5}
 }
+
+TEST_CASE("forces stay with their beads where a long row without neighbours follows a batch of pairs") {
+  // The ring of force lines is as long as the beads that carry forces at once. 2048 pairs fill whole batches, so the step finishes
+  // everything up to the next owner of a pair: here thousands of beads further on.
+  const Push pusher{3e-3};
+  Setup s;
+  s.domain = "{low: [-1, -1, -1], high: [1, 1, 1000]}";
+  Assembly a = assembled(s);
+  a.system->body_forces.push_back({&kPush, &pusher, "push"});
+  std::vector<Bead> beads;
+  const auto row = [&beads](int count, double gap) {
+    for (int k = 0; k < count; ++k) {
+      const double z = (beads.empty() ? 0 : beads.back().position[2]) + 2 * kRadius + (gap > 0 && k % 2 ? gap : 3 * kRadius);
+      beads.push_back({{0, 0, z}});
+    }
+  };
+  for (int turn = 0; turn < 3; ++turn) {
+    row(turn > 0 ? 20000 : 0, 0);
+    row(2 * 2048, 0.02 * kRadius);
+  }
+  start(a, beads);
+  advance(a, 20);
+  const double expected = pusher.force / bead_mass() * 20 * a.time_step;
+  int wrong = 0;
+  for (const dem::MotionLine& line : a.system->particles.half) wrong += std::fabs(line.v[0] / expected - 1) > 1e-9 ? 1 : 0;
+  CHECK(wrong == 0);
+}
