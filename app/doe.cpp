@@ -95,14 +95,16 @@ int analyze_plan(const Arguments& arguments) {
       doe::analyze_table(doe::Table::read(options.text("TABLE")), choice, model_of(options), confidence_of(options), descent);
   std::vector<doe::PrintedFigure> printed;
   if (options.has("printed")) printed = doe::compare_printed(analysis, doe::Table::read(options.text("printed")));
-  if (!output.empty()) output::write_json(output, doe::analysis_json(analysis));
+  nlohmann::ordered_json json = doe::analysis_json(analysis);
+  if (!printed.empty()) json["printed"] = doe::printed_json(printed);
+  if (!output.empty()) output::write_json(output, json);
   std::size_t drawn = 0;
   if (options.has("pictures")) {
     fs::create_directories(options.text("pictures"));
     drawn = doe::draw_analysis(analysis, options.text("pictures")).size();
   }
   if (options.has("json")) {
-    fmt::print("{}\n", doe::analysis_json(analysis).dump(2));
+    fmt::print("{}\n", json.dump(2));
   } else if (!options.has("quiet")) {
     fmt::print("{}", doe::analysis_text(analysis));
     if (!printed.empty()) fmt::print("\n{}", doe::printed_text(printed));

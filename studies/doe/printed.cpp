@@ -135,6 +135,21 @@ std::vector<PrintedFigure> compare_printed(const TableAnalysis& analysis, const 
   return figures;
 }
 
+nlohmann::ordered_json printed_json(const std::vector<PrintedFigure>& figures) {
+  auto json = nlohmann::ordered_json::array();
+  for (const PrintedFigure& f : figures) {
+    json.push_back({{"response", f.response},
+                    {"term", f.term},
+                    {"figure", f.figure},
+                    {"printed", f.printed},
+                    {"worked_again", f.worked_again},
+                    {"differs", f.differs},
+                    {"p_of_printed_F", f.p_of_printed},
+                    {"contradicts_F", f.contradicts}});
+  }
+  return json;
+}
+
 std::string printed_text(const std::vector<PrintedFigure>& figures) {
   const auto number = [](double value) { return studies::significant_text(value, 4); };
   std::vector<Row> rows{{"response, term", "figure", "printed", "worked again", "", "p of the printed F"}};

@@ -22,6 +22,7 @@ struct PrintedFigure {
 /// the line.
 std::vector<PrintedFigure> compare_printed(const TableAnalysis& analysis, const Table& printed);
 
+nlohmann::ordered_json printed_json(const std::vector<PrintedFigure>& figures);
 std::string printed_text(const std::vector<PrintedFigure>& figures);
 
 }  // namespace millscope::doe

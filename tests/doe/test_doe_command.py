@@ -44,6 +44,10 @@ class Doe(unittest.TestCase):
         self.assertRegex(text, r"objective, CFPP +p +0\.003 +0\.002\d+ +differs +0\.002\d+, so the printed p is wrong")
         self.assertRegex(text, r"objective, curvature +p +0\.128 +0\.1234 +differs +0\.128\d\n")
         self.assertIn("4 printed p do not follow from their F", text)
+        found = json.loads(self.succeed("analyze", DATA / "factorial_75.csv", "--printed", DATA / "factorial_75_printed.csv", "--json"))
+        self.assertEqual([f["term"] for f in found["printed"] if f["contradicts_F"]], ["CFPP", "CRPG", "CRPP", "CFPG"])
+        (self.folder / "printed.csv").write_text("response,term,figure,printed\nobjective,CFPX,SS,1.18\n")
+        self.assert_refused(self.call("analyze", DATA / "factorial_75.csv", "--printed", "printed.csv"), "printed.csv:2", "CFPX/SS")
 
     def test_surface_with_files(self):
         text = self.succeed("analyze", DATA / "ccd_75.csv", "-o", "ccd.json", "--pictures", "pictures")
