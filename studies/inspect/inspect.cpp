@@ -1,5 +1,7 @@
 #include "studies/inspect/inspect.hpp"
 
+#include <algorithm>
+
 #include "studies/inspect/verdict.hpp"
 
 namespace millscope::studies {
@@ -7,7 +9,10 @@ namespace millscope::studies {
 Inspection inspect(const Recording& recording) {
   Inspection result;
   result.file = recording.file.string();
-  result.stated_velocity = recording.condition.angular_velocity;
+  result.stated = recording.condition;
+  for (const Run& run : recording.runs) {
+    if (std::find(result.formats.begin(), result.formats.end(), run.format) == result.formats.end()) result.formats.push_back(run.format);
+  }
   result.coverage = measure_coverage(recording);
   result.noise = measure_noise(recording);
   result.axial = measure_axial(recording);

@@ -34,11 +34,12 @@ struct Verdict {
 
 struct Inspection {
   std::string file;
+  std::vector<std::string> formats;  ///< how the files were read, each once
   Coverage coverage;
   std::array<Finding, 3> noise;  ///< standard deviation of a component, from point to point, m
   std::optional<Rotor> rotor;    ///< when the tracer sits on a rotor, nothing of what follows but the verdicts is filled
   MillMotion motion;
-  std::optional<double> stated_velocity;  ///< Ω that recording.yaml states, rad/s; not used, only held against the one found
+  Condition stated;  ///< what recording.yaml states; not used, only its speed is held against the one found
   FreeFlight flight;
   Circulations circulations;
   Finding mean_offset;  ///< ⟨x⟩ of the tracer beside the axis, m

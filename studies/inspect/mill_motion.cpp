@@ -211,6 +211,18 @@ void report_least_speed(const Work& work, MillMotion& motion) {
 
 }  // namespace
 
+Agreement compare_speed(const Condition& stated, const MillMotion& motion) {
+  constexpr double kFar = 1.5, kFarBeyondBound = 10;
+  if (!stated.speed || motion.sense == 0) return Agreement::unknown;
+  if (stated.angular_velocity.value_or(0) * motion.sense < 0) return Agreement::opposite;
+  if (!motion.speed.estimate) return Agreement::unknown;
+  const Estimate& found = *motion.speed.estimate;
+  const double least = found.low / (motion.rides > 0 ? kFar : 2 * kFar);  // without rides the charge may fall past the shell
+  const double high = motion.speed.bound == Bound::at_least ? kFarBeyondBound / kFar * found.value : found.high;
+  if (*stated.speed < least || *stated.speed > kFar * high) return Agreement::far;
+  return *stated.speed < found.low || *stated.speed > found.high ? Agreement::outside : Agreement::within;
+}
+
 MillMotion estimate_motion(const Recording& recording) {
   Work work{recording, plane_noise(recording), plane_points(recording), {}, {}, {}, {}, {}};
   MillMotion motion;

@@ -29,6 +29,16 @@ struct MillMotion {
   std::array<double, 2> centre() const { return {axis[0].estimate->value, axis[1].estimate->value}; }
 };
 
+/// What a speed that the user states is beside the one found.
+enum class Agreement {
+  unknown,   ///< nothing is stated, or nothing was found
+  within,    ///< its interval
+  outside,   ///< its interval
+  far,       ///< beyond its interval by half as much again; of a bound, ten times the speed that the charge has
+  opposite,  ///< the other sense
+};
+Agreement compare_speed(const Condition& stated, const MillMotion& motion);
+
 /// Needs motion across x and y, with the axis along z. Never throws; where the data cannot say, the findings give the reason.
 MillMotion estimate_motion(const Recording& recording);
 

@@ -68,12 +68,23 @@ std::string rotor_text(const Rotor& r) {
   return out;
 }
 
-std::string stated_text(double stated, const MillMotion& m) {
-  std::string out = fmt::format("{:.2f} rpm", std::fabs(stated) * kRpm);
-  if (stated * m.sense < 0) return out + ", the other way round: check the axes of recording.yaml, or its direction";
-  if (!m.speed.estimate) return out;
-  const bool inside = m.speed.estimate->low <= std::fabs(stated) && std::fabs(stated) <= m.speed.estimate->high;
-  return out + (inside ? ", within the interval" : ", outside the interval");
+std::string stated_text(const Condition& stated, const MillMotion& m) {
+  const auto words = [](Agreement agreement) {
+    switch (agreement) {
+      case Agreement::within:
+        return ", within the interval";
+      case Agreement::outside:
+        return ", outside the interval";
+      case Agreement::far:
+        return ", far outside the interval: check its unit";
+      case Agreement::opposite:
+        return ", the other way round: check the axes of recording.yaml, or its direction";
+      case Agreement::unknown:
+        break;
+    }
+    return "";
+  };
+  return fmt::format("{:.2f} rpm{}", *stated.speed * kRpm, words(compare_speed(stated, m)));
 }
 
 std::string motion_text(const Inspection& i) {
@@ -83,7 +94,7 @@ std::string motion_text(const Inspection& i) {
   out += line("turning sense",
               m.sense > 0 ? "counter-clockwise, z towards the viewer (Omega > 0)" : "clockwise, z towards the viewer (Omega < 0)");
   out += line("speed", m.speed, kRevolutions);
-  if (i.stated_velocity) out += line("speed that is stated", stated_text(*i.stated_velocity, m));
+  if (i.stated.speed) out += line("speed that is stated", stated_text(i.stated, m));
   out += line("axis x", m.axis[0], kMillimetre);
   out += line("axis y", m.axis[1], kMillimetre);
   out += line("radius of the path", m.path_radius, kMillimetre);
@@ -150,7 +161,9 @@ std::string verdict_text(const std::vector<Verdict>& verdicts) {
 }  // namespace
 
 std::string inspection_text(const Inspection& i) {
-  std::string out = i.file + "\n(intervals in brackets hold with 90 %)\n";
+  std::string out = i.file + "\n";
+  for (const std::string& format : i.formats) out += fmt::format("read as {}\n", format);
+  out += "(intervals in brackets hold with 90 %)\n";
   out += coverage_text(i.coverage) + noise_text(i);
   if (i.rotor) {
     out += rotor_text(*i.rotor);

@@ -94,13 +94,14 @@ Json json(const std::vector<Verdict>& verdicts) {
 }  // namespace
 
 Json inspection_json(const Inspection& i) {
-  Json j{{"file", i.file}, {"interval", 0.9}, {"recording", json(i.coverage)}};
+  Json j{{"file", i.file}, {"formats", i.formats}, {"interval", 0.9}, {"recording", json(i.coverage)}};
   j["noise"] = {{"x_m", json(i.noise[0])}, {"y_m", json(i.noise[1])}, {"z_m", json(i.noise[2])}};
   j["rotor"] = i.rotor ? json(*i.rotor) : Json(nullptr);
   if (!i.rotor) {
     const Circulations& c = i.circulations;
     j["mill"] = json(i.motion);
-    j["mill"]["stated_angular_velocity_rad_per_s"] = i.stated_velocity ? Json(*i.stated_velocity) : Json(nullptr);
+    j["mill"]["stated_angular_velocity_rad_per_s"] = i.stated.angular_velocity ? Json(*i.stated.angular_velocity) : Json(nullptr);
+    j["mill"]["stated_angular_speed_rad_per_s"] = i.stated.speed ? Json(*i.stated.speed) : Json(nullptr);
     j["free_flight"] = {{"arcs", i.flight.arcs},
                         {"flights", i.flight.flights},
                         {"gravity_angle_degrees", json(i.flight.angle_degrees)},

@@ -39,6 +39,7 @@ TEST_CASE("a speed that is stated is held against the one found") {
   Recording recording = make_recording(test::SyntheticMill{});
   const auto line = [&](double stated) {
     recording.condition.angular_velocity = stated;
+    recording.condition.speed = std::fabs(stated);
     const std::string text = inspection_text(inspect(recording));
     const std::size_t at = text.find("speed that is stated");
     return at == std::string::npos ? std::string() : text.substr(at, text.find('\n', at) - at);
@@ -46,6 +47,20 @@ TEST_CASE("a speed that is stated is held against the one found") {
   CHECK(line(-6).find("within the interval") != std::string::npos);
   CHECK(line(-6.6).find("outside the interval") != std::string::npos);
   CHECK(line(6).find("the other way round") != std::string::npos);
+  CHECK(line(-600).find("far outside the interval") != std::string::npos);
+  recording.condition = {};
+  recording.condition.speed = 6.6;  // without a sense
+  const std::string text = inspection_text(inspect(recording));
+  CHECK(text.find("63.03 rpm, outside the interval") != std::string::npos);
+}
+
+TEST_CASE("how the files were read is told once for each way") {
+  Recording recording = make_recording(test::SyntheticMill{});
+  recording.runs[0].format = "table, comma: t s (column 2)";
+  recording.runs.push_back(recording.runs[0]);
+  const Inspection i = inspect(recording);
+  CHECK(inspection_text(i).find("\nread as table, comma: t s (column 2)\n(intervals") != std::string::npos);
+  CHECK(inspection_json(i)["formats"].size() == 1);
 }
 
 TEST_CASE("a rotor's text has its plateaus in rpm") {
