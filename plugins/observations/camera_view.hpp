@@ -17,7 +17,8 @@ constexpr Parameter magnitudes_parameter(const char* name, const char* unit, con
   return {name, unit, doc, citation, "", nullptr, 0.0, 0.0, kUnbounded, ValueType::vector, Scope::instance, 0, 0};
 }
 
-/// Distance from the rig's middle.
+/// Distance from the rig's middle. In a slice that is periodic along z the path goes on from image to image: a bead is where its image
+/// nearest to the middle is, however far it has wandered.
 class Middle {
  public:
   explicit Middle(const Parameters& values) : given_(values.given("middle")) {
@@ -26,7 +27,8 @@ class Middle {
 
   double distance(const double* position, const TrackContext& context) const {
     const double along = given_ ? middle_[2] : 0.5 * (context.mill_low + context.mill_high);
-    return std::hypot(position[0] - middle_[0], position[1] - middle_[1], position[2] - along);
+    const double beside = position[2] - along, z = context.period > 0.0 ? std::remainder(beside, context.period) : beside;
+    return std::hypot(position[0] - middle_[0], position[1] - middle_[1], z);
   }
 
  private:

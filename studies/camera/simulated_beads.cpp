@@ -65,7 +65,7 @@ SimulatedBeads::SimulatedBeads(std::filesystem::path run, const host::Registry& 
   const MillOfCase mill = read_mill_of_case(file, registry);
   condition_ = condition_of(c, mill, file);
   condition_.power = power_of(run_ / "summary.json");
-  context_ = {0, 0, mill.context.mill_radius, mill.context.mill_low, mill.context.mill_high, mill.context.omega};
+  context_ = {0, 0, mill.context.mill_radius, mill.context.mill_low, mill.context.mill_high, mill.context.omega, mill.period};
   analyze_from_ = c.time.analyze_from;
   period_ = mill.period;
 }

@@ -122,6 +122,24 @@ TEST_CASE("error_cut loses beads by speed and distance as the normal integral sa
   }
 }
 
+TEST_CASE("in a periodic slice a bead is as far from the middle as its nearest image, however far it has wandered") {
+  TrackContext context = context_of(11);  // ends at 0 and 60 mm
+  context.period = context.mill_high - context.mill_low;
+  const auto kept = [&](double z, const std::string& middle) {
+    const Camera camera = chain_of("{kind: error_cut, cut: 5 mm, spread: 4 mm, per_distance: 0.1, scatter: 0" + middle + "}");
+    return observe(resting(1, 100, {0, 0, z}), camera, context).size() == 100;  // within 10 mm of the middle
+  };
+  for (const double image : {-30, -1, 0, 1, 7}) {
+    INFO(image);
+    CHECK(kept(0.030 + 0.06 * image, ""));
+    CHECK(kept(0.037 + 0.06 * image, ""));
+    CHECK_FALSE(kept(0.045 + 0.06 * image, ""));
+    CHECK(kept(0.003 + 0.06 * image, ", middle: [0, 0, 0]"));
+  }
+  context.period = 0;
+  CHECK_FALSE(kept(0.090, ""));
+}
+
 TEST_CASE("gaps come at their rate with their mean length") {
   const Run run = observe(resting(20000, 100), chain_of("{kind: gaps, rate: 0.1 Hz, mean_length: 0.9 s}"), context_of(13));
   std::vector<double> gaps;

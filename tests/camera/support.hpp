@@ -48,7 +48,7 @@ inline output::TrackSamples circling(double seconds, double rate, double radius,
   return track;
 }
 
-inline TrackContext context_of(std::uint64_t seed) { return {seed, 0.005, 0.15, 0.0, 0.06, -6.0}; }
+inline TrackContext context_of(std::uint64_t seed) { return {seed, 0.005, 0.15, 0.0, 0.06, -6.0, 0.0}; }
 
 inline double mean(const std::vector<double>& values) {
   double sum = 0;

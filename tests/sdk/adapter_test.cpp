@@ -101,7 +101,7 @@ TEST_CASE("an observation makes the same track from the same seed, and refuses w
   const std::vector<double> time = {0, 1, 2}, place = {5, 6, 7};
   const std::vector<std::uint32_t> visible = {1, 0, 1};
   TrackView view{3, time.data(), {place.data(), place.data(), place.data()}, time.data(), visible.data()};
-  const TrackContext context{42, 0, 0, 0, 0, 0};
+  const TrackContext context{42, 0, 0, 0, 0, 0, 0};
   Written first, second;
   const TrackSink a = first.sink(), b = second.sink();
   CHECK(table.observe(self, &view, &context, &a, &failure) == 0);

@@ -14,7 +14,7 @@ namespace millscope {
 
 inline constexpr std::uint64_t kMagic = 0x504F43534C4C494DULL;  // "MILLSCOP", little endian
 inline constexpr std::uint32_t kAbiMajor = 1;                   // raised when a plugin must be rebuilt
-inline constexpr std::uint32_t kAbiMinor = 0;                   // raised when something is added at the end
+inline constexpr std::uint32_t kAbiMinor = 1;                   // raised when something is added at the end
 
 /// What a plugin is. The layout check is per kind, so that adding a kind breaks no plugin of another.
 enum class Kind : std::uint32_t {

@@ -39,6 +39,7 @@ struct TrackContext {
   double mill_radius;          ///< of the bare shell, m
   double mill_low, mill_high;  ///< range along the axis, m
   double omega;                ///< mean Ω about z, rad/s
+  double period;               ///< along z, m: the bead has an image in each; 0: the mill is not periodic
 };
 
 struct ObservationTable {
