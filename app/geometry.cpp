@@ -1,6 +1,8 @@
 // geometry export, geometry report.
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "app/commands.hpp"
@@ -8,6 +10,7 @@
 #include "kernel/config/document.hpp"
 #include "kernel/config/values.hpp"
 #include "kernel/host/objects.hpp"
+#include "kernel/output/file.hpp"
 #include "kernel/output/stl.hpp"
 
 namespace millscope::app {
@@ -22,9 +25,25 @@ struct Named {
   host::GeometryObject object;
 };
 
+/// Refuses what is not among the choices of the plugin's own parameter `unit`.
+void check_unit(const Descriptor& mesh, const std::string& unit) {
+  std::vector<std::string> known;
+  for (std::uint64_t i = 0; i < mesh.parameter_count; ++i) {
+    if (std::string_view(mesh.parameters[i].name) != "unit") continue;
+    std::stringstream choices(mesh.parameters[i].choices);
+    for (std::string choice; std::getline(choices, choice, '|');) known.push_back(choice);
+  }
+  if (std::find(known.begin(), known.end(), unit) == known.end())
+    throw UserError(fmt::format("--unit '{}' is not known; {}", unit, config::suggestion(unit, known)));
+}
+
 host::GeometryObject from_mesh_file(const std::string& file, const std::string& unit, const host::Registry& registry) {
   const host::Loaded& plugin = registry.find(Kind::geometry, "mesh");
-  const config::Node node = config::parse_document("file: " + file + "\nunit: " + unit + "\n", "command line");
+  check_unit(*plugin.descriptor, unit);
+  // JSON's quoting is also YAML's.
+  const nlohmann::json values_of_mesh = {{"file", file}, {"unit", unit}};
+  const config::Node node =
+      config::parse_document(values_of_mesh.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), "command line");
   const config::ResolvedValues values = config::resolve(*plugin.descriptor, node, Scope::instance);
   return host::GeometryObject::create(plugin, values.view(), {"", 0});
 }
@@ -57,6 +76,8 @@ std::vector<std::string> slots_of(const host::GeometryObject& g) {
 }
 
 int export_stl(const Options& options) {
+  const std::string file = options.text("output");
+  if (!options.has("force")) output::refuse_existing(file);
   const host::Registry registry = options.registry();
   const std::vector<Named> all = load(options, registry);
   const Named* chosen = &all.front();
@@ -74,9 +95,8 @@ int export_stl(const Options& options) {
   Surface surface{};
   chosen->object.table().surface(chosen->object.self(), &surface);
   if (surface.triangle_count == 0) throw UserError(fmt::format("geometry '{}' has no surface to export", chosen->name));
-  output::write_stl(options.text("output"), surface, slots_of(chosen->object),
-                    options.has("binary") ? output::StlFormat::binary : output::StlFormat::ascii);
-  fmt::print("wrote {} ({} triangles, in metres)\n", options.text("output"), surface.triangle_count);
+  output::write_stl(file, surface, slots_of(chosen->object), options.has("binary") ? output::StlFormat::binary : output::StlFormat::ascii);
+  fmt::print("wrote {} ({} triangles, in metres)\n", file, surface.triangle_count);
   return kDone;
 }
 
@@ -97,6 +117,7 @@ int geometry(const Arguments& arguments) {
   options.positional("ACTION", "export or report");
   options.positional("FILE", "a case (.yaml) or a mesh file");
   options.add()("output,o", po::value<std::string>()->value_name("FILE.stl"), "file to write");
+  options.add()("force", "replace FILE.stl");
   options.add()("name", po::value<std::string>()->value_name("NAME"), "which geometry of the case");
   options.add()("binary", "write binary STL (names of solids are lost)");
   options.add()("unit", po::value<std::string>()->value_name("UNIT")->default_value("mm"), "unit of a mesh file: mm, cm, m, inch");

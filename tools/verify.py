@@ -73,7 +73,7 @@ class Bench:
         return json.loads(done.stdout)
 
     def export_liner(self):
-        self.call("geometry", "export", PARAMETRIC, "-o", LINER)
+        self.call("geometry", "export", PARAMETRIC, "-o", LINER, "--force")
 
     def run(self, name, case, *settings, options=()):
         """Summary of a run, from the cache where the same command has been completed."""

@@ -140,7 +140,23 @@ class Geometry(CliTest):
         data = (self.folder / "liner.stl").read_bytes()
         self.assertEqual(len(data), 84 + 50 * int.from_bytes(data[80:84], "little"))
 
+    def test_an_existing_file_is_kept_unless_forced(self):
+        self.write("liner.stl", "mine")
+        result = self.millscope("geometry", "export", "case.yaml", "-o", "liner.stl")
+        self.assert_one_line(result, "liner.stl: exists already", "--force")
+        self.assertEqual((self.folder / "liner.stl").read_text(), "mine")
+        self.succeed("geometry", "export", "case.yaml", "-o", "liner.stl", "--force")
+        self.assertTrue((self.folder / "liner.stl").read_text().startswith("solid"))
+
+    def test_a_file_name_is_no_yaml(self):
+        for name in ("my #1: liner.stl", "[x], {y} - z.stl", '"quoted" \'twice\' \\ & *.stl', "null.stl"):
+            self.succeed("geometry", "export", "case.yaml", "-o", name)
+            self.assertIn("triangles", self.succeed("geometry", "report", name, "--unit", "m").stdout)
+
     def test_refusals(self):
+        self.succeed("geometry", "export", "case.yaml", "-o", "liner.stl")
+        self.assert_one_line(self.millscope("geometry", "report", "liner.stl", "--unit", "furlong"), "--unit 'furlong'", "known: mm, m, cm, inch")
+        self.assertNotIn("command line", self.millscope("geometry", "report", "liner.stl", "--unit", "m\nscale: 2").stderr)
         self.assert_one_line(self.millscope("geometry", "export", "case.yaml"), "--output is missing")
         self.assert_one_line(self.millscope("geometry", "export", "case.yaml", "-o", "x.stl", "--name", "shell"), "no geometry of that name")
         self.assert_one_line(self.millscope("geometry", "report", "missing.stl"), "missing.stl", "check the path")
