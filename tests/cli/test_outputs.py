@@ -5,7 +5,7 @@ import shutil
 import unittest
 import xml.dom.minidom
 
-from support import CliTest, Hdf5, tree_of
+from support import SOURCE, CliTest, Hdf5, tree_of
 
 SUMMARY_KEYS = ("particles", "steps", "dt_s", "simulated_s", "wall_s", "particle_steps_per_s", "threads", "state_hash", "steady", "power_W", "com_m",
                 "kinetic_energy_J", "provenance", "schema_version")
@@ -52,6 +52,12 @@ class Outputs(CliTest):
             self.assertIn(key, s["provenance"])
         self.assertIn("case.yaml", s["provenance"]["command_line"])
         self.assertIn("hertz_mindlin", [p["name"] for p in s["provenance"]["plugins"]])
+
+    def test_every_name_is_documented(self):
+        text = (SOURCE / "docs/format.md").read_text(encoding="utf-8")
+        summary = self.summary("out")
+        for name in COLUMNS + tuple(summary) + tuple(summary["energy"]) + tuple(summary["contact"]) + tuple(summary["pairs"][0]):
+            self.assertRegex(text, r"[`.]%s[`.\[]" % name.removesuffix("_sem"))
 
     def test_series(self):
         with open(self.out / "series.csv", newline="", encoding="utf-8") as file:
