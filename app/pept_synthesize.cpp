@@ -16,24 +16,27 @@ std::string camera_of(const std::string& recording) {
   return studies::camera_text(studies::estimate_camera(studies::read_recording(recording)), recording);
 }
 
-void write_text(const std::filesystem::path& file, const std::string& text, bool overwrite) {
-  if (!overwrite) output::refuse_existing(file);
-  output::AtomicFile out(file);
-  out.write(text);
-  out.commit();
+/// Where an estimated camera is written: beside the file to be made.
+std::filesystem::path camera_file(const std::filesystem::path& file) {
+  return file.parent_path() / (file.stem().string() + "_camera.yaml");
 }
 
-/// The camera that the user names; one that is estimated is written beside the file to be made.
-studies::Camera chosen_camera(const Options& options, const host::Registry& registry, const std::filesystem::path& file) {
+/// Before any work, and before any file is written.
+void refuse_targets(const Options& options, const studies::SimulatedBeads& beads, const studies::SynthesisRequest& request) {
+  if (request.overwrite) return;
+  for (const std::filesystem::path& target : studies::synthesis_targets(beads, request)) output::refuse_existing(target);
+  if (options.has("like")) output::refuse_existing(camera_file(request.file));
+}
+
+/// The camera that the user names, or one that is estimated, with its text.
+studies::Camera chosen_camera(const Options& options, const host::Registry& registry, const std::filesystem::path& file,
+                              std::string& text) {
   if (options.has("camera") == options.has("like")) {
     throw config::UserError("give either --camera camera.yaml or --like RECORDING; configs/cameras holds examples");
   }
   if (options.has("camera")) return studies::read_camera(options.text("camera"), registry, options.list("set"));
-  const std::string text = camera_of(options.text("like"));
-  const std::filesystem::path beside = file.parent_path() / (file.stem().string() + "_camera.yaml");
-  write_text(beside, text, options.has("force"));
-  fmt::print("wrote {}\n", beside.string());
-  return studies::parse_camera(text, beside.string(), registry, options.list("set"));
+  text = camera_of(options.text("like"));
+  return studies::parse_camera(text, camera_file(file).string(), registry, options.list("set"));
 }
 
 }  // namespace
@@ -73,7 +76,14 @@ int pept_synthesize(const Arguments& arguments) {
     }
     if (used == 0 || used != id.size()) throw config::UserError(fmt::format("--bead {}: is no number of a bead", id));
   }
-  const studies::Synthesis done = studies::synthesize(beads, chosen_camera(options, registry, request.file), request);
+  refuse_targets(options, beads, request);
+  std::string estimated;
+  const studies::Camera camera = chosen_camera(options, registry, request.file, estimated);
+  const studies::Synthesis done = studies::synthesize(beads, camera, request);
+  if (!estimated.empty()) {
+    output::write_file(camera_file(request.file), estimated, request.overwrite);
+    fmt::print("wrote {}\n", camera_file(request.file).string());
+  }
   for (const std::string& note : done.notes) fmt::print(stderr, "note: {}\n", note);
   fmt::print("wrote {} ({} locations of {} beads, {:.4g} s)\n", done.recording.string(), done.locations, done.files.size(), done.seconds);
   return kDone;
@@ -94,7 +104,7 @@ int pept_camera(const Arguments& arguments) {
   const std::string text =
       options.has("json") ? studies::camera_json(estimate).dump(2) + "\n" : studies::camera_text(estimate, options.text("RECORDING"));
   if (options.has("output")) {
-    write_text(options.text("output"), text, options.has("force"));
+    output::write_file(options.text("output"), text, options.has("force"));
   } else {
     fmt::print("{}", text);
   }

@@ -115,4 +115,11 @@ void AtomicFile::write_through() {
   buffer_.clear();
 }
 
+void write_file(const std::filesystem::path& path, std::string_view bytes, bool overwrite) {
+  if (!overwrite) refuse_existing(path);
+  AtomicFile file(path);
+  file.write(bytes);
+  file.commit();
+}
+
 }  // namespace millscope::output

@@ -76,4 +76,7 @@ class AtomicFile {
   bool committed_ = false;
 };
 
+/// Writes a whole file through AtomicFile. Without `overwrite` throws config::UserError when `path` exists already.
+void write_file(const std::filesystem::path& path, std::string_view bytes, bool overwrite = true);
+
 }  // namespace millscope::output

@@ -50,10 +50,8 @@ nlohmann::ordered_json provenance(std::span<const std::string> command_line, std
 }
 
 void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json) {
-  AtomicFile file(path);
   // Names of files may hold any bytes; what is not UTF-8 is replaced.
-  file.write(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
-  file.commit();
+  write_file(path, json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace millscope::output

@@ -40,17 +40,20 @@ fs::path numbered(const fs::path& file, std::size_t number, std::size_t count) {
   return file.parent_path() / fmt::format("{}_{}{}", file.stem().string(), number, file.extension().string());
 }
 
-void write(const fs::path& file, const std::string& text, bool overwrite) {
-  if (!overwrite) output::refuse_existing(file);
-  output::AtomicFile out(file);
-  out.write(text);
-  out.commit();
-}
-
 }  // namespace
+
+std::vector<fs::path> synthesis_targets(const SimulatedBeads& beads, const SynthesisRequest& request) {
+  const std::size_t count = chosen_tracks(beads, request.beads).size();
+  std::vector<fs::path> targets;
+  for (std::size_t k = 0; k < count; ++k) targets.push_back(numbered(request.file, k + 1, count));
+  targets.push_back(fs::path(request.file).replace_extension(".yaml"));
+  return targets;
+}
 
 Synthesis synthesize(const SimulatedBeads& beads, const Camera& camera, const SynthesisRequest& request) {
   const std::vector<std::size_t> chosen = chosen_tracks(beads, request.beads);
+  const std::vector<fs::path> targets = synthesis_targets(beads, request);
+  if (!request.overwrite) std::for_each(targets.begin(), targets.end(), output::refuse_existing);
   const double from = request.from.value_or(beads.analyze_from());
   Synthesis result;
   std::vector<std::string> names, texts;
@@ -68,7 +71,7 @@ Synthesis synthesize(const SimulatedBeads& beads, const Camera& camera, const Sy
           fmt::format("{}: the camera saw nothing of {} in {:.3g} s; loosen its cut or its gaps", beads.directory().string(), name, span));
     result.locations += run.size();
     result.seconds += span;
-    result.files.push_back(numbered(request.file, k + 1, chosen.size()));
+    result.files.push_back(targets[k]);
     names.push_back(result.files.back().filename().string());
     texts.push_back(ctrack_text(run));
   }
@@ -77,15 +80,15 @@ Synthesis synthesize(const SimulatedBeads& beads, const Camera& camera, const Sy
         "the tracks have a sample every {:.2g} ms; below 2 kHz impacts are cut short: run with --set output.tracks.every_s=0.0005",
         1e3 * coarsest));
   }
-  result.recording = request.file;
-  result.recording.replace_extension(".yaml");
+  result.recording = targets.back();
   Condition condition = beads.condition();
   condition.tracer = {beads.tracks()[chosen[0]].diameter, beads.tracks()[chosen[0]].density};
   condition.geometry = fs::absolute(condition.geometry).lexically_proximate(fs::absolute(result.recording).parent_path());
-  for (std::size_t k = 0; k < texts.size(); ++k) write(result.files[k], texts[k], request.overwrite);
-  write(result.recording,
-        recording_text(names, condition, fmt::format("Simulated beads of {} seen by a virtual camera.", beads.directory().string())),
-        request.overwrite);
+  for (std::size_t k = 0; k < texts.size(); ++k) output::write_file(result.files[k], texts[k], request.overwrite);
+  output::write_file(
+      result.recording,
+      recording_text(names, condition, fmt::format("Simulated beads of {} seen by a virtual camera.", beads.directory().string())),
+      request.overwrite);
   return result;
 }
 

@@ -32,12 +32,6 @@ Stage stage_named(const std::string& word) {
   return Stage::waiting;
 }
 
-void write_text(const fs::path& path, const std::string& text) {
-  output::AtomicFile file(path);
-  file.write(text);
-  file.commit();
-}
-
 /// Puts a copy named after its content into CACHE/files; returns its path as seen from an entry.
 std::string keep_copy(const NamedFile& file, const fs::path& cache) {
   const std::string name = file.hash + fs::path(file.path).extension().string();
@@ -47,7 +41,7 @@ std::string keep_copy(const NamedFile& file, const fs::path& cache) {
     const std::optional<std::string> bytes = text_of(file.path);
     if (!bytes || content_hash(*bytes) != file.hash)
       throw config::UserError(file.path + ": changes while the campaign is being prepared; start again when it is whole");
-    write_text(copy, *bytes);
+    output::write_file(copy, *bytes);
   }
   return "../files/" + name;
 }
@@ -88,7 +82,7 @@ void Entry::prepare(const Identity& identity, const std::string& label) const {
     for (const NamedFile& file : identity.files) {
       if (file.alone) text = replaced(std::move(text), quoted(file.path), quoted(keep_copy(file, folder_.parent_path())));
     }
-    write_text(case_file(), text);
+    output::write_file(case_file(), text);
   }
   if (fs::exists(folder_ / "task.json")) return;
   TaskRecord record;

@@ -24,12 +24,6 @@ using config::UserError;
 
 std::string shell_quoted(const std::string& text) { return fmt::format("'{}'", replaced(text, "'", "'\\''")); }
 
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  output::AtomicFile file(path);
-  file.write(text);
-  file.commit();
-}
-
 std::string read_all(int descriptor) {
   std::string text;
   std::array<char, 4096> part{};
@@ -98,10 +92,10 @@ std::string submit(const Batch& batch) {
   for (const std::filesystem::path& entry : batch.entries) list += entry.string() + "\n";
   for (const std::string& word : batch.command) command += shell_quoted(word) + " ";
   const std::filesystem::path entries = batch.folder / "entries.txt", script = batch.folder / "task.sh";
-  write_text(entries, list);
-  write_text(script, fmt::format("#!/bin/sh\n# One simulation of a millscope campaign for each task of the array.\n"
-                                 "entry=$(sed -n \"$((SLURM_ARRAY_TASK_ID + 1))p\" {})\nexec {}\"$entry\"\n",
-                                 shell_quoted(entries.string()), command));
+  output::write_file(entries, list);
+  output::write_file(script, fmt::format("#!/bin/sh\n# One simulation of a millscope campaign for each task of the array.\n"
+                                         "entry=$(sed -n \"$((SLURM_ARRAY_TASK_ID + 1))p\" {})\nexec {}\"$entry\"\n",
+                                         shell_quoted(entries.string()), command));
   std::vector<std::string> words{"sbatch",
                                  "--parsable",
                                  "--job-name=" + batch.job_name(),
@@ -114,7 +108,7 @@ std::string submit(const Batch& batch) {
   words.push_back(script.string());
   const Answer answer = ask(words);
   if (answer.code != 0) return answer.text.empty() ? fmt::format("sbatch ends with code {}", answer.code) : answer.text;
-  write_text(batch.folder / "job", answer.text.substr(0, answer.text.find(';')) + "\n");
+  output::write_file(batch.folder / "job", answer.text.substr(0, answer.text.find(';')) + "\n");
   return "";
 }
 

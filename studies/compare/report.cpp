@@ -105,12 +105,6 @@ std::string element_columns(const ComparedElement& e) {
                      e.test.high);
 }
 
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  output::AtomicFile file(path);
-  file.write(text);
-  file.commit();
-}
-
 }  // namespace
 
 std::string comparison_table(const Comparison& comparison, std::size_t rows) {
@@ -153,9 +147,9 @@ void write_comparison(const Comparison& c, const std::filesystem::path& director
       elements += fmt::format("{},{},{},{:.6g},{:.6g},{}\n", o.name, o.unit, e.index, e.test.adjusted_p, e.test.p, element_columns(e));
     }
   }
-  write_text(directory / "observables.csv", observables);
-  write_text(directory / "elements.csv", elements);
-  write_text(directory / "comparison.json", comparison_json(c).dump(2) + "\n");
+  output::write_file(directory / "observables.csv", observables);
+  output::write_file(directory / "elements.csv", elements);
+  output::write_file(directory / "comparison.json", comparison_json(c).dump(2) + "\n");
 }
 
 }  // namespace millscope::studies

@@ -90,12 +90,6 @@ std::string draw_png(const Sheet& sheet, const std::filesystem::path& file) {
   return bytes;
 }
 
-void write_file(const std::filesystem::path& path, const std::string& bytes) {
-  output::AtomicFile file(path);
-  file.write(bytes);
-  file.commit();
-}
-
 }  // namespace
 
 void Canvas::stroke(const Pen& pen) {
@@ -242,8 +236,8 @@ void write_sheet(const Sheet& sheet, const std::filesystem::path& stem) {
   }
   // Names hold dots ("shoulder.x"), so the ending is appended rather than replaced.
   const std::filesystem::path svg = stem.string() + ".svg", png = stem.string() + ".png";
-  write_file(svg, draw_svg(sheet, svg));
-  write_file(png, draw_png(sheet, png));
+  output::write_file(svg, draw_svg(sheet, svg));
+  output::write_file(png, draw_png(sheet, png));
 }
 
 }  // namespace millscope::studies
