@@ -34,6 +34,38 @@ void put_narrowed(AlignedVector<Line>& lines, const std::vector<double>& values)
   std::transform(values.begin(), values.end(), reinterpret_cast<float*>(lines.data()), [](double v) { return static_cast<float>(v); });
 }
 
+/// A checkpoint is a file: whatever it says is held against what it can be before it is used as a length or an index.
+void demand(bool sound) {
+  if (!sound)
+    throw config::UserError("the checkpoint is damaged: its numbers do not belong together; resume with the previous one, or start again");
+}
+
+/// All within [0, end).
+void demand_indices(const std::vector<std::int64_t>& values, std::int64_t end) {
+  demand(std::all_of(values.begin(), values.end(), [end](std::int64_t v) { return v >= 0 && v < end; }));
+}
+
+/// Lists and wall contacts of the slab of the beads [begin, end), of `beads` in all. Candidates are the geometry's own: the seal alone guards them.
+void demand_sound(const SlabState& slab, std::int64_t begin, std::int64_t end, std::int64_t beads) {
+  for (const PairList& list : slab.lists) {
+    demand(list.partner.size() == list.owner.size() && list.touching.size() == list.owner.size());
+    for (std::size_t s = 0; s < list.owner.size(); ++s) {
+      demand(list.owner[s] >= begin && list.owner[s] < end && list.partner[s] > list.owner[s] && list.partner[s] < beads);
+      demand(list.touching[s] <= 1 && (s == 0 || list.owner[s] >= list.owner[s - 1]));
+    }
+    for (const std::vector<double>& h : list.history) demand(static_cast<std::int64_t>(h.size()) == list.contact_count());
+  }
+  for (const WallSlab& wall : slab.walls) {
+    demand(wall.first.size() == wall.bead.size() + 1 || (wall.first.empty() && wall.bead.empty()));
+    for (std::size_t k = 0; k < wall.bead.size(); ++k) {
+      demand(wall.bead[k] >= begin && wall.bead[k] < end && (k == 0 || wall.bead[k] > wall.bead[k - 1]));
+      demand(wall.first[k] >= 0 && wall.first[k] <= wall.first[k + 1]);
+    }
+    demand(wall.first.empty() || wall.first.back() == static_cast<std::int64_t>(wall.candidates.size()));
+    for (const std::uint32_t bead : wall.active.bead) demand(bead < wall.bead.size());
+  }
+}
+
 /// Every number of a ledger in a fixed order.
 template <class LedgerType, class Visit>
 void each_number(LedgerType& ledger, const Visit& visit) {
@@ -69,6 +101,12 @@ std::vector<T> joined(const Slabs& slabs, const Access& access) {
 /// Hands an array out again, `counts[k]` items to slab k.
 template <class T, class Slabs, class Access>
 void dealt(const std::vector<T>& all, const std::vector<std::int64_t>& counts, Slabs& slabs, const Access& access) {
+  std::int64_t total = 0;
+  for (const std::int64_t count : counts) {
+    demand(count >= 0 && count <= static_cast<std::int64_t>(all.size()));
+    total += count;
+  }
+  demand(counts.size() == slabs.size() && total == static_cast<std::int64_t>(all.size()));
   std::size_t at = 0;
   for (std::size_t k = 0; k < slabs.size(); ++k) {
     auto& part = access(*slabs[k]);
@@ -192,14 +230,25 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
   }
   step_ = counters[0];
   Particles& p = particles;
-  put(p.position, get_doubles("position"));
+  const std::vector<double> centres = get_doubles("position");
+  demand(centres.size() % 4 == 0 && centres.size() / 4 < (std::size_t{1} << 31));
+  put(p.position, centres);
   const std::size_t n = p.position.size();
+  const std::int64_t beads = static_cast<std::int64_t>(n);
   p.resize(n);
   put(p.motion, get_doubles("motion"));
   put(p.half, get_doubles("half"));
   put_narrowed(p.acceleration, get_doubles("acceleration"));
   put_narrowed(p.reference, get_doubles("reference"));
   const std::vector<std::int64_t> ids = get_integers("id"), materials = get_integers("material");
+  demand(p.motion.size() == n && p.half.size() == n && p.acceleration.size() == n && p.reference.size() == n && ids.size() == n &&
+         materials.size() == n);
+  demand_indices(materials, material_count_);
+  std::vector<bool> seen(n, false);
+  for (const std::int64_t id : ids) {
+    demand(id >= 0 && id < beads && !seen[static_cast<std::size_t>(id)]);
+    seen[static_cast<std::size_t>(id)] = true;
+  }
   std::copy(ids.begin(), ids.end(), p.id.begin());
   std::transform(materials.begin(), materials.end(), p.material.begin(), [](std::int64_t m) { return static_cast<std::uint8_t>(m); });
   for (ForceLine& f : p.force) f = ForceLine{};
@@ -207,6 +256,7 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
   rebuilds_ = counters[1];
   rebuild_needed_ = counters[2] != 0;
   const std::vector<double> walls_moved = get_doubles("walls_moved");
+  demand(walls_moved.size() == 3);
   wall_margin_ = walls_moved[0];
   wall_moved_ = walls_moved[1];
   wall_speed_ = walls_moved[2];
@@ -244,6 +294,7 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
     std::size_t next = 0;
     for (std::size_t k = 0; k < slabs_.size(); ++k) {
       auto& normal = slabs_[k]->walls[b].active.normal;
+      demand(normals.size() >= next + 3 * static_cast<std::size_t>(contacts[k]));
       normal.resize(static_cast<std::size_t>(contacts[k]));
       for (auto& v : normal) {
         v = {normals[next], normals[next + 1], normals[next + 2]};
@@ -266,8 +317,15 @@ void System::restore(const DoubleSource& get_doubles, const IntegerSource& get_i
   std::size_t at = 0, at_count = 0;
   for (std::size_t k = 0; k < slabs_.size(); ++k) {
     SlabState& slab = *slabs_[k];
-    each_number(slab.ledger, [&](double& v) { v = book.at(at++); });
-    each_count(slab.ledger, [&](std::int64_t& v) { v = counts.at(at_count++); });
+    each_number(slab.ledger, [&](double& v) {
+      demand(at < book.size());
+      v = book[at++];
+    });
+    each_count(slab.ledger, [&](std::int64_t& v) {
+      demand(at_count < counts.size());
+      v = counts[at_count++];
+    });
+    demand_sound(slab, slab_begin(static_cast<int>(k)), slab_begin(static_cast<int>(k) + 1), beads);
     std::int64_t last = slab_begin(static_cast<int>(k) + 1) - 1;
     const std::int64_t end = last + 1;
     for (const PairList& list : slab.lists) {

@@ -98,6 +98,8 @@ class System {
   /// One time step. Throws config::UserError when a bead runs away or leaves the domain.
   void advance();
 
+  /// Threads at work: at most one per slab.
+  int threads() const { return workers_->count(); }
   std::int64_t step() const { return step_; }
   double time() const { return static_cast<double>(step_) * settings_.time_step; }
   const Settings& settings() const { return settings_; }

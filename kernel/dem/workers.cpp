@@ -1,5 +1,7 @@
 #include "kernel/dem/workers.hpp"
 
+#include <utility>
+
 namespace millscope::dem {
 namespace {
 
@@ -24,8 +26,12 @@ Workers::~Workers() {
 }
 
 void Workers::share(int worker) {
-  const int last = first(worker + 1, slabs_);
-  for (int slab = first(worker, slabs_); slab < last; ++slab) (*task_)(slab, worker);
+  try {
+    const int last = first(worker + 1, slabs_);
+    for (int slab = first(worker, slabs_); slab < last; ++slab) (*task_)(slab, worker);
+  } catch (...) {
+    if (!failed_.exchange(true)) failure_ = std::current_exception();
+  }
   pending_.fetch_sub(1, std::memory_order_acq_rel);
 }
 
@@ -50,6 +56,7 @@ void Workers::run(int slabs, const std::function<void(int, int)>& task) {
       std::this_thread::yield();
     }
   }
+  if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void Workers::loop(int worker) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <exception>
 #include <functional>
 #include <thread>
 #include <vector>
@@ -21,7 +22,8 @@ class Workers {
   int first(int worker, int slabs) const { return worker * slabs / count_; }
 
   /// Runs task(slab, worker) for each slab in [0, slabs): slab k goes to worker k·count/slabs, so that a slab stays in one cache.
-  /// Returns when all are done. The task must not throw. The share of a worker whose thread has not begun when the calling thread is done
+  /// Returns when all are done; what a task throws (the first of them: memory that is not there) is thrown here, the rest of that share is
+  /// left out, and the state is of no use any more. The share of a worker whose thread has not begun when the calling thread is done
   /// with its own is taken over by it, under that worker's number: on a busy machine nobody waits for a thread that is not running.
   void run(int slabs, const std::function<void(int slab, int worker)>& task);
 
@@ -37,6 +39,8 @@ class Workers {
   std::atomic<unsigned> generation_{0};
   std::atomic<int> pending_{0};                 ///< shares of this generation that are not done
   std::vector<std::atomic<unsigned>> claimed_;  ///< [worker]: the last generation whose share somebody has taken
+  std::atomic<bool> failed_{false};
+  std::exception_ptr failure_;  ///< of the first share that failed in this generation
   std::atomic<bool> stop_{false};
   std::vector<std::thread> threads_;
 };

@@ -75,11 +75,13 @@ PairContext context_of(const Assembly& a, int first, int second, bool wall) {
   return p;
 }
 
-/// Of the smallest beads of a pair at the speed to expect, undamped: 2.87 (m*²/(R* E*² v))^{1/5}, s (Johnson 1985, eq. 11.24). Stands in
-/// for a law that gives no estimate of its own.
-double hertz_contact_time(const PairContext& p) {
+/// How long the smallest beads of a pair touch at that closing speed, s: what the law says, else Hertz's, undamped:
+/// 2.87 (m*²/(R* E*² v))^{1/5} (Johnson 1985, eq. 11.24).
+double contact_time(const dem::LawReference& law, const PairContext& p, double speed) {
+  const double said = law.table->contact_time(law.self, p.smallest_radius, p.smallest_mass, speed);
+  if (said > 0) return said;
   const double young = p.effective_young;
-  return 2.87 * std::pow(p.smallest_mass * p.smallest_mass / (p.smallest_radius * young * young * p.typical_speed), 0.2);
+  return 2.87 * std::pow(p.smallest_mass * p.smallest_mass / (p.smallest_radius * young * young * speed), 0.2);
 }
 
 struct Channels {
@@ -122,8 +124,7 @@ dem::PairPhysics make_pair(Assembly& a, const host::Registry& registry, int firs
     const std::uint64_t features = i.plugin().descriptor->features;
     p.pair_parameters.push_back({&i.table(), i.self(), (features & kGivesRestitution) != 0, (features & kGivesFriction) != 0});
   }
-  double time = law.table().contact_time(law.self(), context.smallest_radius, context.smallest_mass, a.typical_speed);
-  if (!(time > 0)) time = hertz_contact_time(context);
+  const double time = contact_time(p.law, context, a.typical_speed);
   a.hertz_contact_time = a.hertz_contact_time > 0 ? std::min(a.hertz_contact_time, time) : time;
   return p;
 }
@@ -143,7 +144,12 @@ double typical_speed(const Assembly& a) {
 
 void check_time_step(const Assembly& a) {
   const double fraction = a.time_step / a.rayleigh_time;
-  const std::string where = a.c.time.where.text();
+  const double longest = std::max(a.c.time.end, a.c.fill.settle);
+  if (!(longest / a.time_step < kMostSteps)) {
+    throw UserError(a.c.time.where, fmt::format("{:.4g} s in steps of {:.4g} s are more than {:.0e} steps: no run ends; check time.end_s, "
+                                                "fill.settle_s and time.step_s",
+                                                longest, a.time_step, kMostSteps));
+  }
   if (a.c.run.allow_unstable) return;
   if (fraction > 0.6) {
     throw UserError(a.c.time.where,
@@ -304,6 +310,14 @@ Assembly assemble(config::Case c, const host::Registry& registry, const Assembly
   }
   a.bead_count = config::bead_count(a.c, vessel);
   return a;
+}
+
+double shortest_contact(const Assembly& a, double speed) {
+  double shortest = 1e300;
+  for (const dem::PairPhysics& p : a.system->physics()) {
+    shortest = std::min(shortest, contact_time(p.law, context_of(a, p.first, p.second, p.wall), speed));
+  }
+  return shortest;
 }
 
 void begin(Assembly& a) { a.system->start(-a.settle_steps); }

@@ -20,6 +20,9 @@ struct GeometryUse {
 };
 
 /// Everything a run is made of. Movable only.
+/// More steps than any run will take, and few enough to be counted exactly.
+inline constexpr double kMostSteps = 1e15;
+
 struct Assembly {
   config::Case c;
   std::vector<std::string> materials;  ///< index → name
@@ -55,6 +58,9 @@ void insert_beads(Assembly& a);
 
 /// The steps at which settling begins (−settle_steps) … end_step are absolute: time = step · Δt.
 void begin(Assembly& a);
+
+/// The shortest contact of any pair at this closing speed, m/s, in s: as its law says, Hertz's where it says nothing.
+double shortest_contact(const Assembly& a, double speed);
 
 /// Rayleigh time π R √(ρ/G)/(0.1631 ν + 0.8766), s.
 double rayleigh_time(double radius, double density, double young, double poisson);

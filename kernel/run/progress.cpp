@@ -28,7 +28,7 @@ Progress::Progress(const Assembly& a, bool quiet, bool terminal)
     : a_(a), quiet_(quiet), terminal_(terminal), start_(std::chrono::steady_clock::now()) {
   if (quiet_) return;
   fmt::print(stderr, "{}: {} beads, dt {:.3g} s ({:.0f} % of Rayleigh), {} threads, stiffness factor {:g}\n", a.c.name, a.bead_count,
-             a.time_step, 100 * a.time_step / a.rayleigh_time, a.system->settings().threads, a.c.stiffness_factor);
+             a.time_step, 100 * a.time_step / a.rayleigh_time, a.system->threads(), a.c.stiffness_factor);
 }
 
 double Progress::elapsed() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }

@@ -11,7 +11,10 @@
 namespace millscope::run {
 namespace {
 
-std::int64_t steps_of(double interval, double time_step) { return std::max<std::int64_t>(1, std::llround(interval / time_step)); }
+/// An interval beyond any run is as good as never.
+std::int64_t steps_of(double interval, double time_step) {
+  return std::max<std::int64_t>(1, std::llround(std::min(interval / time_step, kMostSteps)));
+}
 
 [[noreturn]] void refuse_tracks(const Assembly& a, const std::string& message) {
   a.c.root.at("output").at("tracks").at("beads").fail(message);
@@ -80,7 +83,7 @@ Recorder::Recorder(const Assembly& a, std::filesystem::path directory, std::opti
   }
   if (o.frames) {
     frame_steps_ = steps_of(o.frames->every, a.time_step);
-    frame_from_ = std::llround(o.frames->from / a.time_step);
+    frame_from_ = std::llround(std::min(o.frames->from / a.time_step, kMostSteps));
     const auto path = directory_ / "frames.h5";
     if (resume_time) {
       frames_ = output::FrameWriter::resume(path, n, *resume_time);

@@ -144,7 +144,7 @@ Json summary_of(Session& s) {
   j["settle_s"] = static_cast<double>(a.settle_steps) * a.time_step;
   j["wall_s"] = s.wall();
   j["particle_steps_per_s"] = wall > 0 ? static_cast<double>(a.bead_count) * static_cast<double>(stepped) / wall : 0.0;
-  j["threads"] = system.settings().threads;
+  j["threads"] = system.threads();
   j["partitions"] = system.settings().partitions;
   j["rebuilds"] = system.rebuilds();
   j["state_hash"] = fmt::format("{:016x}", system.state_hash());
@@ -152,11 +152,10 @@ Json summary_of(Session& s) {
   j["stiffness_factor"] = a.c.stiffness_factor;
   j.update(window_summary(a, s.recorder->samples()));
   const dem::Ledger now = system.ledger();
-  double fastest = 0, shortest = 1e300;
+  double fastest = 0;
   for (std::size_t p = 0; p < now.pairs.size(); ++p) fastest = std::max(fastest, now.pairs[p].largest_closing_speed);
-  if (fastest > 0 && a.hertz_contact_time > 0) {
-    // Hertz: t ∝ v^(−1/5).
-    shortest = a.hertz_contact_time * std::pow(a.typical_speed / fastest, 0.2);
+  if (fastest > 0) {
+    const double shortest = shortest_contact(a, fastest);
     j["contact"] = {{"largest_closing_speed_m_per_s", fastest},
                     {"shortest_contact_s", shortest},
                     {"steps_per_shortest_contact", shortest / a.time_step}};
@@ -236,7 +235,7 @@ std::uint64_t disk_estimate(const Assembly& a) {
     for (const GeometryUse& g : a.geometries) triangles += static_cast<double>(g.surface.triangle_count);
     bytes += end / o.vtk->every * (static_cast<double>(a.bead_count) * 72 + triangles * 60);
   }
-  return static_cast<std::uint64_t>(bytes);
+  return static_cast<std::uint64_t>(std::min(bytes, 1e18));
 }
 
 void write_resolved(const Session& s, const host::Registry& registry) {
@@ -331,12 +330,12 @@ Outcome resume_run(const host::Registry& registry, const RunOptions& options) {
         static_cast<double>(s.assembly.analyze_step) * s.assembly.time_step, system.time()));
   }
   directory.start();
+  s.checkpoint_time = system.time();
+  // What is at the very time of the checkpoint has not been written yet: half a step decides. First of all, because it may refuse.
+  s.recorder = std::make_unique<Recorder>(s.assembly, s.directory, system.time() - 0.5 * s.assembly.time_step);
   // A damaged newest checkpoint must not become the previous one, which is now the only one.
   if (damaged) std::filesystem::rename(output::previous_checkpoint_path(options.output), output::checkpoint_path(options.output));
   std::filesystem::remove(summary);  // is there when, and only when, the run has reached its end
-  s.checkpoint_time = system.time();
-  // What is at the very time of the checkpoint has not been written yet: half a step decides.
-  s.recorder = std::make_unique<Recorder>(s.assembly, s.directory, system.time() - 0.5 * s.assembly.time_step);
   if (archive.read_value<std::int64_t>("analyze_step") == s.assembly.analyze_step) {
     const std::vector<double> numbers = archive.read<double>("window/samples");
     s.recorder->samples().resize(numbers.size() * sizeof(double) / sizeof(Sample));

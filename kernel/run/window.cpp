@@ -21,7 +21,7 @@ double power_of_centre(const Assembly& a, const Sample& s) {
   const std::array<double, 3> r{s.centre[0] - m.point[0], s.centre[1] - m.point[1], s.centre[2] - m.point[2]};
   const double moment =
       m.axis[0] * (g[1] * r[2] - g[2] * r[1]) + m.axis[1] * (g[2] * r[0] - g[0] * r[2]) + m.axis[2] * (g[0] * r[1] - g[1] * r[0]);
-  return a.system->total_mass() * m.speed * moment;
+  return a.system->total_mass() * dem::angular_speed(m, s.time) * moment;
 }
 
 }  // namespace
@@ -44,9 +44,10 @@ Sample take_sample(const dem::System& system, const Assembly& a) {
   for (const double w : ledger.body_force_work) s.dissipated += w;
   for (std::size_t b = 0; b < ledger.bodies.size(); ++b) {
     s.wall_work += ledger.bodies[b].work;
-    if (system.bodies[b].motion.speed != 0) {
+    const dem::Motion& motion = system.bodies[b].motion;
+    if (motion.speed != 0) {
       s.torque_work += ledger.bodies[b].work;
-      s.torque += ledger.bodies[b].torque[2];
+      for (std::size_t k = 0; k < 3; ++k) s.torque += motion.axis[k] * ledger.bodies[b].torque[k];
     }
   }
   return s;

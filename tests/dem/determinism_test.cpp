@@ -137,6 +137,46 @@ TEST_CASE("a restored system continues bit for bit") {
   }
 }
 
+TEST_CASE("a checkpoint whose numbers do not belong together is refused, never used as an index") {
+  const Setup s = mixed_drum();
+  Assembly whole = ready(s);
+  advance(whole, 1500);
+  const Saved good = saved(whole);
+  const auto refused = [&s](const Saved& state) {
+    Assembly a = assembled(s);
+    try {
+      restore(a, state);
+    } catch (const config::UserError&) {
+      return true;
+    }
+    return false;
+  };
+  CHECK_FALSE(refused(good));
+  for (const auto& [name, values] : good.integers) {
+    if (values.empty() || name == "counters" || name.find("ledger") != std::string::npos) continue;
+    // Features and candidates are numbers that only the geometry knows.
+    if (name.find("candidates") != std::string::npos || name.find("feature") != std::string::npos) continue;
+    INFO(name);
+    for (const std::int64_t hostile : {std::int64_t{-5}, std::int64_t{30000000}, (std::int64_t{1} << 31) - 1}) {
+      Saved bad = good;
+      bad.integers[name][values.size() / 2] = hostile;
+      CHECK(refused(bad));
+    }
+    Saved shorter = good, longer = good;
+    shorter.integers[name].pop_back();
+    longer.integers[name].push_back(values.back());
+    CHECK(refused(shorter));
+    CHECK(refused(longer));
+  }
+  for (const auto& [name, values] : good.doubles) {
+    if (values.empty()) continue;
+    INFO(name);
+    Saved shorter = good;
+    shorter.doubles[name].resize(values.size() / 2);
+    CHECK(refused(shorter));
+  }
+}
+
 TEST_CASE("a checkpoint of other partitions, materials or plugins is refused") {
   const Saved state = saved(ready(mixed_drum()));
   Assembly same = assembled(mixed_drum());
