@@ -28,7 +28,11 @@ struct Synthesis {
   std::vector<std::string> notes;  ///< what the user should know
 };
 
-/// Throws config::UserError: no such bead, nothing seen of a bead, a file that exists, a disk that is full.
+/// The files that `synthesize` will write. Throws config::UserError: no such bead.
+std::vector<std::filesystem::path> synthesis_targets(const SimulatedBeads& beads, const SynthesisRequest& request);
+
+/// Writes all files or, where one of them exists already, none. Throws config::UserError: no such bead, nothing seen of a bead, a file
+/// that exists, a disk that is full.
 Synthesis synthesize(const SimulatedBeads& beads, const Camera& camera, const SynthesisRequest& request);
 
 }  // namespace millscope::studies

@@ -79,6 +79,30 @@ TEST_CASE("simulated beads become a recording of their mill") {
   }
 }
 
+TEST_CASE("a camera follows a bead of a slice through the images") {
+  const RunDirectory run;
+  const SimulatedBeads beads(run.path(), registry());
+  CHECK(beads.context(0, 1).period == Approx(kPeriod));
+  const output::TrackSamples path = beads.path(0, 2);
+  CHECK(path.position[2].back() - path.position[2].front() > kPeriod);
+  const Run seen =
+      observe(path, chain_of("{kind: error_cut, cut: 20 mm, spread: 4 mm, per_distance: 0.1, scatter: 0}"), beads.context(0, 1));
+  CHECK(seen.size() == path.size());  // 4 mm + 0.1 · 101 mm; from the mill's middle alone 4 mm + 0.1 · 175 mm at the end
+}
+
+TEST_CASE("where one file is in the way none is written") {
+  const RunDirectory run;
+  const SimulatedBeads beads(run.path(), registry());
+  for (const char* name : {"seen_2.a", "seen.yaml"}) {
+    std::ofstream(run.path() / name) << "mine";
+    CHECK_THROWS_WITH(synthesize(beads, Camera(), request_to(run.path() / "seen.a")), Contains(name) && Contains("exists already"));
+    CHECK_FALSE(fs::exists(run.path() / "seen_1.a"));
+    fs::remove(run.path() / name);
+  }
+  CHECK(synthesis_targets(beads, request_to(run.path() / "seen.a")) ==
+        std::vector<fs::path>{run.path() / "seen_1.a", run.path() / "seen_2.a", run.path() / "seen.yaml"});
+}
+
 TEST_CASE("one bead gives one file; the same seed the same bytes; nothing is overwritten unasked") {
   const RunDirectory run;
   const SimulatedBeads beads(run.path(), registry());
