@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstring>
 #include <list>
 #include <map>
@@ -79,7 +80,8 @@ class Local {
       return give_back(r.job, 0);
     }
     if (ended.signal == 0 && ended.exit_code == kBusy) return give_back(r.job, kLookEvery);
-    const bool stopped = ended.signal == 0 && ended.exit_code == kInterruptedCode;
+    const bool asked = ended.signal == SIGTERM || ended.signal == SIGINT;  // came before the simulation listened
+    const bool stopped = asked || (ended.signal == 0 && ended.exit_code == kInterruptedCode);
     if (stopped || (stopping_ && ended.signal != 0)) {
       const bool further = stopping_ || r.job.entry.checkpoint_time() != r.checkpoint;
       int& fruitless = fruitless_[r.job.entry.folder().string()];

@@ -72,8 +72,8 @@ std::optional<double> ProgressLine::time_left(const std::vector<Underway>& under
 void ProgressLine::update(const std::vector<Underway>& underway, double waiting, int slots) {
   if (!due()) return;
   const std::optional<double> left = time_left(underway, waiting, slots);
-  const std::string text = fmt::format("campaign: {}, {} running, {}", counts(), underway.size(),
-                                       left ? "ETA " + duration(*left) : "ETA not known yet");
+  const std::string text =
+      fmt::format("campaign: {}, {} running, {}", counts(), underway.size(), left ? "ETA " + duration(*left) : "ETA not known yet");
   if (terminal_) {
     fmt::print(stderr, "\r\033[K{}", cut_to_terminal(text));
     drawn_ = true;

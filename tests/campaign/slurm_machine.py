@@ -97,8 +97,9 @@ PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
             self.processes[name] = subprocess.Popen(words, env=self.environment, stdin=subprocess.DEVNULL, stdout=log, stderr=log, cwd=self.folder)
 
     def stop_controller(self):
+        """In order, as an administrator does: a controller that is killed may forget what it has just started."""
         process = self.processes.pop("slurmctld")
-        process.kill()
+        process.terminate()
         process.wait(30)
 
     def ask(self, *words):
