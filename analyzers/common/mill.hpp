@@ -34,6 +34,11 @@ inline double known_sense(const AnalyzerContext& context) {
   return sense;
 }
 
+/// The mill's inner length, m; 0: unknown. It may be known where the places of the end faces are not.
+inline double known_length(const AnalyzerContext& context) {
+  return context.mill_length > 0 ? context.mill_length : std::fmax(0, context.mill_high - context.mill_low);
+}
+
 /// Range along the axis that is looked at, as the options say.
 struct AxialRange {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();  ///< m
@@ -57,7 +62,7 @@ inline AxialRange axial_range(const Parameters& parameters, const AnalyzerContex
   if (faces) range.length = context.mill_high - context.mill_low;
   if (trim > 0 && (from || to)) throw Refusal("give end_trim, or z_from and z_to, not both");
   if (trim > 0 && !faces)
-    throw Refusal("end_trim needs the end faces, which are unknown: give z_from and z_to instead, or the mill's length");
+    throw Refusal("end_trim needs the end faces, which are unknown: give z_from and z_to instead, or 'ends' in the recording's frame");
   if (!from && !to && trim == 0) return range;
   range.low = from ? parameters.number("z_from") : faces ? context.mill_low + trim : range.low;
   range.high = to ? parameters.number("z_to") : faces ? context.mill_high - trim : range.high;

@@ -28,7 +28,7 @@ struct Mill {
 Mill mill_of(const Parameters& p, const AnalyzerContext& context) {
   Mill mill;
   mill.diameter = 2 * shell_radius(context);
-  mill.length = p.given("length") ? p.number("length") : std::fmax(0, context.mill_high - context.mill_low);
+  mill.length = p.given("length") ? p.number("length") : known_length(context);
   mill.bead = 2 * context.bead_radius;
   mill.density = context.bead_density;
   mill.mass = context.charge_mass;

@@ -78,7 +78,7 @@ class Cells {
     if (context.mill_high > context.mill_low && !std::isfinite(range.low) && !std::isfinite(range.high)) {
       return {context.mill_low, context.mill_high, count};
     }
-    throw Refusal("a grid along z needs both ends of its range: give z_from and z_to, or the mill's length");
+    throw Refusal("a grid along z needs both ends of its range: give z_from and z_to, or 'ends' in the recording's frame");
   }
   double area(std::int64_t a, std::int64_t b) const {
     if (!polar_) return area_in_circle(fast_.edge(a), fast_.edge(a + 1), middle_.edge(b), middle_.edge(b + 1), shell_);

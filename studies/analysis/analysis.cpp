@@ -123,6 +123,7 @@ ResultSet analyze(const AnalysisRequest& request, const host::Registry& registry
   meta.description = opened.meta.description;
   meta.case_file = opened.meta.case_file;
   meta.inputs = opened.meta.inputs;
+  meta.runs = opened.meta.runs;
   if (!request.settings.empty()) meta.inputs.push_back({request.settings.string(), file_hash(request.settings)});
   meta.notes.insert(meta.notes.begin(), opened.meta.notes.begin(), opened.meta.notes.end());
   meta.left_out = choice.left_out;

@@ -114,7 +114,8 @@ MillOfCase read_mill_of_case(const std::filesystem::path& case_file, const host:
     context.mill_high = c.domain.box.high[2];
     mill.period = context.mill_high - context.mill_low;
   }
-  if (shell.interior) vessel = config::Vessel{2 * context.mill_radius, context.mill_high - context.mill_low};
+  context.mill_length = context.mill_high - context.mill_low;
+  if (shell.interior) vessel = config::Vessel{2 * context.mill_radius, context.mill_length};
   know_charge(c, vessel, context);
   const std::array<double, 3> g = gravity_of(c, registry);
   context.gravity = -g[1];

@@ -13,6 +13,8 @@ namespace {
 
 using config::UserError;
 
+constexpr double kRpm = 30 / std::numbers::pi;
+
 /// What recording.yaml and the geometry say; 0 where they say nothing.
 AnalyzerContext stated(const Recording& recording, const std::optional<MillOfCase>& mill) {
   const Condition& c = recording.condition;
@@ -21,18 +23,19 @@ AnalyzerContext stated(const Recording& recording, const std::optional<MillOfCas
   context.gravity = 9.81;
   if (mill) {
     context.mill_radius = mill->context.mill_radius;
-    context.mill_low = mill->context.mill_low;
-    context.mill_high = mill->context.mill_high;
+    context.mill_length = mill->context.mill_length;
+    if (mill->period == 0) {  // a periodic slice has a length, but no end faces
+      context.mill_low = mill->context.mill_low;
+      context.mill_high = mill->context.mill_high;
+    }
   }
   if (c.mill_diameter) context.mill_radius = 0.5 * *c.mill_diameter;
-  if (c.mill_length && !(mill && mill->context.mill_high > mill->context.mill_low)) {
-    context.mill_low = 0;
-    context.mill_high = *c.mill_length;
-  }
   if (recording.frame && recording.frame->high > recording.frame->low) {
     context.mill_low = recording.frame->low;
     context.mill_high = recording.frame->high;
+    context.mill_length = recording.frame->high - recording.frame->low;
   }
+  if (c.mill_length) context.mill_length = *c.mill_length;
   context.omega = c.angular_velocity.value_or(0);
   context.bead_radius = 0.5 * c.bead_diameter.value_or(c.tracer.diameter.value_or(0));
   context.bead_density = c.bead_density.value_or(c.tracer.density.value_or(0));
@@ -43,7 +46,7 @@ AnalyzerContext stated(const Recording& recording, const std::optional<MillOfCas
 
 /// M = (1 − φ) J V ρ (Chagas 2015, Eq. 4.1), V of the bare shell.
 void weigh_charge(const Condition& c, AnalyzerContext& context) {
-  const double length = context.mill_high - context.mill_low;
+  const double length = context.mill_length;
   if (!c.filling || !c.porosity || !(context.mill_radius > 0) || !(length > 0) || !(context.bead_density > 0)) return;
   const double solids = (1 - *c.porosity) * *c.filling * std::numbers::pi * context.mill_radius * context.mill_radius * length;
   const double bead = 4.0 / 3.0 * std::numbers::pi * std::pow(context.bead_radius, 3);
@@ -53,9 +56,11 @@ void weigh_charge(const Condition& c, AnalyzerContext& context) {
 
 std::string interval_text(const Finding& finding, double factor) {
   const Estimate& e = *finding.estimate;
-  if (finding.bound == Bound::at_least) return fmt::format("at least {:.4g}", factor * e.low);
+  if (finding.bound == Bound::at_least) return fmt::format("{:.4g} (at least {:.4g})", factor * e.value, factor * e.low);
   return fmt::format("{:.4g} [{:.4g}, {:.4g}]", factor * e.value, factor * e.low, factor * e.high);
 }
+
+const char* sense_text(double omega) { return omega > 0 ? "counter-clockwise" : "clockwise"; }
 
 void find_axis(const Recording& recording, const MillMotion& motion, RecordedMill& known) {
   if (motion.sense == 0 || !motion.axis[0].estimate || !motion.axis[1].estimate) {
@@ -76,8 +81,28 @@ void find_speed(const Recording& recording, const MillMotion& motion, RecordedMi
     return;
   }
   known.context.omega = motion.sense * (speed ? *speed : motion.speed.estimate->value);
-  const std::string found = speed ? "" : fmt::format(" at {} rpm", interval_text(motion.speed, 30 / std::numbers::pi));
-  known.notes.push_back(fmt::format("the mill was found to turn {}{}", motion.sense > 0 ? "counter-clockwise" : "clockwise", found));
+  const std::string found = speed ? "" : fmt::format(" at {} rpm", interval_text(motion.speed, kRpm));
+  known.notes.push_back(fmt::format("the mill was found to turn {}{}", sense_text(motion.sense), found));
+}
+
+/// Holds the speed that is stated against the one found. Refuses what rides along the shell contradict, notes the rest.
+void check_speed(const Recording& recording, const MillMotion& motion, RecordedMill& known) {
+  const Agreement agreement = compare_speed(recording.condition, motion);
+  if (agreement == Agreement::unknown || agreement == Agreement::within) return;
+  const double stated = *recording.condition.speed * kRpm;
+  std::string what;
+  if (agreement == Agreement::opposite) {
+    what = fmt::format(
+        "the mill is stated to turn {}, but the tracer moves along its shell {}; check the axes of recording.yaml, or its "
+        "direction",
+        sense_text(*recording.condition.angular_velocity), sense_text(motion.sense));
+  } else {
+    what = fmt::format("the mill is stated to turn at {:.4g} rpm, but {} rpm was found ({}){}", stated, interval_text(motion.speed, kRpm),
+                       motion.speed.note, agreement == Agreement::far ? "; check the speed and its unit, or leave it out" : "");
+  }
+  const bool sure = agreement == Agreement::far || (agreement == Agreement::opposite && motion.rides > 0);
+  if (sure) throw UserError(fmt::format("{}: {}", recording.file.string(), what));
+  known.notes.push_back(what);
 }
 
 void find_radius(const MillMotion& motion, RecordedMill& known) {
@@ -98,11 +123,13 @@ RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCas
   RecordedMill known;
   known.context = stated(recording, mill);
   if (recording.frame) known.axis = recording.frame->axis;
-  if (!recording.frame || known.context.omega == 0 || !(known.context.mill_radius > 0)) {
-    const MillMotion motion = estimate_motion(recording);
-    if (!recording.frame) find_axis(recording, motion, known);
-    if (known.context.omega == 0) find_speed(recording, motion, known);
-    if (!(known.context.mill_radius > 0)) find_radius(motion, known);
+  const MillMotion motion = estimate_motion(recording);
+  if (!recording.frame) find_axis(recording, motion, known);
+  check_speed(recording, motion, known);
+  if (known.context.omega == 0) find_speed(recording, motion, known);
+  if (!(known.context.mill_radius > 0)) find_radius(motion, known);
+  if (recording.condition.mill_length && !(known.context.mill_high > known.context.mill_low)) {
+    known.notes.push_back("where the end faces stand along z is not known: give 'ends' in the recording's frame");
   }
   weigh_charge(recording.condition, known.context);
   return known;

@@ -30,6 +30,55 @@ Run cut_to(const Run& run, const SourceRequest& request) {
   return part;
 }
 
+using Json = nlohmann::ordered_json;
+
+/// What of a file is used, and by which rules the rest was set aside.
+Json run_json(const Run& run) {
+  const RunReport& r = run.report;
+  return {{"name", run.name},
+          {"file", run.source},
+          {"format", run.format},
+          {"rows", r.rows},
+          {"used", r.used},
+          {"rows_set_aside",
+           {{"unreadable", r.unreadable},
+            {"not_finite", r.not_finite},
+            {"false_times", r.false_times},
+            {"duplicates", r.duplicates},
+            {"outside", r.outside},
+            {"outliers", r.outliers}}},
+          {"rows_out_of_order", r.backwards},
+          {"gaps", r.gaps},
+          {"gap_time_s", r.gap_time}};
+}
+
+/// One note for a run of which rows were set aside or out of order; none else.
+std::vector<std::string> row_notes(const Recording& recording) {
+  std::vector<std::string> notes;
+  std::string format;
+  for (const Run& run : recording.runs) {
+    if (run.format != format) notes.push_back(fmt::format("{}{} read as {}", run.name, format.empty() ? "" : " and on", run.format));
+    format = run.format;
+  }
+  for (const Run& run : recording.runs) {
+    const RunReport& r = run.report;
+    std::string counts;
+    const auto add = [&](std::uint64_t count, const char* words) {
+      if (count > 0) counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, words);
+    };
+    add(r.unreadable, "unreadable");
+    add(r.not_finite, "not finite");
+    add(r.false_times, "with false times");
+    add(r.duplicates, "with the time of another");
+    add(r.outside, "outside the mill");
+    add(r.outliers, "outliers");
+    if (!counts.empty()) counts = fmt::format("{} of {} rows are used; set aside: {}", r.used, r.rows, counts);
+    if (r.backwards > 0) counts += fmt::format("{}{} rows out of order were sorted in", counts.empty() ? "" : "; ", r.backwards);
+    if (!counts.empty()) notes.push_back(fmt::format("{}: {}", run.name, counts));
+  }
+  return notes;
+}
+
 }  // namespace
 
 OpenedSource open_recording(const SourceRequest& request, const host::Registry& registry) {
@@ -43,6 +92,8 @@ OpenedSource open_recording(const SourceRequest& request, const host::Registry& 
   }
   const RecordedMill known = know_mill(recording, mill);
   opened.meta.notes = known.notes;
+  for (std::string& note : row_notes(recording)) opened.meta.notes.push_back(std::move(note));
+  for (const Run& run : recording.runs) opened.meta.runs.push_back(run_json(run));
   TrajectoryOptions options = request.trajectory;
   options.axis = known.axis;
   if (!(options.gap_limit > 0)) options.gap_limit = recording.gap_limit;

@@ -83,6 +83,7 @@ struct ResultMeta {
   std::vector<ResultBlock> blocks;
   std::vector<ObservableTime> times;
   std::vector<ResultFile> inputs;
+  nlohmann::ordered_json runs;        ///< of a recording: name, file, format, rows and what was set aside by which rule; else null
   nlohmann::ordered_json provenance;  ///< version, command line, plugins, options of every analyzer
   std::vector<std::string> left_out;  ///< "analyzer: why" for those whose needs the data do not meet
   std::vector<std::string> notes;     ///< what a reader of the results must know, one sentence each

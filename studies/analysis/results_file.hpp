@@ -18,9 +18,10 @@ struct ContextField {
   const char* unit;
   double AnalyzerContext::*number;
 };
-inline constexpr std::array<ContextField, 13> kContextFields{{{"mill_radius", "m", &AnalyzerContext::mill_radius},
+inline constexpr std::array<ContextField, 14> kContextFields{{{"mill_radius", "m", &AnalyzerContext::mill_radius},
                                                               {"mill_low", "m", &AnalyzerContext::mill_low},
                                                               {"mill_high", "m", &AnalyzerContext::mill_high},
+                                                              {"mill_length", "m", &AnalyzerContext::mill_length},
                                                               {"omega", "rad/s", &AnalyzerContext::omega},
                                                               {"gravity", "m/s^2", &AnalyzerContext::gravity},
                                                               {"charge_mass", "kg", &AnalyzerContext::charge_mass},

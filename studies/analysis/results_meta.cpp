@@ -27,6 +27,7 @@ Json meta_json(const ResultMeta& meta) {
     j["autocorrelation"].push_back(
         {{"name", t.name}, {"time_s", t.time}, {"effective", t.effective}, {"sets_the_block", t.sets_the_block}});
   }
+  if (!meta.runs.is_null()) j["runs"] = meta.runs;
   j["inputs"] = Json::array();
   for (const ResultFile& f : meta.inputs) j["inputs"].push_back({{"file", f.file}, {"hash", f.hash}});
   j["left_out"] = meta.left_out;
@@ -55,6 +56,7 @@ void read_meta_json(const Json& j, ResultMeta& meta) {
         {t.at("name").get<std::string>(), number(t.at("time_s")), number(t.at("effective")), t.at("sets_the_block").get<bool>()});
   }
   for (const Json& f : j.at("inputs")) meta.inputs.push_back({f.at("file").get<std::string>(), f.at("hash").get<std::string>()});
+  if (j.contains("runs")) meta.runs = j.at("runs");
   meta.left_out = j.at("left_out").get<std::vector<std::string>>();
   meta.notes = j.at("notes").get<std::vector<std::string>>();
   meta.provenance = j.at("provenance");

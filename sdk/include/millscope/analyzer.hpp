@@ -92,6 +92,7 @@ struct AnalyzerContext {
   std::int64_t impact_pair_count, impact_bin_count;
   const char* const* impact_pair;
   const double* impact_energy_edge;  ///< bins + 1, J
+  double mill_length;                ///< inner, m; also where the end faces are not known
 };
 
 /// One additive array.
