@@ -10,6 +10,7 @@
 #include "studies/analysis/mill.hpp"
 #include "studies/analysis/recording_source.hpp"
 #include "studies/analysis/tracks_source.hpp"
+#include "studies/recording/description.hpp"
 
 namespace millscope::studies {
 namespace {
@@ -64,6 +65,12 @@ SourceRequest as_directory(SourceRequest request) {
   return request;
 }
 
+config::Range short_step() {
+  config::Range range = config::positive("a mill's motion is lost in longer steps: give e.g. 1 ms");
+  range.high = 0.1;
+  return range;
+}
+
 }  // namespace
 
 OpenedSource open_source(const SourceRequest& asked, const host::Registry& registry) {
@@ -91,17 +98,20 @@ OpenedSource open_source(const SourceRequest& asked, const host::Registry& regis
 }
 
 TrajectoryOptions read_trajectory_options(const config::Node& section) {
-  section.expect({"kind", "step", "gap_limit", "least_points", "noise", "low", "high"});
+  section.expect({"kind", "step", "gap_limit", "least_points", "noise", "noise_correlation", "low", "high"});
   TrajectoryOptions options;
   if (const auto node = section.find("kind"))
     options.kind = config::read_choice(*node, "smoothing|cubic") == "cubic" ? SplineKind::cubic : SplineKind::smoothing;
-  if (const auto node = section.find("step")) options.step = config::read_number(*node, "s", config::positive());
+  if (const auto node = section.find("step")) options.step = config::read_number(*node, "s", short_step());
   options.gap_limit = 0;  // 0: what the recording says
-  if (const auto node = section.find("gap_limit")) options.gap_limit = config::read_number(*node, "s", config::positive());
+  if (const auto node = section.find("gap_limit")) options.gap_limit = config::read_number(*node, "s", gap_limit_range());
   if (const auto node = section.find("least_points")) {
     options.least_points = static_cast<int>(config::read_integer(*node, config::between(4, 1e6, "a cubic needs four points")));
   }
   if (const auto node = section.find("noise")) options.noise.fill(config::read_number(*node, "m", config::positive()));
+  if (const auto node = section.find("noise_correlation")) {
+    options.noise_correlation = config::read_number(*node, "1", config::between(0, 0.9, "from one point to the next"));
+  }
   const auto low = section.find("low"), high = section.find("high");
   if (low.has_value() != high.has_value()) (low ? *low : *high).fail("stands alone; give both ends of the range along z, 'low' and 'high'");
   if (low) {

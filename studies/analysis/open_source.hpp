@@ -30,7 +30,8 @@ struct OpenedSource {
 /// Throws config::UserError.
 OpenedSource open_source(const SourceRequest& request, const host::Registry& registry);
 
-/// Reads `trajectory: {kind: cubic|smoothing, step, gap_limit, least_points, noise, low, high}` of the settings.
+/// Reads `trajectory: {kind: cubic|smoothing, step, gap_limit, least_points, noise, noise_correlation, low, high}`
+/// of the settings.
 TrajectoryOptions read_trajectory_options(const config::Node& section);
 
 /// FNV-1a of a file's bytes, hexadecimal; of a file above 64 MiB its size and 64 MiB of it, one in each even part.

@@ -80,6 +80,7 @@ TrajectoryOptions options_for(const Run& run, const SourceRequest& request) {
   if (!request.trajectory_given) {
     options.kind = SplineKind::cubic;
     options.noise.fill(1e-9);  // what a double leaves of a position
+    options.noise_correlation = 0;
     options.step = std::max(options.step, interval);
   }
   options.gap_limit = std::max(options.gap_limit, 5 * interval);

@@ -37,14 +37,13 @@ void move_to_axis(Run& run, const std::array<double, 2>& axis) {
 
 void set_noise(const Run& run, const TrajectoryOptions& options, Trajectory& trajectory) {
   constexpr double kLeast = 1e-7;  // m; a simulated bead has none, a smoothing spline needs some
-  NoiseEstimate noise{options.noise, options.noise_correlation};
   const bool given = std::all_of(options.noise.begin(), options.noise.end(), [](double value) { return value > 0; });
-  if (!given) {
-    noise = estimate_noise_model(run, options.gap_limit);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (options.noise[axis] > 0) noise.standard_deviation[axis] = options.noise[axis];
-    }
+  NoiseEstimate noise;
+  if (!given || !options.noise_correlation) noise = estimate_noise_model(run, options.gap_limit);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (options.noise[axis] > 0) noise.standard_deviation[axis] = options.noise[axis];
   }
+  noise.correlation = options.noise_correlation.value_or(noise.correlation);
   for (std::size_t axis = 0; axis < 3; ++axis) trajectory.noise[axis] = std::max(noise.standard_deviation[axis], kLeast);
   trajectory.noise_correlation = noise.correlation;
 }
@@ -99,8 +98,9 @@ void check(const TrajectoryOptions& options) {
   if (!(options.step > 0))
     throw UserError(fmt::format("the step between even times is {} s; it must be positive, e.g. 0.001 s", options.step));
   if (!(options.gap_limit > 0)) throw UserError(fmt::format("the gap limit is {} s; it must be positive, e.g. 0.05 s", options.gap_limit));
-  if (!(options.noise_correlation >= 0 && options.noise_correlation < 1)) {
-    throw UserError(fmt::format("the correlation of the noise is {}; it must be at least 0 and below 1", options.noise_correlation));
+  const double correlation = options.noise_correlation.value_or(0);
+  if (!(correlation >= 0 && correlation < 1)) {
+    throw UserError(fmt::format("the correlation of the noise is {}; it must be at least 0 and below 1", correlation));
   }
 }
 

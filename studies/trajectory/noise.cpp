@@ -142,6 +142,4 @@ NoiseEstimate estimate_noise_model(std::span<const Run> runs, double gap_limit) 
 
 NoiseEstimate estimate_noise_model(const Run& run, double gap_limit) { return estimate_noise_model(std::span(&run, 1), gap_limit); }
 
-std::array<double, 3> estimate_noise(const Run& run, double gap_limit) { return estimate_noise_model(run, gap_limit).standard_deviation; }
-
 }  // namespace millscope::studies

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,8 +25,8 @@ struct TrajectoryOptions {
   int least_points = 6;     ///< shorter pieces are left out and counted
   /// Standard deviation of each component of a point, m; 0: estimated from the run itself.
   std::array<double, 3> noise{0, 0, 0};
-  /// Correlation of the noise from one point to the next, 0 … 0.9; used where `noise` is given, else estimated too.
-  double noise_correlation = 0;
+  /// Correlation of the noise from one point to the next, 0 … 0.9; absent: estimated, also where `noise` is given.
+  std::optional<double> noise_correlation = std::nullopt;
   std::array<double, 2> axis{0, 0};  ///< subtracted from x and y, m
   double low = 0, high = 0;          ///< only samples with low ≤ z ≤ high are kept (end-face trimming); equal: all
 };
@@ -69,9 +70,6 @@ struct NoiseEstimate {
 NoiseEstimate estimate_noise_model(const Run& run, double gap_limit);
 /// The same from all runs of one tracker together: steadier, for TrajectoryOptions::noise and noise_correlation.
 NoiseEstimate estimate_noise_model(std::span<const Run> runs, double gap_limit);
-
-/// The standard deviations alone; m.
-std::array<double, 3> estimate_noise(const Run& run, double gap_limit);
 
 /// Throws config::UserError when nothing is left, with the reason.
 Trajectory fit_trajectory(const Run& run, const TrajectoryOptions& options);

@@ -39,17 +39,17 @@ TEST_CASE("each coordinate has its own noise") {
   std::mt19937_64 generator(9);
   std::normal_distribution<double> normal;
   for (double& z : run.position[2]) z += 2.4e-3 * normal(generator);
-  const auto found = estimate_noise(run, 0.05);
+  const auto found = estimate_noise_model(run, 0.05).standard_deviation;
   CHECK(found[0] == Approx(0.7e-3).epsilon(0.12));
   CHECK(found[2] == Approx(2.5e-3).epsilon(0.12));
 }
 
 TEST_CASE("outliers and gaps hardly change the noise that is found") {
   Run run = see(Motion(), {.duration = 40});
-  const auto before = estimate_noise(run, 0.05);
+  const auto before = estimate_noise_model(run, 0.05).standard_deviation;
   for (std::size_t i = 100; i < run.size(); i += 500) run.position[0][i] += 0.08;
   for (std::size_t i = run.size() / 2; i < run.size(); ++i) run.time[i] += 60;
-  const auto after = estimate_noise(run, 0.05);
+  const auto after = estimate_noise_model(run, 0.05).standard_deviation;
   for (std::size_t axis = 0; axis < 3; ++axis) CHECK(after[axis] == Approx(before[axis]).epsilon(0.15));
 }
 
@@ -61,16 +61,27 @@ TEST_CASE("a tracer at rest has the noise of its points") {
     run.time.push_back(0.005 * k);
     for (auto& component : run.position) component.push_back(normal(generator));
   }
-  for (const double each : estimate_noise(run, 0.05)) CHECK(each == Approx(0.45e-3).epsilon(0.06));
+  for (const double each : estimate_noise_model(run, 0.05).standard_deviation) CHECK(each == Approx(0.45e-3).epsilon(0.06));
 }
 
 TEST_CASE("too few points have a noise all the same, or none") {
   Run run = see(Motion(), {.duration = 0.05});
   REQUIRE(run.size() > 5);
-  CHECK(estimate_noise(run, 0.05)[0] > 0);
+  CHECK(estimate_noise_model(run, 0.05).standard_deviation[0] > 0);
   run.time.resize(2);
   for (auto& component : run.position) component.resize(2);
-  CHECK(estimate_noise(run, 0.05)[0] == 0);
+  CHECK(estimate_noise_model(run, 0.05).standard_deviation[0] == 0);
+}
+
+TEST_CASE("a noise that is given leaves its correlation to the points") {
+  const Run run = see(Motion(), {.correlation = 0.5, .duration = 20});
+  const double found = fit_trajectory(run, {}).noise_correlation;
+  CHECK(found > 0.3);
+  const Trajectory given = fit_trajectory(run, {.noise = {0.7e-3, 0.7e-3, 0.7e-3}});
+  CHECK(given.noise[0] == 0.7e-3);
+  CHECK(given.noise_correlation == found);
+  CHECK(fit_trajectory(run, {.noise = {0.7e-3, 0.7e-3, 0.7e-3}, .noise_correlation = 0.1}).noise_correlation == 0.1);
+  CHECK(fit_trajectory(run, {.noise_correlation = 0.1}).noise_correlation == 0.1);
 }
 
 TEST_CASE("several runs together give one steadier noise") {

@@ -35,7 +35,7 @@ TEST_CASE("a real rotor recording: the cut last line and the points metres away 
     for (const double x : component) REQUIRE(std::fabs(x) < 0.15);
   }
   // The tracker's u is about 3 mm; the noise is a tenth of it (its README: 0.45 mm for a tracer at rest).
-  const auto noise = estimate_noise(run, recording.gap_limit);
+  const auto noise = estimate_noise_model(run, recording.gap_limit).standard_deviation;
   for (const double each : noise) CHECK((each > 0.1e-3 && each < 0.45e-3));
 }
 
@@ -63,7 +63,7 @@ TEST_CASE("another code's recordings of one mill: five runs, duplicates, outlier
     rows += run.report.rows;
     dropped += run.report.outliers + run.report.outside;
     duplicates += run.report.duplicates;
-    for (const double each : estimate_noise(run, recording.gap_limit)) CHECK((each > 0.5e-3 && each < 1e-3));  // its README: 0.5 to 1 mm
+    for (const double each : estimate_noise_model(run, recording.gap_limit).standard_deviation) CHECK((each > 0.5e-3 && each < 1e-3));  // its README: 0.5 to 1 mm
   }
   CHECK(rows == 32180);
   CHECK(duplicates > 100);

@@ -85,7 +85,7 @@ TEST_CASE("a jump that no bead can do ends a piece") {
 
 TEST_CASE("the values at a time do not depend on the step or on where the clock starts") {
   const Run run = see(Motion(), {.duration = 3});
-  const TrajectoryOptions options{.noise = {0.7e-3, 0.7e-3, 0.7e-3}};
+  const TrajectoryOptions options{.noise = {0.7e-3, 0.7e-3, 0.7e-3}, .noise_correlation = 0};
   TrajectoryOptions fine = options;
   fine.step = 0.5e-3;
   const Trajectory coarse = fit_trajectory(run, options), half = fit_trajectory(run, fine);
@@ -117,8 +117,8 @@ TEST_CASE("lengths scale, and the axis is subtracted") {
   for (auto& component : larger.position) {
     for (double& x : component) x *= 4;
   }
-  const Trajectory a = fit_trajectory(run, {.noise = {1e-3, 1e-3, 1e-3}});
-  const Trajectory b = fit_trajectory(larger, {.noise = {4e-3, 4e-3, 4e-3}, .axis = {0.01, -0.02}});
+  const Trajectory a = fit_trajectory(run, {.noise = {1e-3, 1e-3, 1e-3}, .noise_correlation = 0});
+  const Trajectory b = fit_trajectory(larger, {.noise = {4e-3, 4e-3, 4e-3}, .noise_correlation = 0, .axis = {0.01, -0.02}});
   REQUIRE(a.pieces.size() == b.pieces.size());
   const Piece &p = a.pieces[0], &q = b.pieces[0];
   for (std::size_t k = 0; k < p.size(); ++k) {
