@@ -187,6 +187,43 @@ TEST_CASE("the seed decides: same seed, same beads; another seed, other beads of
   CHECK(count_by_diameter(one) == count_by_diameter(two));
 }
 
+TEST_CASE("beads of many sizes are scattered where the sites of the largest do not suffice") {
+  for (const char* beads :
+       {"{all: {material: glass, distribution: {kind: normal, mean: 5 mm, deviation: 0.9 mm}}}",
+        "{big: {material: glass, diameter: 8 mm, share: 50 %}, small: {material: glass, diameter: 2.5 mm, share: 50 %}}"}) {
+    Setup s = drum("{filling: 35 %}");
+    s.geometry =
+        "{drum: {kind: mill, diameter: 100 mm, length: 40 mm, lifters: 8, lifter_height: 8 mm, lifter_width: 20 mm, material: wall}}";
+    s.domain = "{periodic: {z: [0, 40 mm]}}";
+    s.beads = beads;
+    Assembly a = filled(s), again = filled(s);
+    INFO(beads << " " << a.bead_count);
+    CHECK(least_gap(a) > 0);
+    CHECK(first_contacts(a) == 0);
+    again.system->start(0);
+    Assembly third = filled(s);
+    third.system->start(0);
+    CHECK(third.system->state_hash() == again.system->state_hash());
+    // The lower part is filled first.
+    double highest = -1;
+    for (const auto& x : a.system->particles.position) highest = std::max(highest, x.y);
+    CHECK(highest < 0.045);
+  }
+}
+
+TEST_CASE("few beads in a large vessel take the lowest places of the lattice, whatever its size") {
+  const auto lowest = [](const char* low_x) {
+    Setup s;
+    s.beads = "{fine: {material: glass, diameter: 2 mm}}";
+    s.body_forces = kWithGravity;
+    s.fill = fmt::format("{{count: 20, region: {{low: [{}, 0, 0], high: [0.2, 0.6, 0.2]}}}}", low_x);
+    return filled(s);
+  };
+  const Assembly a = lowest("0");
+  for (const auto& x : a.system->particles.position) CHECK(x.y < 2e-3);
+  CHECK_THROWS_WITH(lowest("-1e5"), Catch::Contains("places for beads") && Catch::Contains("fill.region"));
+}
+
 TEST_CASE("what does not fit is refused with both numbers") {
   const auto refusal = [](const Setup& s) -> std::string {
     try {

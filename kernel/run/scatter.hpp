@@ -1,0 +1,20 @@
+// Beads of many sizes put at random, the largest first: random sequential addition.
+#pragma once
+
+#include <vector>
+
+#include "kernel/run/random.hpp"
+#include "kernel/run/space.hpp"
+
+namespace millscope::run {
+
+struct BeadType {
+  std::size_t bead_class;
+  double diameter;
+};
+
+/// One centre per bead, none touching another or a wall; the lower part of the region is filled first. Throws UserError when they do not
+/// fit (random addition ends near a third of the space for equal beads, later for unequal ones).
+std::vector<Point> scattered(const Assembly& a, const Region& region, const std::vector<BeadType>& types, Random& random);
+
+}  // namespace millscope::run

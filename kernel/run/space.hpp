@@ -1,0 +1,27 @@
+// The space that beads may fill: its bounds, and which spheres touch a wall or lie on its far side.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "kernel/run/assembly.hpp"
+
+namespace millscope::run {
+
+using Point = std::array<double, 3>;
+
+struct Region {
+  config::Box box;
+  bool cylinder = false;
+  double radius = 0;
+  Point axis_point{};
+};
+
+/// Where beads may be put: what the user says, else the intersection of what the geometries call their inside.
+Region region_of(const Assembly& a);
+
+/// 1 for each centre whose sphere of that radius touches a wall, or that a wall separates from the axis of its own interior.
+std::vector<std::uint8_t> blocked(const Assembly& a, const std::vector<Point>& centres, double radius);
+
+}  // namespace millscope::run
