@@ -126,7 +126,6 @@ void FramesSource::know_beads() {
 }
 
 void FramesSource::want(std::uint64_t fields) {
-  wanted_ = fields;
   if ((fields & kHasSpin) == 0) context_.has &= ~static_cast<std::uint64_t>(kHasSpin);
 }
 

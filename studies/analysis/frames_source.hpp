@@ -46,7 +46,6 @@ class FramesSource : public FrameSource {
   std::vector<double> wall_work_;    ///< of all bodies together, of each frame of the file, J; empty: unknown
   std::vector<const char*> channels_, pairs_;
   std::vector<Chunk> chunks_;
-  std::uint64_t wanted_ = ~std::uint64_t{0};
 };
 
 }  // namespace millscope::studies

@@ -29,7 +29,7 @@ struct AnalyzerChoice {
 
 /// The analyzers of `settings` (its map `analyzers`), or, where it has none, one of every plugin with its defaults. `only`: names of
 /// instances or plugins to take; empty: all. What was asked for by name and cannot work is a UserError; what was not is left out with
-/// the reason. `overridden`: names that only overrides mention do not make a choice.
+/// the reason. `chosen_in_settings`: the settings' own file makes the choice; names that only overrides mention do not.
 AnalyzerChoice choose_analyzers(const config::Node& settings, bool chosen_in_settings, const std::vector<std::string>& only,
                                 const host::Registry& registry, const AnalyzerContext& context);
 
