@@ -94,8 +94,9 @@ TEST_CASE("a turning floor drives a sphere, a sinking one leaves it behind, a ri
   Setup s;
   s.pairs = "restitution: 0.5, static_friction: 0.5";
   s.body_forces = kWithGravity;
-  const auto after = [&s](const char* motion, double time) {
-    s.geometry = std::string("{floor: {kind: plane, point: [0, 0, 0], normal: [0, 1, 0], material: wall, motion: ") + motion + "}}";
+  std::string floor = "kind: plane, point: [0, 0, 0], normal: [0, 1, 0]";
+  const auto after = [&s, &floor](const char* motion, double time) {
+    s.geometry = "{floor: {" + floor + ", material: wall, motion: " + motion + "}}";
     Assembly a = assembled(s);
     Bead b;
     b.position = {0.05, 0.9999 * kRadius, 0};
@@ -121,7 +122,8 @@ TEST_CASE("a turning floor drives a sphere, a sinking one leaves it behind, a ri
     CHECK(position(a, 0)[1] == Approx(kRadius - 0.5 * kGravity * 0.0025).epsilon(0.01));
   }
   {
-    // Turned about x by a paddle's motion the plane sweeps up beads far from the axis.
+    // A floor with an end may turn about any axis: like a paddle it sweeps up beads far from it.
+    floor = "kind: box, low: [-0.2, 0, -0.2], high: [0.2, 0.4, 0.2]";
     const Assembly a = after("{rotation: {speed: 1 rad/s, axis: [0, 0, 1], point: [0, 0, 0]}}", 0.5);
     const double angle = 0.5, height = -std::sin(angle) * position(a, 0)[0] + std::cos(angle) * position(a, 0)[1];
     CHECK(height == Approx(kRadius).epsilon(0.01));
