@@ -69,7 +69,7 @@ struct SumOfSquares {
   double value = 0;
   int df = 0;
   double mean_square() const { return df > 0 ? value / df : kUndefined; }
-  double F = kUndefined, p = kUndefined;
+  double F = kUndefined, p = kUndefined;       // NOLINT(readability-identifier-naming): F is its name
   double confidence() const { return 1 - p; }  ///< the level at which the line is significant
 };
 
@@ -121,9 +121,9 @@ struct Coefficient {
   std::string name;          ///< "1", "CFPP", "CFPP^2", "CFPP*CRPG"
   std::vector<int> factors;  ///< {}, {0}, {0, 0}, {0, 1}
   double value = 0, standard_error = kUndefined;
-  double partial = kUndefined;     ///< sum of squares that the residual grows by without the term
-  double sequential = kUndefined;  ///< sum of squares that the term adds to those before it
-  double F = kUndefined, p = kUndefined;
+  double partial = kUndefined;            ///< sum of squares that the residual grows by without the term
+  double sequential = kUndefined;         ///< sum of squares that the term adds to those before it
+  double F = kUndefined, p = kUndefined;  // NOLINT(readability-identifier-naming): F is its name
 };
 
 enum class StationaryKind { minimum, maximum, saddle, ridge };
