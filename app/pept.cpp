@@ -6,6 +6,7 @@
 #include "app/commands.hpp"
 #include "kernel/config/document.hpp"
 #include "kernel/config/error.hpp"
+#include "kernel/output/file.hpp"
 #include "studies/inspect/report.hpp"
 
 namespace millscope::app {
@@ -27,6 +28,26 @@ int inspect(const Arguments& arguments) {
   return kDone;
 }
 
+int convert(const Arguments& arguments) {
+  Options options(
+      "pept convert RECORDING -o tracks.h5",
+      "Writes the points of a recording that are used, in the layout of a simulation's tracks: a group per run, in the frame of the "
+      "file after 'axes'. What that layout has no place for is left: spreads, events, the condition.",
+      "millscope pept convert run1.a -o run1.h5");
+  options.positional("RECORDING", "a recording (.a, .csv, .tsv, .txt, .gz of one) or a recording.yaml with several");
+  options.add()("output,o", boost::program_options::value<std::string>()->value_name("tracks.h5"), "file to write");
+  options.add()("force", "overwrite the file");
+  if (!options.parse(arguments)) return kDone;
+  const std::string file = options.text("output");
+  if (!options.has("force")) output::refuse_existing(file);
+  const studies::Recording recording = studies::read_recording(options.text("RECORDING"));
+  studies::write_tracks(recording, file);
+  std::size_t points = 0;
+  for (const studies::Run& run : recording.runs) points += run.size();
+  fmt::print("wrote {} ({} points of {} run{})\n", file, points, recording.runs.size(), recording.runs.size() == 1 ? "" : "s");
+  return kDone;
+}
+
 struct Action {
   const char* name;
   const char* what;
@@ -35,6 +56,7 @@ struct Action {
 
 constexpr Action kActions[] = {
     {"inspect", "how good a recording is and what it can support", inspect},
+    {"convert", "the points of a recording in the layout of a simulation's tracks", convert},
     {"camera", "estimate the camera of a recording", pept_camera},
     {"synthesize", "what a camera would have recorded of simulated beads", pept_synthesize},
 };

@@ -41,6 +41,20 @@ class PeptInspect(unittest.TestCase):
         self.assertIn("%.2f rpm" % (speed * 30 / math.pi), text.stdout)
         self.assertIn("What it supports", text.stdout)
 
+    def test_convert_writes_tracks_that_are_read_back(self):
+        out = Path(self.folder.name) / "rotor.h5"
+        done = millscope("pept", "convert", self.rotor, "-o", out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("(6000 points of 1 run)", done.stdout)
+        again = millscope("pept", "convert", self.rotor, "-o", out)
+        self.assertEqual(again.returncode, 2)
+        self.assertIn("exists already", again.stderr)
+        self.assertEqual(millscope("pept", "convert", self.rotor, "-o", out, "--force").returncode, 0)
+        back = json.loads(millscope("pept", "inspect", out, "--json").stdout)
+        self.assertEqual(back["recording"]["points"], 6000)
+        self.assertIn("tracks.h5", back["formats"][0])
+        self.assertAlmostEqual(back["rotor"]["radius_m"]["value"], 0.025, delta=1e-4)
+
     def test_help(self):
         for words in (["pept", "--help"], ["pept", "inspect", "--help"]):
             shown = millscope(*words)
