@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
 #include "kernel/output/file.hpp"
@@ -75,6 +77,27 @@ std::optional<double> seconds(const Options& options, const char* name) {
   return value;
 }
 
+/// Removes the tables and pictures of the earlier results in OUT, which these may lack: files named after an analyzer of theirs
+/// (ANALYZER.….csv, .svg, .png) and numbers.csv. Anything else in OUT stays.
+void remove_earlier(const fs::path& output) {
+  std::ifstream in(output / "results.json");
+  const auto earlier = nlohmann::json::parse(in, nullptr, false);
+  if (!earlier.is_object() || !earlier.contains("provenance") || !earlier["provenance"].contains("analyzers")) return;
+  std::error_code ignored;
+  fs::remove(output / "tables" / "numbers.csv", ignored);
+  for (const char* const folder : {"tables", "pictures"}) {
+    std::vector<fs::path> ours;
+    for (const auto& entry : fs::directory_iterator(output / folder, ignored)) {
+      const std::string ending = entry.path().extension().string(), name = entry.path().filename().string();
+      const bool written = std::string(folder) == "tables" ? ending == ".csv" : ending == ".svg" || ending == ".png";
+      for (const auto& [analyzer, options] : earlier["provenance"]["analyzers"].items()) {
+        if (written && name.starts_with(analyzer + ".")) ours.push_back(entry.path());
+      }
+    }
+    for (const fs::path& file : ours) fs::remove(file, ignored);
+  }
+}
+
 /// Makes OUT and refuses what is there, before the work begins.
 void prepare(const fs::path& output, bool force) {
   std::error_code ignored;
@@ -82,6 +105,7 @@ void prepare(const fs::path& output, bool force) {
     throw UserError(fmt::format("{}: is a file, a directory is needed; choose another -o", output.string()));
   }
   if (!force) output::refuse_existing(output / "results.h5");
+  remove_earlier(output);
   fs::create_directories(output / "tables");
 }
 
@@ -101,9 +125,13 @@ std::vector<std::string> draw(const studies::ResultSet& results, const fs::path&
 
 void print_report(const studies::ResultSet& results, const fs::path& output, bool all) {
   const studies::ResultMeta& meta = results.meta;
-  fmt::print("{}\n{} block{} of {:.3g} s, {} resamples; intervals hold with 90 %\n\n", meta.description, meta.blocks.size(),
+  fmt::print("{}\n{} block{} of {:.3g} s, {} resamples; intervals hold with 90 %\n", meta.description, meta.blocks.size(),
              meta.blocks.size() == 1 ? "" : "s", meta.block_duration, meta.draws);
-  fmt::print("{}\n", studies::number_table(results, all ? results.arrays.size() : kShownNumbers));
+  // One figure for "how many": of x, which the power goes with.
+  if (!meta.times.empty() && meta.times.front().independent > 0)
+    fmt::print("N_eff {:.0f}: the mean x rests on so many independent values, (sigma/sem)^2 over the blocks\n",
+               meta.times.front().independent);
+  fmt::print("\n{}\n", studies::number_table(results, all ? results.arrays.size() : kShownNumbers));
   for (const std::string& note : meta.notes) fmt::print("note: {}\n", note);
   for (const std::string& reason : meta.left_out) fmt::print("left out: {}\n", reason);
   fmt::print("joint covariance of {} values, rank {}\n", results.covariance_entries.size(), results.covariance_rank);

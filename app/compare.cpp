@@ -1,7 +1,9 @@
 // compare: what differs between two results of `analyze`.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "app/commands.hpp"
 #include "kernel/output/file.hpp"
@@ -15,7 +17,7 @@ namespace po = boost::program_options;
 namespace fs = std::filesystem;
 using config::UserError;
 
-constexpr std::size_t kRows = 20;
+constexpr std::size_t kRows = 20, kGiven = 6;
 
 void print_sources(const studies::Comparison& c) {
   fmt::print("A: {}\nB: {}\n", c.a.meta.description, c.b.meta.description);
@@ -23,14 +25,30 @@ void print_sources(const studies::Comparison& c) {
 }
 
 void print_rest(const studies::Comparison& c) {
-  for (const std::string& given : c.given) fmt::print("given quantity that differs: {}\n", given);
+  for (std::size_t i = 0; i < std::min(kGiven, c.given.size()); ++i) fmt::print("given quantity that differs: {}\n", c.given[i]);
+  if (c.given.size() > kGiven) fmt::print("… and {} more given quantities (comparison.json lists all)\n", c.given.size() - kGiven);
   if (c.not_judged.empty()) return;
   fmt::print("not compared: {}", c.not_judged.front());
   if (c.not_judged.size() > 1) fmt::print(" … and {} more (comparison.json lists all)", c.not_judged.size() - 1);
   fmt::print("\n");
 }
 
+/// Removes the pictures of the earlier comparison in OUT, which this one may lack; anything else stays.
+void remove_earlier(const fs::path& output) {
+  std::ifstream in(output / "comparison.json");
+  const auto earlier = nlohmann::json::parse(in, nullptr, false);
+  if (!earlier.is_object() || !earlier.contains("observables") || !earlier["observables"].is_array()) return;
+  std::error_code ignored;
+  for (const auto& o : earlier["observables"]) {
+    if (!o.is_object() || !o.contains("name") || !o["name"].is_string()) continue;
+    const std::string name = o["name"];
+    if (name.find('/') != std::string::npos) continue;
+    for (const char* ending : {".svg", ".png"}) fs::remove(output / "pictures" / (name + ending), ignored);
+  }
+}
+
 void write_output(const studies::Comparison& c, const fs::path& output, const host::Registry& registry, bool quiet) {
+  remove_earlier(output);
   studies::write_comparison(c, output);
   std::string lacking;
   const studies::MillOutline mill = studies::outline_of(c.a, registry, lacking);

@@ -176,7 +176,7 @@ class ChargeFeatures {
   void add_centre(Results& results, const ChargeFields& fields, const std::optional<Centre>& centre) const {
     const double x = centre ? centre->x : kNaN, y = centre ? centre->y : kNaN;
     results.add("centre_of_circulation_x", "m", x,
-                "Where the mean flow stands still and the charge turns about it; NaN: no such place inside the charge.");
+                "Where the mean flow stands still and the charge turns about it; NaN: no such place inside the charge.", kOdd);
     results.add("centre_of_circulation_y", "m", y, "Its height.");
     results.add("centre_of_circulation_radius", "m", std::hypot(x, y), "Its distance from the mill's axis.");
     results.add("centre_of_circulation_angle", "deg", kDegrees * shape_.angle(x, y),
@@ -216,13 +216,13 @@ class ChargeFeatures {
     results.add("head_angle", "deg", kDegrees * shape_.angle(ratio(x_above, above), head), "Angle of that place, at the mean x above it.");
 
     const double x = ratio(fields.total(kTotalX), time), y = ratio(fields.total(kTotalY), time);
-    results.add("centre_of_mass_x", "m", x, "Mean x of the charge; in a recording the tracer's.");
+    results.add("centre_of_mass_x", "m", x, "Mean x of the charge; in a recording the tracer's.", kOdd);
     results.add("centre_of_mass_y", "m", y, "Mean height.");
     results.add("centre_of_mass_angle", "deg", kDegrees * shape_.angle(x, y),
                 "Its angle from 6 o'clock, also called the power angle: power = M g (distance from the axis) sin(angle) |Omega|.");
     results.add("torque_arm", "m", shape_.sense * x, "Mean x on the rising side: power = M g (torque arm) |Omega|.");
     results.add("outside_fraction", "1", ratio(fields.total(kTotalOutside), fields.total(kTotalTime)),
-                "Fraction of the time outside the maps, beyond 1.05 radii of the shell; left out of everything else.");
+                "Fraction of the time outside the maps, beyond 1.05 radii of the shell; left out of everything else.", kShare);
   }
 
   void add_flight_angles(Results& results, const ChargeFields& fields) const {
@@ -230,7 +230,8 @@ class ChargeFeatures {
     const std::vector<double> launches = counts(kLaunches), landings = counts(kLandings);
     double flights = 0;
     for (const double n : landings) flights += n;
-    results.add("flights_landed", "1", flights, "Free flights of the cataract (they fall at least half a radius) whose end was seen.");
+    results.add("flights_landed", "1", flights, "Free flights of the cataract (they fall at least half a radius) whose end was seen.",
+                kBookkeeping | kNotNegative);
     results.add("launch_angle", "deg", kDegrees * quantile(launches, shape_.angles, 0.5), "Median angle at which free flights begin.");
     results.add("impact_toe", "deg", kDegrees * quantile(landings, shape_.angles, 0.5),
                 "Median angle at which the cataract's free flights end; NaN without any.");
@@ -242,7 +243,7 @@ class ChargeFeatures {
     const std::vector<RegionSums> regions = sum_regions(fields, labels);
     const double all = fields.total(kTotalTime) - fields.total(kTotalOutside);
     const auto n = static_cast<std::uint64_t>(shape_.cells.count);
-    results.add("x_edges", "m", shape_.cells.edges().data(), {n + 1}, "Edges of the map's cells along x.");
+    results.add("x_edges", "m", shape_.cells.edges().data(), {n + 1}, "Edges of the map's cells along x.", {}, kAlongX);
     results.add("y_edges", "m", shape_.cells.edges().data(), {n + 1}, "Edges of the map's cells along y.");
     const std::vector<double> numbers(labels.begin(), labels.end());
     results.add("region", "1", numbers.data(), {n, n}, "0 nothing, 1 en masse, 2 cascading layer, 3 cataracting, 4 eye, 5 lifter pockets.",
@@ -254,7 +255,7 @@ class ChargeFeatures {
     }
     if (flights_known_)
       results.add("flight_fraction", "1", flight.data(), {n, n}, "Fraction of a cell's time that beads are in free flight.",
-                  {"y_edges", "x_edges"});
+                  {"y_edges", "x_edges"}, kShare);
     add_share(results, "en_masse", regions[kEnMasse].time, regions[kEnMasse].speed, all);
     add_share(results, "cascading", regions[kCascading].time, regions[kCascading].speed, all);
     if (flights_known_) add_share(results, "cataracting", regions[kCataracting].time, regions[kCataracting].speed, all);
@@ -267,7 +268,7 @@ class ChargeFeatures {
   }
 
   static void add_share(Results& results, const std::string& region, double time, double speed, double all) {
-    results.add((region + "_share").c_str(), "1", ratio(time, all), "Fraction of the charge's time in this region.");
+    results.add((region + "_share").c_str(), "1", ratio(time, all), "Fraction of the charge's time in this region.", kShare);
     results.add((region + "_speed").c_str(), "m/s", ratio(speed, time), "Mean speed in this region.");
   }
 

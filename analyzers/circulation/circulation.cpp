@@ -132,25 +132,27 @@ class Circulation {
     results.add("circulations_per_turn", "1", rate * 2 * kPi / omega_, "Circulations per turn of the mill.");
     results.add("mean_circulation_time", "s", rate > 0 ? 1 / rate : kNaN, "One over the rate; unbiased by gaps and the length of blocks.");
     results.add("circulation_centre_x", "m", ratio(totals[kCentreX], totals[kFollowed]),
-                "Mean over the blocks of the centre that was used.");
+                "Mean over the blocks of the centre that was used.", kOdd);
     results.add("circulation_centre_y", "m", ratio(totals[kCentreY], totals[kFollowed]), "Its height.");
     results.add("followed_fraction", "1", ratio(totals[kFollowed], totals[kTime]),
-                "Fraction of the followed beads' time in blocks that have a centre of circulation; the rest is left out of circulations.");
+                "Fraction of the followed beads' time in blocks that have a centre of circulation; the rest is left out of circulations.",
+                kBookkeeping | kShare);
   }
 
   void add_times(Results& results, const double* const* sums) const {
     const auto bins = static_cast<std::size_t>(times_.count);
     double completed = 0, unfinished = 0;
     for (std::size_t i = 0; i <= bins; ++i) completed += sums[kCompleted][i], unfinished += sums[kUnfinished][i];
-    results.add("circulations_completed", "1", completed, "Circulations seen from passage to passage.");
+    results.add("circulations_completed", "1", completed, "Circulations seen from passage to passage.", kBookkeeping | kNotNegative);
     results.add("unfinished_fraction", "1", ratio(unfinished, completed + unfinished),
-                "Circulations that a gap or the end of a block cut, or longer than longest_time, of all that were seen to begin.");
+                "Circulations that a gap or the end of a block cut, or longer than longest_time, of all that were seen to begin.",
+                kBookkeeping | kShare);
     const std::vector<double> share = survival(sums[kCompleted], sums[kUnfinished], bins);
     std::vector<double> density(bins);
     for (std::size_t i = 0; i < bins; ++i) density[i] = (share[i] - share[i + 1]) / times_.width();
     results.add("circulation_time_edges", "s", times_.edges().data(), {bins + 1}, "Edges of the bins of circulation time.");
     results.add("circulation_time_survival", "1", share.data(), {bins + 1}, "Share of circulations that last longer than each edge.",
-                {"circulation_time_edges"});
+                {"circulation_time_edges"}, kShare);
     results.add("circulation_time_density", "1/s", density.data(), {bins},
                 "Density of circulation times, corrected for the unfinished ones.", {"circulation_time_edges"});
     results.add("circulation_time_median", "s", survival_quantile(share, times_, 0.5), "Half of the circulations are shorter.");
@@ -187,11 +189,13 @@ class Circulation {
       results.add(
           (name + "_correlation_time").c_str(), "s", tau,
           ("Integral correlation time of a bead's " + name + " over the longest lag seen; NaN where a sixth of that is shorter.").c_str());
-      results.add((name + "_independent_samples").c_str(), "1", time / (2 * tau),
-                  ("Independent samples of " + name + " in the followed beads' time, T/(2 tau).").c_str());
+      results.add((name + "_independent_samples").c_str(), "1", tau > 0 ? time / (2 * tau) : kNaN,
+                  ("Independent samples of " + name + " in the followed beads' time, T/(2 tau); NaN where tau may be 0.").c_str(),
+                  kBookkeeping | kNotNegative);
     }
     results.add("correlated_time", "s", time,
-                "Time of beads that went into spread and correlations; frames farther apart than step do not.");
+                "Time of beads that went into spread and correlations; frames farther apart than step do not.",
+                kBookkeeping | kNotNegative);
   }
 
   double radius_, sense_, omega_, period_, length_;

@@ -103,7 +103,7 @@ class Distributions {
     return sum;
   }
 
-  static void add_distribution(Results& results, const Axis& axis, const double* slots) {
+  void add_distribution(Results& results, const Axis& axis, const double* slots) const {
     const auto count = static_cast<std::size_t>(axis.bins.count);
     const double all = total(slots, axis.bins);
     std::vector<double> percent(count), cumulative(count + 1);
@@ -115,12 +115,14 @@ class Distributions {
       cumulative[i + 1] = 100 * ratio(below, all);
     }
     const std::string what = axis.what;
-    results.add(axis.edges, axis.unit, axis.bins.edges().data(), {count + 1}, ("Edges of the bins " + what + ".").c_str());
-    results.add(axis.percent, "%", percent.data(), {count}, ("Percent of the beads' time per bin " + what + ".").c_str(), {axis.edges});
+    results.add(axis.edges, axis.unit, axis.bins.edges().data(), {count + 1}, ("Edges of the bins " + what + ".").c_str(), {},
+                &axis == &axes_[kX] ? kAlongX : 0U);
+    results.add(axis.percent, "%", percent.data(), {count}, ("Percent of the beads' time per bin " + what + ".").c_str(), {axis.edges},
+                kShare);
     results.add(axis.cumulative, "%", cumulative.data(), {count + 1}, ("Percent of the beads' time below each edge, " + what + ".").c_str(),
-                {axis.edges});
+                {axis.edges}, kShare | kCumulative);
     results.add(axis.outside, "%", 100 * ratio(slots[0] + slots[count + 1], all),
-                ("Percent of the beads' time outside the bins " + what + ".").c_str());
+                ("Percent of the beads' time outside the bins " + what + ".").c_str(), kShare);
   }
 
   void add_radial_density(Results& results, const double* slots) const {

@@ -145,30 +145,34 @@ class Ergodicity {
   Fluctuation fluctuation(const double* const* sums, std::int64_t q) const {
     const double* moment = sums[kMoments] + 3 * q;
     const double mean = ratio(moment[1], moment[0]), variance = ratio(moment[2], moment[0]) - mean * mean;
-    return find_fluctuation({sums[kWindows], sums[kWindows] + 1 + q, windows_, beads_, kQuantities + 1}, variance);
+    return find_fluctuation({sums[kWindows], sums[kWindows] + 1 + q, windows_, beads_, kQuantities + 1}, variance,
+                            2 * kPi / std::fabs(context_.omega));
   }
 
   static void add_verdict(Results& results, double verdict, const std::vector<double>& elapsed) {
     results.add(
         "verdict", "1", verdict,
-        "1: ergodic within the data; -1: not, beads keep what sets them apart; 0: the data cannot tell. The least of x, speed, depth.");
+        "1: ergodic within the data; -1: not, beads keep what sets them apart; 0: the data cannot tell. The least of x, speed, depth.",
+        kBookkeeping);
     results.add("elapsed", "s", elapsed.data(), {elapsed.size()}, "Time over which the beads' averages are taken.");
   }
 
   static void add_fluctuation(Results& results, const std::string& name, const char* unit, const Fluctuation& f) {
-    const auto add = [&](const char* what, const char* of_what, double value, const char* doc) {
-      results.add((name + what).c_str(), of_what, value, doc);
+    const auto add = [&](const char* what, const char* of_what, double value, const char* doc, std::uint32_t traits) {
+      results.add((name + what).c_str(), of_what, value, doc, traits);
     };
     results.add((name + "_fluctuation").c_str(), unit, f.metric.data(), {f.metric.size()},
-                ("Variance between beads of their time averages of " + name + " (Thirumalai & Mountain 1993).").c_str(), {"elapsed"});
-    add("_verdict", "1", f.verdict, "1: ergodic within the data, -1: not, 0: cannot tell.");
-    add("_exponent", "1", f.exponent, "Decay of the fluctuation: 1 as 1/t, 0 level.");
+                ("Variance between beads of their time averages of " + name + " (Thirumalai & Mountain 1993).").c_str(), {"elapsed"},
+                kSpread | kNotNegative);
+    add("_verdict", "1", f.verdict, "1: ergodic within the data, -1: not, 0: cannot tell.", kBookkeeping);
+    add("_exponent", "1", f.exponent, "Decay of the fluctuation: 1 as 1/t, 0 level.", kSpread | kBookkeeping);
     add("_persistent", "1", f.persistent,
-        "Share of the last fluctuation that beads had from the first third to the last third of the time.");
-    add("_persistent_error", "1", f.persistent_error, "Its standard error if nothing persists.");
-    add("_diffusion", "1/s", f.diffusion, "D of fluctuation(0)/fluctuation(t) = D t; 1/(2 D) is the correlation time.");
+        "Share of the last fluctuation that beads had from the first third to the last third of the time.", kSpread | kBookkeeping);
+    add("_persistent_error", "1", f.persistent_error, "Its standard error if nothing persists.", kSpread | kBookkeeping | kNotNegative);
+    add("_diffusion", "1/s", f.diffusion, "D of fluctuation(0)/fluctuation(t) = D t; 1/(2 D) is the correlation time.", kSpread);
     add("_distance", "1", f.distance,
-        "Distance of single beads to all, in units of a bead's own noise, rms over beads; about 1: their noise explains it.");
+        "Distance of single beads to all, in units of a bead's own noise, rms over beads; about 1: their noise explains it.",
+        kSpread | kBookkeeping);
   }
 
   void add_power(Results& results, const double* const* sums, const Fluctuation& x, bool lasting) const {
@@ -178,16 +182,17 @@ class Ergodicity {
     const double between = std::sqrt(covariance(means, means));
     const double seconds = x.elapsed.back();
     results.add("single_power_error", "1", between / arm,
-                "Standard deviation of the power from single beads over the analysed time, of the power.");
+                "Standard deviation of the power from single beads over the analysed time, of the power.",
+                kSpread | kBookkeeping | kNotNegative);
     // The 1/t law does not hold where beads keep what sets them apart.
     const double rate = lasting ? kNaN : x.rate;
     results.add("time_for_power_1_percent", "s", rate / std::pow(0.01 * arm, 2),
-                "Time to follow one bead for a power within 1 % (standard error); NaN when not ergodic.");
-    results.add("time_for_power_2_percent", "s", rate / std::pow(0.02 * arm, 2), "The same for 2 %.");
-    results.add("time_for_power_5_percent", "s", rate / std::pow(0.05 * arm, 2), "The same for 5 %.");
+                "Time to follow one bead for a power within 1 % (standard error); NaN when not ergodic.", kSpread);
+    results.add("time_for_power_2_percent", "s", rate / std::pow(0.02 * arm, 2), "The same for 2 %.", kSpread);
+    results.add("time_for_power_5_percent", "s", rate / std::pow(0.05 * arm, 2), "The same for 5 %.", kSpread);
     results.add("power_error_in_an_hour", "1", std::sqrt(rate / 3600) / arm,
-                "Standard error of the power from one bead followed for an hour.");
-    results.add("time_per_bead", "s", seconds, "Mean time over which each bead was followed.");
+                "Standard error of the power from one bead followed for an hour.", kSpread);
+    results.add("time_per_bead", "s", seconds, "Mean time over which each bead was followed.", kBookkeeping | kNotNegative);
     const double per_arm = context_.charge_mass * context_.gravity * std::fabs(context_.omega);
     if (!(per_arm > 0)) return;
     std::vector<double> single(static_cast<std::size_t>(singles_), kNaN);
@@ -204,10 +209,12 @@ class Ergodicity {
     std::vector<double> all(sums[kMap], sums[kMap] + size), single(sums[kSingleMaps], sums[kSingleMaps] + size * s);
     normalise(all.data(), size);
     for (std::size_t i = 0; i < s; ++i) normalise(single.data() + i * size, size);
-    results.add("x_edges", "m", cells_.edges().data(), {side + 1}, "Edges of the cells along x.");
+    results.add("x_edges", "m", cells_.edges().data(), {side + 1}, "Edges of the cells along x.", {}, kAlongX);
     results.add("y_edges", "m", cells_.edges().data(), {side + 1}, "Edges of the cells along y.");
-    results.add("occupancy_all", "1", all.data(), {side, side}, "Fraction of the time of all beads in each cell.", {"y_edges", "x_edges"});
-    results.add("occupancy_single", "1", single.data(), {s, side, side}, "The same of each single bead.", {nullptr, "y_edges", "x_edges"});
+    results.add("occupancy_all", "1", all.data(), {side, side}, "Fraction of the time of all beads in each cell.", {"y_edges", "x_edges"},
+                kShare);
+    results.add("occupancy_single", "1", single.data(), {s, side, side}, "The same of each single bead.", {nullptr, "y_edges", "x_edges"},
+                kShare);
     for (const bool along_x : {true, false}) {
       const std::string name = along_x ? "x" : "y", edges = name + "_edges";
       const std::vector<double> reference = marginal(all.data(), along_x);
@@ -220,10 +227,11 @@ class Ergodicity {
         alone.insert(alone.end(), one.begin(), one.end());
       }
       results.add((name + "_percent_all").c_str(), "%", reference.data(), {side},
-                  ("Percent of all beads' time along " + name + ".").c_str(), {edges.c_str()});
+                  ("Percent of all beads' time along " + name + ".").c_str(), {edges.c_str()}, kShare);
       results.add((name + "_percent_single").c_str(), "%", alone.data(), {s, side}, "The same of each single bead.",
-                  {nullptr, edges.c_str()});
-      results.add((name + "_percent_difference").c_str(), "%", off.data(), {s}, "Rms over the bins of the difference of the two.");
+                  {nullptr, edges.c_str()}, kShare);
+      results.add((name + "_percent_difference").c_str(), "%", off.data(), {s}, "Rms over the bins of the difference of the two.", {},
+                  kSpread | kBookkeeping | kNotNegative);
     }
   }
 
@@ -278,11 +286,12 @@ class Ergodicity {
       weighted += cell[kVisitTime] / needed[c];
       weight += cell[kVisitTime];
     }
-    results.add("revisit_inflation", "1", factor, "How much more coarse cells differ between beads than chance visits would make them.");
+    results.add("revisit_inflation", "1", factor, "How much more coarse cells differ between beads than chance visits would make them.",
+                kSpread);
     results.add("cell_time_10_percent", "s", needed.data(), {n, n}, "Time to follow one bead until a cell's occupancy is within 10 %.",
-                {"y_edges", "x_edges"});
+                {"y_edges", "x_edges"}, kSpread);
     results.add("typical_cell_time_10_percent", "s", ratio(weight, weighted),
-                "The same for a typical cell: harmonic mean, weighted by occupancy.");
+                "The same for a typical cell: harmonic mean, weighted by occupancy.", kSpread);
   }
 
   AnalyzerContext context_;

@@ -10,7 +10,12 @@
 //   persistent  cov_j(f̄_j over the first third, f̄_j over the last third)/Ω(T)                     0: forgotten, 1: kept
 //
 // Ergodic within the data: nothing persists beyond twice its error, and the exponent is at least 0.7. Not ergodic: most persists beyond
-// twice its error and the exponent is at most 0.1. Anything else, and fewer than eight beads, cannot tell: the data are too short.
+// twice its error and the exponent is at most 0.1. Anything else, and fewer than eight beads, cannot tell: the data are too short. So are
+// less than five turns of the mill, and less than twenty times
+//
+//   memory      τ = Δ Σ_l ρ_l up to the first zero, ρ_l: correlation at lag l Δ of what is left of f when each bead's own mean is taken out
+//
+// however level Ω_f is: within its memory a bead that mixes looks like one that never will.
 #pragma once
 
 #include <cmath>
@@ -61,6 +66,7 @@ struct Fluctuation {
   double exponent = kNaN, persistent = kNaN, persistent_error = kNaN;
   double rate = kNaN;       ///< Ω t, mean over the last half: variance of a time average over t is rate/t
   double diffusion = kNaN;  ///< D, 1/s
+  double memory = 0;        ///< s, within the beads; 0: shorter than a window
   double distance = kNaN;   ///< rms over beads of |f̄_j − f̄| over its own standard error; 1: nothing but its noise
   double verdict = 0;       ///< 1 ergodic within the data, −1 not, 0 cannot tell
 };
@@ -99,6 +105,36 @@ inline void add_decay(double instant_variance, Fluctuation& out) {
   out.diffusion = ratio(inverse, late);
 }
 
+/// Memory of the windows' means about each bead's own mean, s.
+inline double memory_within(const WindowSums& sums, double window) {
+  const std::vector<double> means = bead_means(sums, 0, sums.windows);
+  const auto beads = static_cast<std::size_t>(sums.beads), windows = static_cast<std::size_t>(sums.windows);
+  std::vector<double> deviation(windows * beads);
+  for (std::size_t i = 0; i < deviation.size(); ++i) {
+    const auto w = static_cast<std::int64_t>(i / beads), bead = static_cast<std::int64_t>(i % beads);
+    deviation[i] = ratio(sums.v(w, bead), sums.t(w, bead)) - means[i % beads];
+  }
+  double variance = 0, memory = 0, size = 0;
+  for (std::size_t lag = 0; lag < windows; ++lag) {
+    double product = 0, pairs = 0;
+    for (std::size_t i = 0; i + lag * beads < deviation.size(); ++i) {
+      const double both = deviation[i] * deviation[i + lag * beads];
+      if (!std::isnan(both)) product += both, pairs += 1;
+    }
+    const double covariance = ratio(product, pairs);
+    if (lag == 0) {
+      variance = covariance;
+      for (const double m : means) size = std::fmax(size, std::isnan(m) ? 0 : m * m);
+      if (!(variance > 1e-12 * size)) return 0;  // each bead stands still in f
+    } else if (!(covariance > 0)) {
+      break;
+    } else {
+      memory += window * covariance / variance;
+    }
+  }
+  return memory;
+}
+
 /// The beads' distances in units of their own noise, from eight stretches of each bead's time (Student's t with 7 degrees of freedom).
 inline double distance_to_ensemble(const WindowSums& sums) {
   constexpr std::int64_t kStretches = 8;
@@ -129,9 +165,9 @@ inline double distance_to_ensemble(const WindowSums& sums) {
 
 }  // namespace detail
 
-/// `instant_variance` of f over beads and times.
-inline Fluctuation find_fluctuation(const WindowSums& sums, double instant_variance) {
-  constexpr double kDecays = 0.7, kLevel = 0.1, kKept = 0.5, kLeastBeads = 8, kLeastWindows = 8;
+/// `instant_variance` of f over beads and times; `turn`: time of one turn of the mill, s.
+inline Fluctuation find_fluctuation(const WindowSums& sums, double instant_variance, double turn) {
+  constexpr double kDecays = 0.7, kLevel = 0.1, kKept = 0.5, kLeastBeads = 8, kLeastWindows = 8, kTurns = 5, kMemories = 20;
   Fluctuation out;
   detail::add_metric(sums, out);
   detail::add_decay(instant_variance, out);
@@ -146,6 +182,9 @@ inline Fluctuation find_fluctuation(const WindowSums& sums, double instant_varia
   // Of a covariance of two independent normal quantities: √(var var/(N − 1)).
   out.persistent = kept / final_metric;
   out.persistent_error = std::sqrt(covariance(first, first) * covariance(last, last) / (beads - 1)) / final_metric;
+  const double span = out.elapsed.back();
+  out.memory = detail::memory_within(sums, span / static_cast<double>(sums.windows));
+  if (span < kTurns * turn || span < kMemories * out.memory) return out;
   const bool forgotten = out.persistent < 2 * out.persistent_error;
   if (forgotten && out.exponent >= kDecays) out.verdict = 1;
   const bool kept_for_ever = out.persistent - 2 * out.persistent_error > kKept;

@@ -159,9 +159,10 @@ class FreeFlight {
   }
 
   static void add_counts(Results& results, const double* t) {
-    results.add("arcs", "1", t[kArcs], "Free flights that went into the fit.");
-    results.add("arcs_too_rough", "1", t[kRough], "Flights left out because a smooth path does not describe them within the noise.");
-    results.add("arcs_too_few_points", "1", t[kShort], "Flights left out because too few points lie in them.");
+    results.add("arcs", "1", t[kArcs], "Free flights that went into the fit.", kBookkeeping | kNotNegative);
+    results.add("arcs_too_rough", "1", t[kRough], "Flights left out because a smooth path does not describe them within the noise.",
+                kBookkeeping | kNotNegative);
+    results.add("arcs_too_few_points", "1", t[kShort], "Flights left out because too few points lie in them.", kBookkeeping | kNotNegative);
     results.add("arcs_per_bead_second", "1/s", ratio(t[kArcs], t[kWatched]),
                 "Flights that went into the fit, per second of a bead's time.");
     results.add("mean_duration", "s", ratio(t[kDuration], t[kArcs]), "Mean time from launch to landing, as far as it was seen.");
@@ -189,19 +190,20 @@ class FreeFlight {
       both[1] -= gravity_;
     }
     const double size = std::hypot(both[0], both[1], both[2]);
-    results.add("gravity", "m/s^2", both.data(), {3}, "Gravity from the arcs, fitted with drag; x, y, z.");
-    results.add("gravity_standard_error", "m/s^2", error.data(), {3}, "Of each component, from the scatter within the arcs.");
+    results.add("gravity", "m/s^2", both.data(), {3}, "Gravity from the arcs, fitted with drag; x, y, z.", {}, kFirstOdd);
+    results.add("gravity_standard_error", "m/s^2", error.data(), {3}, "Of each component, from the scatter within the arcs.", {},
+                kBookkeeping | kNotNegative);
     results.add("gravity_size", "m/s^2", size, "Its size; a wrong scale of the camera shows here.");
     results.add("gravity_tilt", "deg", kDegrees * std::atan2(both[0], -both[1]),
-                "Its direction seen along the axis: 0 is straight down, positive towards +x.");
+                "Its direction seen along the axis: 0 is straight down, positive towards +x.", kOdd);
     results.add("gravity_axial_tilt", "deg", kDegrees * std::atan2(both[2], std::hypot(both[0], both[1])), "Its direction towards +z.");
     results.add("drag", "1/m", both[3], "Drag coefficient k in a = g - k |v| v, fitted with gravity.");
-    results.add("drag_standard_error", "1/m", error[3], "Of it, from the scatter within the arcs.");
+    results.add("drag_standard_error", "1/m", error[3], "Of it, from the scatter within the arcs.", kBookkeeping | kNotNegative);
     results.add("residual", "1", std::sqrt(rest), "Rms of what the fit leaves, over the noise of the points.");
 
     std::array<double, 3> alone{kNaN, kNaN, kNaN};
     for (std::size_t i = 0; i < 3; ++i) alone[i] = ratio(right[i], normal[i][i]) - (i == 1 ? gravity_ : 0);
-    results.add("gravity_without_drag", "m/s^2", alone.data(), {3}, "Gravity fitted with k = 0; x, y, z.");
+    results.add("gravity_without_drag", "m/s^2", alone.data(), {3}, "Gravity fitted with k = 0; x, y, z.", {}, kFirstOdd);
     results.add("drag_at_known_gravity", "1/m", ratio(right[3], normal[3][3]),
                 "Drag coefficient with gravity as stated, straight down; the camera's scale and tilt go into it.");
   }
@@ -215,7 +217,8 @@ class FreeFlight {
       if (below < 0.5 * all && below + counts[i] >= 0.5 * all) median = angles_.edge(i) + angles_.width() * (0.5 * all - below) / counts[i];
       below += counts[i];
     }
-    results.add((what + (what.back() == 'h' ? "es" : "s") + "_seen").c_str(), "1", all, ("Arcs that were seen to " + verb + ".").c_str());
+    results.add((what + (what.back() == 'h' ? "es" : "s") + "_seen").c_str(), "1", all, ("Arcs that were seen to " + verb + ".").c_str(),
+                kBookkeeping | kNotNegative);
     results.add((what + "_density").c_str(), "1/rad", density.data(), {kAngleBins},
                 ("Distribution of the angles at which arcs " + verb + ".").c_str(), {"angle_edges_deg"});
     results.add((what + "_median").c_str(), "deg", kDegrees * median, ("Median angle at which arcs " + verb + ".").c_str());

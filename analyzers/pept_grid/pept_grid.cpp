@@ -57,18 +57,19 @@ class PeptGrid {
     const double* moments = sums[0];
     const double in_range = *sums[2];
     add_axes(results);
-    results.add("bead_time", "s", *sums[1], "Time of all samples, summed over beads.");
+    results.add("bead_time", "s", *sums[1], "Time of all samples, summed over beads.", kBookkeeping | kNotNegative);
     results.add("in_range_fraction", "1", ratio(in_range, *sums[1]),
-                "Fraction of the time inside the range along z; the maps see only this.");
+                "Fraction of the time inside the range along z; the maps see only this.", kShare);
     double inside = 0;
     for (std::int64_t i = 0; i < cells_.count(); ++i) inside += moments[i * kMoments + kTime];
     results.add("outside_fraction", "1", ratio(in_range - inside, in_range),
-                "Fraction of the time in the range along z that lies outside the grid; occupancy sums to one less this.");
+                "Fraction of the time in the range along z that lies outside the grid; occupancy sums to one less this.", kShare);
     add_field(
         results, "occupancy", "1", "Residence-time fraction of each cell; sums to one over the maps.",
-        [=](const double* m) { return ratio(m[kTime], in_range); }, moments);
+        [=](const double* m) { return ratio(m[kTime], in_range); }, moments, kShare);
     add_field(
-        results, "visits", "1", "Entries into the cell: independent visits.", [](const double* m) { return m[kVisits]; }, moments);
+        results, "visits", "1", "Entries into the cell: independent visits.", [](const double* m) { return m[kVisits]; }, moments,
+        kBookkeeping | kNotNegative);
     add_velocities(results, moments);
     add_porosity(results, moments, in_range, *sums[1]);
   }
@@ -126,8 +127,8 @@ class PeptGrid {
   }
 
   void add_axes(Results& results) const {
-    const auto axis = [&](const char* name, const char* unit, const Bins& bins, double factor, const char* doc) {
-      results.add(name, unit, bins.edges(factor).data(), {static_cast<std::uint64_t>(bins.count) + 1}, doc);
+    const auto axis = [&](const char* name, const char* unit, const Bins& bins, double factor, const char* doc, std::uint32_t traits = 0) {
+      results.add(name, unit, bins.edges(factor).data(), {static_cast<std::uint64_t>(bins.count) + 1}, doc, {}, traits);
     };
     if (cells_.axial()) axis("z_edges", "m", cells_.slow(), 1, "Edges of the cells along the axis.");
     if (cells_.polar()) {
@@ -136,37 +137,40 @@ class PeptGrid {
            "Edges of the cells round the axis, from 6 o'clock, positive in the turning sense.");
     } else {
       axis("y_edges", "m", cells_.middle(), 1, "Edges of the cells along y, upwards.");
-      axis("x_edges", "m", cells_.fast(), 1, "Edges of the cells along x.");
+      axis("x_edges", "m", cells_.fast(), 1, "Edges of the cells along x.", kAlongX);
     }
   }
 
   /// One number per cell, made from its moments.
   template <class Value>
-  void add_field(Results& results, const char* name, const char* unit, const char* doc, Value value, const double* moments) const {
+  void add_field(Results& results, const char* name, const char* unit, const char* doc, Value value, const double* moments,
+                 std::uint32_t traits = 0) const {
     std::vector<double> field(static_cast<std::size_t>(cells_.count()));
     for (std::size_t i = 0; i < field.size(); ++i) field[i] = value(moments + i * kMoments);
-    add_values(results, name, unit, doc, field);
+    add_values(results, name, unit, doc, field, traits);
   }
-  void add_values(Results& results, const char* name, const char* unit, const char* doc, const std::vector<double>& field) const {
+  void add_values(Results& results, const char* name, const char* unit, const char* doc, const std::vector<double>& field,
+                  std::uint32_t traits = 0) const {
     const auto a = static_cast<std::uint64_t>(cells_.fast().count), b = static_cast<std::uint64_t>(cells_.middle().count),
                c = static_cast<std::uint64_t>(cells_.slow().count);
     const char* fast = cells_.polar() ? "theta_edges_deg" : "x_edges";
     const char* middle = cells_.polar() ? "r_edges" : "y_edges";
     if (cells_.axial()) {
-      results.add(name, unit, field.data(), {c, b, a}, doc, {"z_edges", middle, fast});
+      results.add(name, unit, field.data(), {c, b, a}, doc, {"z_edges", middle, fast}, traits);
     } else {
-      results.add(name, unit, field.data(), {b, a}, doc, {middle, fast});
+      results.add(name, unit, field.data(), {b, a}, doc, {middle, fast}, traits);
     }
   }
-  void add_mean(Results& results, const char* name, const char* unit, const char* doc, Moment moment, const double* moments) const {
+  void add_mean(Results& results, const char* name, const char* unit, const char* doc, Moment moment, const double* moments,
+                std::uint32_t traits = 0) const {
     add_field(
-        results, name, unit, doc, [=](const double* m) { return ratio(m[moment], m[kTime]); }, moments);
+        results, name, unit, doc, [=](const double* m) { return ratio(m[moment], m[kTime]); }, moments, traits);
   }
 
   void add_velocities(Results& results, const double* moments) const {
     const bool polar = cells_.polar();
     add_mean(results, polar ? "velocity_r" : "velocity_x", "m/s", polar ? "Mean velocity outwards." : "Mean velocity along x.", kVelocity0,
-             moments);
+             moments, polar ? 0U : kOdd);
     add_mean(results, polar ? "velocity_theta" : "velocity_y", "m/s",
              polar ? "Mean velocity in the turning sense." : "Mean velocity upwards.", kVelocity1, moments);
     add_mean(results, "velocity_z", "m/s", "Mean velocity along the axis.", kVelocity2, moments);

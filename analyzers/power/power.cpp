@@ -64,11 +64,11 @@ class Power {
   void finish(const double* const* sums, Results& results) const {
     const double* whole = sums[1];
     const double mass = whole[kAllMass];
-    results.add("x_edges", "m", x_.edges().data(), {static_cast<std::uint64_t>(x_.count) + 1}, "Edges of the cells along x.");
+    results.add("x_edges", "m", x_.edges().data(), {static_cast<std::uint64_t>(x_.count) + 1}, "Edges of the cells along x.", {}, kAlongX);
     results.add("y_edges", "m", y_.edges().data(), {static_cast<std::uint64_t>(y_.count) + 1}, "Edges of the cells along y, upwards.");
-    results.add("centre_of_mass_x", "m", ratio(whole[kAllX], mass), "Mean x of the charge, by mass and time.");
+    results.add("centre_of_mass_x", "m", ratio(whole[kAllX], mass), "Mean x of the charge, by mass and time.", kOdd);
     results.add("centre_of_mass_y", "m", ratio(whole[kAllY], mass), "Mean y of the charge, by mass and time.");
-    results.add("turning_speed", "rad/s", ratio(whole[kAllOmega], mass), "Mean Omega about z; negative: clockwise.");
+    results.add("turning_speed", "rad/s", ratio(whole[kAllOmega], mass), "Mean Omega about z; negative: clockwise.", kOdd);
     add_power(results, "gravity", context_.gravity * ratio(whole[kAllXOmega], mass), "Power that lifts the charge, M g <x Omega>.");
     add_cells(results, sums[0], mass);
     add_changes(results, sums[2]);
@@ -131,7 +131,7 @@ class Power {
     add_power(results, "bbosa_of_mean", of_mean, "Bbosa's sum with the magnitude of the mean omega of each cell.");
     add_power(results, "bbosa_signed", is_signed, "Bbosa's sum with the signed mean omega: the cascading layer counts against the rise.");
     results.add("outside_fraction", "1", ratio(mass - inside, mass),
-                "Fraction of the charge's time outside the cells, which Bbosa's sums lack.");
+                "Fraction of the charge's time outside the cells, which Bbosa's sums lack.", kShare);
     add_map(results, "bbosa", bbosa, "Term of each cell in Bbosa's sum.");
     add_map(results, "gravity", lift, "Power that lifts the charge in each cell, M g <x Omega>.");
   }
@@ -154,7 +154,7 @@ class Power {
       if ((context_.has & kHasOmega) != 0) {
         const double turned = changes[kTurned] * sense_;
         results.add("shell_torque", "N m", turned > 0 ? sense_ * changes[kWork] / turned : kNaN,
-                    "Torque of the walls on the charge about the axis; its sign is that of Omega.");
+                    "Torque of the walls on the charge about the axis; its sign is that of Omega.", kOdd);
       }
     }
     if ((context_.has & kHasDissipation) != 0) {

@@ -100,7 +100,7 @@ class Slip {
                 {"r_edges"});
     results.add("slip", "1", slip.data(), {rings}, "One less that ratio: 0 turns with the shell, 1 stands still.", {"r_edges"});
     results.add("spread", "1", spread.data(), {rings}, "Standard deviation of the beads' angular velocity over the shell's.", {"r_edges"});
-    results.add("time_share", "1", share.data(), {rings}, "Share of each ring in the beads' time in the sector.", {"r_edges"});
+    results.add("time_share", "1", share.data(), {rings}, "Share of each ring in the beads' time in the sector.", {"r_edges"}, kShare);
     if (pitch_ == 0) return;
     results.add("lifter_phase_edges", "1", phases_.edges().data(), {phases + 1},
                 "Place between lifters as a fraction of the pitch, in the turning sense: 0 and 1 are the middles of lifters.");

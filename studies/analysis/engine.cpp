@@ -41,16 +41,17 @@ double block_length(const BlockRule& rule, double wished, double total) {
 struct Blocks {
   SumTable table;
   BlockRule rule;
+  std::vector<BasicSeries> series;  ///< one for each stretch
 };
 
 Blocks gather(FrameSource& source, const std::vector<AnalyzerInstance>& instances, const SumLayout& layout, const EngineOptions& options) {
   const bool one_bead = (source.context().has & kHasAllBeads) == 0;
   if (options.progress) options.progress("surveying", 0);
-  const std::vector<BasicSeries> series = source.survey();
-  double total = 0;
-  for (const BasicSeries& s : series) total += s.duration();
   Blocks blocks;
-  blocks.rule = block_rule(series, one_bead);
+  blocks.series = source.survey();
+  double total = 0;
+  for (const BasicSeries& s : blocks.series) total += s.duration();
+  blocks.rule = block_rule(blocks.series, one_bead);
   const double length = block_length(blocks.rule, options.block, total);
   source.cut(length, most_chunks(layout));
   const std::size_t workers = worker_count(options.threads, source.chunk_count());
@@ -111,6 +112,35 @@ Deviations resample(const AnalyzerInstance& instance, const SumLayout::Part& par
   return deviations;
 }
 
+/// What a trait says of the range: the interval ends where it does. Of an amount that may as well be below 0, nothing is left.
+void keep_range(ResultArray& array, std::size_t i, std::span<const float> draws) {
+  double& value = array.value[i];
+  if (array.has(kShare)) {
+    const double most = array.unit == "%" ? 100 : 1;
+    array.low[i] = std::isnan(array.low[i]) ? array.low[i] : std::clamp(array.low[i], std::min(0.0, value), most);
+    array.high[i] = std::isnan(array.high[i]) ? array.high[i] : std::clamp(array.high[i], 0.0, std::max(most, value));
+  }
+  if (!array.has(kNotNegative) || std::isnan(value)) return;
+  const auto out = std::count_if(draws.begin(), draws.end(), [&](float d) { return !(value + static_cast<double>(d) >= 0); });
+  if (!array.has(kSpread) && static_cast<double>(out) > 0.05 * static_cast<double>(draws.size())) {
+    value = array.sem[i] = array.low[i] = array.high[i] = std::numeric_limits<double>::quiet_NaN();
+    array.flags[i] |= kOftenUndefined | kNoUncertainty;
+  } else if (array.low[i] < 0) {
+    array.low[i] = std::min(0.0, value);
+  }
+}
+
+/// Where others of the array vary, one that is the same in every block (never visited, always 1) is not known exactly: the next block may
+/// be another.
+void doubt_the_same(ResultArray& array) {
+  if (std::none_of(array.sem.begin(), array.sem.end(), [](double sem) { return sem > 0; })) return;
+  for (std::size_t i = 0; i < array.size(); ++i) {
+    if (array.sem[i] != 0) continue;
+    array.sem[i] = array.low[i] = array.high[i] = std::numeric_limits<double>::quiet_NaN();
+    array.flags[i] |= kNoUncertainty;
+  }
+}
+
 /// Uncertainty of the values first … first + array.size() − 1 of the deviations.
 void judge(ResultArray& array, std::size_t first, const Deviations& deviations, const Resampling& resampling,
            const std::vector<std::uint8_t>& follows) {
@@ -126,15 +156,21 @@ void judge(ResultArray& array, std::size_t first, const Deviations& deviations, 
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t item = 0; item < column.size(); ++item) column[item] = deviations.numbers[item * deviations.values + first + i];
     const std::span<const float> all(column);
+    if (array.has(kSpread)) {
+      const std::vector<float> linear = influence_draws(all.subspan(draws), resampling.counts);
+      std::copy(linear.begin(), linear.end(), column.begin());
+    }
     const Uncertainty u = uncertainty(array.value[i], all.first(draws), all.subspan(draws), follows);
     array.sem[i] = u.sem;
     array.low[i] = u.low;
     array.high[i] = u.high;
     array.effective_blocks[i] = u.effective_blocks;
     array.flags[i] = u.flags;
+    keep_range(array, i, all.first(draws));
     if (!keep) continue;
     for (std::size_t b = 0; b < draws; ++b) array.draws[b * size + i] = static_cast<float>(u.scale * column[b]);
   }
+  doubt_the_same(array);
 }
 
 std::vector<std::uint8_t> followers(const std::vector<ResultBlock>& spans) {
@@ -183,9 +219,12 @@ ResultSet run_analyzers(FrameSource& source, const std::vector<AnalyzerInstance>
   const double total = total_duration(blocks.table);
   const std::size_t count = blocks.table.rows.size();
   results.meta.block_duration = count > 0 ? total / static_cast<double>(count) : 0;
-  results.meta.notes = notes_on(results.meta, blocks.rule, total);
+  results.meta.notes = source.notes();
+  for (std::string& note : notes_on(results.meta, blocks.rule, total)) results.meta.notes.push_back(std::move(note));
 
   const std::vector<std::uint32_t> counts = draw_counts(count, options.draws, options.seed);
+  for (std::size_t k = 0; k < kBasics; ++k)
+    results.meta.times[k].independent = independent_values(blocks.series, k, results.meta.blocks, counts);
   const Resampling resampling{blocks.table.rows, counts, options.draws};
   const std::vector<std::uint8_t> follows = followers(blocks.table.spans);
   const std::size_t workers = worker_count(options.threads, resampling.items());

@@ -86,6 +86,20 @@ std::vector<std::uint32_t> draw_counts(std::size_t blocks, std::size_t draws, st
   return counts;
 }
 
+std::vector<float> influence_draws(std::span<const float> left_out, std::span<const std::uint32_t> counts) {
+  const std::size_t n = left_out.size();
+  const double mean = spread_of(left_out).mean, part = static_cast<double>(n - 1) / static_cast<double>(n);
+  std::vector<float> draws(n > 0 ? counts.size() / n : 0, 0.0F);
+  for (std::size_t b = 0; b < draws.size(); ++b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!std::isnan(left_out[i])) sum += counts[b * n + i] * (mean - left_out[i]);
+    }
+    draws[b] = static_cast<float>(part * sum);
+  }
+  return draws;
+}
+
 Uncertainty uncertainty(double value, std::span<const float> draws, std::span<const float> left_out,
                         std::span<const std::uint8_t> follows) {
   const double n = static_cast<double>(left_out.size());

@@ -30,6 +30,12 @@ struct Uncertainty {
   double scale;        ///< a draw's deviation times this has the standard deviation `sem`
 };
 
+/// Draws of a result that blocks which come twice would bias (ResultTrait kSpread: a variance between beads counts their noise as spread):
+/// what the influences make of the counts, Σ_i c_bi U_i (n − 1)/n. Their variance is that of the jackknife, their mean 0, and they go with
+/// the draws of all other results. Of a variance between beads the error is up to √2 too large (Efron & Stein 1981), never too small.
+/// `counts`: of `draw_counts`. NaN in `left_out` counts as no influence.
+std::vector<float> influence_draws(std::span<const float> left_out, std::span<const std::uint32_t> counts);
+
 /// `draws`: θ_b − θ; `left_out`: θ_(−i) − θ, in the order of the blocks; `follows[i]`: block i goes on from block i − 1 (same stretch).
 /// NaN where undefined.
 Uncertainty uncertainty(double value, std::span<const float> draws, std::span<const float> left_out, std::span<const std::uint8_t> follows);

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,14 +17,15 @@
 
 namespace millscope::studies {
 
-inline constexpr std::uint32_t kResultsSchema = 1;
+inline constexpr std::uint32_t kResultsSchema = 2;
 
 /// What the resampling says of one value. Bits of ResultArray::flags.
 enum ResultFlag : std::uint8_t {
   kFewBlocks = 1,       ///< fewer than 10 effective blocks: its interval cannot be relied on
   kCorrelated = 2,      ///< the blocks are correlated in this value: sem and interval are widened for it
   kOftenUndefined = 4,  ///< undefined (NaN) in more than a tenth of the resamples
-  kNoUncertainty = 8,   ///< too few blocks to resample at all: sem, low and high are NaN
+  kNoUncertainty = 8,   ///< the blocks cannot tell it: sem, low and high are NaN. Too few blocks; or the same in every block where other
+                        ///< elements of the array vary: a cell that was never visited, a fraction that was always 1
 };
 
 /// One result of one analyzer.
@@ -43,7 +45,9 @@ struct ResultArray {
   /// distribution can be read off. Scaled so that their standard deviation is `sem`; NaN where undefined. Empty for arrays with more
   /// than kMostDrawnValues values.
   std::vector<float> draws;
+  std::uint32_t traits = 0;  ///< bits of ResultTrait: never compared, what its mirror image is, its range
 
+  bool has(ResultTrait trait) const { return (traits & trait) != 0; }
   std::size_t size() const { return value.size(); }
 };
 
@@ -61,6 +65,8 @@ struct ObservableTime {
   double time;          ///< s, integrated autocorrelation time
   double effective;     ///< independent values in the span: span / (2 time)
   bool sets_the_block;  ///< transverse: blocks are at least three of its times
+  /// Independent values that its mean over the span rests on, N_eff = (σ/sem)²: σ over the span, sem from the blocks. NaN: too few blocks.
+  double independent = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One block: the unit of resampling.

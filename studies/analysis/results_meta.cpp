@@ -25,7 +25,7 @@ Json meta_json(const ResultMeta& meta) {
   j["autocorrelation"] = Json::array();
   for (const ObservableTime& t : meta.times) {
     j["autocorrelation"].push_back(
-        {{"name", t.name}, {"time_s", t.time}, {"effective", t.effective}, {"sets_the_block", t.sets_the_block}});
+        {{"name", t.name}, {"time_s", t.time}, {"effective", t.effective}, {"sets_the_block", t.sets_the_block}, {"n_eff", t.independent}});
   }
   if (!meta.runs.is_null()) j["runs"] = meta.runs;
   j["inputs"] = Json::array();
@@ -52,8 +52,8 @@ void read_meta_json(const Json& j, ResultMeta& meta) {
   meta.context.has = j.at("context").at("has").get<std::uint64_t>();
   for (const ContextField& field : kContextFields) meta.context.*field.number = number(j.at("context").at(field.name));
   for (const Json& t : j.at("autocorrelation")) {
-    meta.times.push_back(
-        {t.at("name").get<std::string>(), number(t.at("time_s")), number(t.at("effective")), t.at("sets_the_block").get<bool>()});
+    meta.times.push_back({t.at("name").get<std::string>(), number(t.at("time_s")), number(t.at("effective")),
+                          t.at("sets_the_block").get<bool>(), number(t.at("n_eff"))});
   }
   for (const Json& f : j.at("inputs")) meta.inputs.push_back({f.at("file").get<std::string>(), f.at("hash").get<std::string>()});
   if (j.contains("runs")) meta.runs = j.at("runs");

@@ -61,7 +61,33 @@ struct Numbered {
   ResultArray array;
 };
 
-Numbered read_array(const Reader& reader, hid_t parent, const std::string& analyzer, const std::string& name) {
+/// [draws, shape…]; empty where the group has none.
+std::vector<float> read_draws(const Reader& reader, hid_t group, const ResultArray& a, std::uint32_t draws) {
+  if (!hdf5::has(group, "draws")) return {};
+  std::vector<hsize_t> wanted{draws};
+  wanted.insert(wanted.end(), a.shape.begin(), a.shape.end());
+  const Dataset set = hdf5::open_dataset(group, "draws", static_cast<int>(wanted.size()), a.analyzer + "." + a.name);
+  if (draws < 2 || !std::equal(wanted.begin(), wanted.end(), set.extent.begin(), set.extent.end())) {
+    reader.damaged(fmt::format("'{}.{}' has draws of the shape {}, {} are needed (and at least 2 draws)", a.analyzer, a.name,
+                               fmt::join(set.extent, " × "), fmt::join(wanted, " × ")));
+  }
+  return reader.read<float>(group, "draws", static_cast<int>(wanted.size()));
+}
+
+/// Every axis is a result of the same analyzer, with the dimension's length or one more; no result is there twice or empty.
+void check_axes(const Reader& reader, const ResultSet& results) {
+  for (const ResultArray& a : results.arrays) {
+    if (a.size() == 0) reader.damaged(fmt::format("'{}.{}' holds no value", a.analyzer, a.name));
+    for (std::size_t d = 0; d < a.shape.size(); ++d) {
+      if (a.axes[d].empty()) continue;
+      const ResultArray* const axis = results.axis(a, d);
+      if (axis == nullptr || !axis->is_axis || axis->shape.size() != 1 || (axis->size() != a.shape[d] && axis->size() != a.shape[d] + 1))
+        reader.damaged(fmt::format("'{}.{}' has the axis '{}', which is no axis of that length", a.analyzer, a.name, a.axes[d]));
+    }
+  }
+}
+
+Numbered read_array(const Reader& reader, hid_t parent, const std::string& analyzer, const std::string& name, std::uint32_t draws) {
   const Handle group = reader.group(parent, name);
   ResultArray a;
   a.analyzer = analyzer;
@@ -70,6 +96,7 @@ Numbered read_array(const Reader& reader, hid_t parent, const std::string& analy
   a.doc = hdf5::get_text_attribute(group, "doc");
   a.axes = hdf5::get_texts(group, "axes");
   a.is_axis = hdf5::get_attribute(group, "is_axis", 0) != 0;
+  a.traits = hdf5::get_attribute(group, "traits", 0);
   const int rank = static_cast<int>(a.axes.size());
   const Dataset value = hdf5::open_dataset(group, "value", rank, name);
   a.shape.assign(value.extent.begin(), value.extent.end());
@@ -84,7 +111,7 @@ Numbered read_array(const Reader& reader, hid_t parent, const std::string& analy
   for (const std::size_t size : {a.sem.size(), a.low.size(), a.high.size(), a.effective_blocks.size(), a.flags.size()}) {
     if (size != a.size()) reader.damaged(fmt::format("'{}.{}' has arrays of different lengths", analyzer, name));
   }
-  if (hdf5::has(group, "draws")) a.draws = reader.read<float>(group, "draws", rank + 1);
+  a.draws = read_draws(reader, group, a, draws);
   return {order, std::move(a)};
 }
 
@@ -130,10 +157,11 @@ ResultSet read_results(const fs::path& file_or_directory) {
   const Handle analyzers = reader.group(opened, "analyzers");
   for (const std::string& analyzer : reader.names(analyzers)) {
     const Handle group = reader.group(analyzers, analyzer);
-    for (const std::string& name : reader.names(group)) arrays.push_back(read_array(reader, group, analyzer, name));
+    for (const std::string& name : reader.names(group)) arrays.push_back(read_array(reader, group, analyzer, name, results.meta.draws));
   }
   std::sort(arrays.begin(), arrays.end(), [](const Numbered& a, const Numbered& b) { return a.order < b.order; });
   for (Numbered& n : arrays) results.arrays.push_back(std::move(n.array));
+  check_axes(reader, results);
   read_covariance(reader, results);
   return results;
 }

@@ -58,6 +58,7 @@ void write_array(const Writer& writer, hid_t parent, const ResultArray& a, std::
   hdf5::set_attribute(group, "doc", a.doc);
   hdf5::set_attribute(group, "order", order);
   hdf5::set_attribute(group, "is_axis", std::uint32_t{a.is_axis ? 1U : 0U});
+  hdf5::set_attribute(group, "traits", a.traits);
   if (!a.axes.empty()) hdf5::set_attribute(group, "axes", a.axes);
   const std::vector<hsize_t> shape = extent(a);
   writer.write(group, "value", shape, a.value);

@@ -48,6 +48,7 @@ struct Collector {
     a.name = r.name;
     a.unit = r.unit == nullptr ? "" : r.unit;
     a.doc = r.doc == nullptr ? "" : r.doc;
+    a.traits = r.traits;
     std::size_t size = 1;
     for (std::uint32_t d = 0; d < r.rank; ++d) {
       a.shape.push_back(r.shape[d]);

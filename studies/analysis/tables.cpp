@@ -16,6 +16,18 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+/// What an analyzer says of a result, in words.
+std::vector<std::string> trait_names(std::uint32_t traits) {
+  constexpr std::pair<std::uint32_t, const char*> kNames[] = {
+      {kBookkeeping, "bookkeeping"}, {kOdd, "odd"},     {kFirstOdd, "first odd"},       {kAlongX, "along x"},
+      {kCumulative, "cumulative"},   {kShare, "share"}, {kNotNegative, "not negative"}, {kSpread, "spread"}};
+  std::vector<std::string> names;
+  for (const auto& [bit, name] : kNames) {
+    if ((traits & bit) != 0) names.emplace_back(name);
+  }
+  return names;
+}
+
 /// A cell of a CSV: quoted where it must be.
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
@@ -158,6 +170,7 @@ Json summary_json(const ResultSet& results) {
                                         {"unit", a.unit},
                                         {"effective_blocks", a.effective_blocks[0]},
                                         {"doubts", flag_text(a.flags[0])},
+                                        {"traits", trait_names(a.traits)},
                                         {"meaning", a.doc}};
   }
   return j;

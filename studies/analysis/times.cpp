@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "studies/analysis/resample.hpp"
+
 namespace millscope::studies {
 namespace {
 
@@ -148,6 +150,33 @@ double autocorrelation_time(const EvenSeries& series) {
   return series.step * std::max(0.5, tau) * (1 + (2 * static_cast<double>(window) + 1) / n);
 }
 
+double independent_values(const std::vector<BasicSeries>& stretches, std::size_t basic, const std::vector<ResultBlock>& blocks,
+                          const std::vector<std::uint32_t>& counts) {
+  double weight = 0, mean = 0, variance = 0;
+  for (const BasicSeries& s : stretches) {
+    for (std::size_t i = 0; i < s.size(); ++i) weight += s.weight[i], mean += s.weight[i] * s.value[basic][i];
+  }
+  mean /= weight;
+  std::vector<float> left_out;
+  std::vector<std::uint8_t> follows;
+  std::size_t at = 0;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const BasicSeries& s = stretches.at(blocks[b].stretch);
+    const bool goes_on = b > 0 && blocks[b].stretch == blocks[b - 1].stretch;
+    if (!goes_on) at = 0;
+    double own = 0, deviation = 0;
+    for (; at < s.size() && s.time[at] <= blocks[b].end; ++at) {
+      const double d = s.value[basic][at] - mean;
+      own += s.weight[at], deviation += s.weight[at] * d, variance += s.weight[at] * d * d / weight;
+    }
+    left_out.push_back(static_cast<float>(-deviation / (weight - own)));
+    follows.push_back(goes_on ? 1 : 0);
+  }
+  if (blocks.size() < 2) return kNaN;
+  const Uncertainty u = uncertainty(0, influence_draws(left_out, counts), left_out, follows);
+  return u.sem > 0 ? variance / (u.sem * u.sem) : kNaN;
+}
+
 double circulation_time(const EvenSeries& series) {
   const Moments m = moments_of(series);
   const double band = std::sqrt(m.variance) / 2;
@@ -180,7 +209,7 @@ BlockRule block_rule(const std::vector<BasicSeries>& stretches, bool one_bead) {
     const EvenSeries even = even_series(stretches, k);
     const double time = autocorrelation_time(even);
     const bool sets = k < 3;  // x, y, radius
-    rule.times.push_back({kBasicNames[k], time, span / (2 * time), sets});
+    rule.times.push_back({kBasicNames[k], time, span / (2 * time), sets, kNaN});
     if (sets && !std::isnan(time)) rule.least = std::max(rule.least, 3 * time);
     if (std::string(kBasicNames[k]) == "speed" && !std::isnan(time)) rule.wished = 3 * time;
     if (k == 0 && one_bead) rule.circulation = circulation_time(even);

@@ -39,6 +39,11 @@ EvenSeries even_series(const std::vector<BasicSeries>& stretches, std::size_t ba
 /// for the mean that was taken from the data (Wolff 2004); s. Pairs across gaps count at their lag. NaN: fewer than 8 values.
 double autocorrelation_time(const EvenSeries& series);
 
+/// N_eff = (σ/sem)² of the mean of one observable: σ over all values, sem from the blocks as of any result (resample.hpp). `stretches` are
+/// in the order of their numbers, `counts` of `draw_counts`. NaN: fewer than two blocks.
+double independent_values(const std::vector<BasicSeries>& stretches, std::size_t basic, const std::vector<ResultBlock>& blocks,
+                          const std::vector<std::uint32_t>& counts);
+
 /// Mean time of one circulation: from one crossing of the mean upwards to the next, half a standard deviation being passed on
 /// both sides; s. Where gaps leave fewer than three, four times the lag at which the
 /// autocorrelation first falls to zero. 0: unknown.

@@ -99,6 +99,10 @@ ShellMotion shell_motion(const dem::Motion& motion) {
 OpenedSource open_tracks(const SourceRequest& request, MillOfCase mill) {
   const fs::path file = request.path / "tracks.h5";
   const output::TrackReader reader(file);
+  if (mill.period > 0 && request.trajectory.high > request.trajectory.low) {
+    throw UserError(
+        fmt::format("{}: the mill is periodic along z and has no end faces; leave trajectory.low and trajectory.high out", file.string()));
+  }
   OpenedSource opened;
   std::vector<Trajectory> trajectories;
   double seconds = 0;

@@ -1,11 +1,14 @@
 #include "studies/analysis/trajectory_source.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
 
+#include "kernel/config/error.hpp"
 #include "studies/analysis/times.hpp"
 
 namespace millscope::studies {
@@ -53,6 +56,7 @@ TrajectorySource::TrajectorySource(std::vector<Trajectory> trajectories, Analyze
       motion_(std::move(motion)),
       exact_(exact),
       description_(std::move(description)) {
+  tell_trimmed();
   context_.has = kHasVelocity | kHasLocations;
   if (motion_.omega) context_.has |= kHasOmega;
   if (motion_.phase) context_.has |= kHasPhase;
@@ -70,6 +74,27 @@ TrajectorySource::TrajectorySource(std::vector<Trajectory> trajectories, Analyze
 }
 
 TrajectorySource::~TrajectorySource() = default;
+
+void TrajectorySource::tell_trimmed() {
+  double trimmed = 0, kept = 0;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Trajectory& t : trajectories_) {
+    trimmed += static_cast<double>(t.samples_trimmed);
+    for (const Piece& piece : t.pieces) kept += static_cast<double>(piece.size());
+    for (const double z : t.location_position[2]) low = std::min(low, z), high = std::max(high, z);
+  }
+  if (trimmed == 0) return;
+  const auto outside = std::erase_if(trajectories_, [](const Trajectory& t) { return t.pieces.empty(); });
+  if (trajectories_.empty()) {
+    throw config::UserError(
+        fmt::format("{}: nothing lies between trajectory.low and trajectory.high: z goes from {:.4g} m to {:.4g} m; give a range within "
+                    "that, with its unit (low: 20 mm)",
+                    description_, low, high));
+  }
+  notes_.push_back(fmt::format("{:.3g} % of the samples ({:.0f} of {:.0f}) lie outside trajectory.low … trajectory.high and are left out{}",
+                               100 * trimmed / (trimmed + kept), trimmed, trimmed + kept,
+                               outside == 0 ? "" : fmt::format(", {} of {} beads altogether", outside, outside + trajectories_.size())));
+}
 
 std::size_t TrajectorySource::stretch(std::size_t chunk) const { return chunks_.at(chunk).stretch; }
 std::vector<BasicSeries> TrajectorySource::survey() const {

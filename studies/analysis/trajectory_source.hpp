@@ -16,6 +16,7 @@ struct ShellMotion {
 class TrajectorySource : public FrameSource {
  public:
   /// `context.has`, `largest_id`, `start` and `end` are set here. `exact`: positions without noise, so that no variance is given.
+  /// Trajectories without a piece, all of whose samples were trimmed, are left out; throws config::UserError when none remains.
   TrajectorySource(std::vector<Trajectory> trajectories, AnalyzerContext context, ShellMotion motion, bool exact, std::string description);
   ~TrajectorySource() override;
 
@@ -25,6 +26,7 @@ class TrajectorySource : public FrameSource {
   std::unique_ptr<Scratch> make_scratch() const override;
   const FrameBlock& load(std::size_t chunk, Scratch& scratch) const override;
   std::string description() const override { return description_; }
+  std::vector<std::string> notes() const override { return notes_; }
   void cut(double duration, std::size_t most) override;
   std::vector<BasicSeries> survey() const override;
   void want(std::uint64_t) override {}
@@ -37,6 +39,7 @@ class TrajectorySource : public FrameSource {
     std::size_t location_first, location_last;
   };
 
+  void tell_trimmed();
   std::size_t parts_of(std::size_t trajectory, double duration, std::size_t most) const;
   void lay_out(std::size_t trajectory, std::size_t parts);
 
@@ -45,6 +48,7 @@ class TrajectorySource : public FrameSource {
   ShellMotion motion_;
   bool exact_;
   std::string description_;
+  std::vector<std::string> notes_;
   std::vector<std::unique_ptr<Arrays>> arrays_;
   std::vector<Chunk> chunks_;
   std::vector<std::int64_t> first_;  ///< 0, 1, 2, …: one sample per frame

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "studies/compare/elements.hpp"
 #include "studies/compare/mirror.hpp"
@@ -36,6 +37,23 @@ void tell_given(Comparison& c, const PreparedObservable& prepared) {
                                                   significant_text(b.value[0], 5), unit)
                                     : fmt::format("{}: {} of {} values differ and have no uncertainty", prepared.compared.name,
                                                   prepared.exact_differences, a.size()));
+}
+
+/// How much data there are, and how sure something is: told when it differs, never judged.
+void tell_bookkeeping(Comparison& c, const ResultPair& pair) {
+  const ResultArray &a = c.a.arrays[pair.a], &b = c.b.arrays[pair.b];
+  const std::string name = a.analyzer + "." + a.name, unit = a.unit == "1" ? "" : " " + a.unit;
+  const auto same = [](double x, double y) {
+    return (std::isnan(x) && std::isnan(y)) || std::abs(x - y) <= 1e-9 * std::max(std::abs(x), std::abs(y));
+  };
+  std::size_t other = std::max(a.size(), b.size()) - std::min(a.size(), b.size());
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) other += same(a.value[i], b.value[i]) ? 0 : 1;
+  if (other == 0) return;
+  c.given.push_back(a.shape.empty() && b.shape.empty()
+                        ? fmt::format("{}: {}{} in A, {}{} in B (says how much data there are, or how sure something is)", name,
+                                      significant_text(a.value[0], 5), unit, significant_text(b.value[0], 5), unit)
+                        : fmt::format("{}: {} of {} values differ (says how much data there are, or how sure something is)", name, other,
+                                      std::max(a.size(), b.size())));
 }
 
 void tell_unjudged(Comparison& c, const PreparedObservable& prepared) {
@@ -98,7 +116,12 @@ Comparison compare(const ResultSet& a, const ResultSet& b, const CompareOptions&
   align_senses(c);
   for (std::string& note : condition_notes(c.a, c.b)) c.notes.push_back(std::move(note));
   std::vector<PreparedObservable> prepared;
+  std::vector<ResultPair> bookkeeping;
   for (const ResultPair& pair : pair_results(c.a, c.b, options, c.not_judged)) {
+    if (is_bookkeeping(c.a, c.b, pair)) {
+      bookkeeping.push_back(pair);
+      continue;
+    }
     PreparedObservable p = prepare_observable(c.a, c.b, pair);
     tell_given(c, p);
     tell_unjudged(c, p);
@@ -107,6 +130,7 @@ Comparison compare(const ResultSet& a, const ResultSet& b, const CompareOptions&
     PreparedObservable regions = prepare_regions(c.a, c.b, pair);
     if (!regions.compared.elements.empty()) prepared.push_back(std::move(regions));
   }
+  for (const ResultPair& pair : bookkeeping) tell_bookkeeping(c, pair);  // after what was given
   judge_all(c, prepared);
   conclude(c);
   return c;

@@ -46,9 +46,10 @@ struct Comparison {
   Verdict verdict_kind = Verdict::cannot_tell;
   std::string verdict;                          ///< one line
   std::vector<ComparedObservable> observables;  ///< the most significant first
-  std::vector<std::string> given;               ///< quantities without uncertainty that differ, e.g. the critical speed
-  std::vector<std::string> not_judged;          ///< "name: why"
-  std::vector<std::string> notes;               ///< mirrored, other speed, other options, …
+  /// Quantities without uncertainty that differ, e.g. the critical speed; then what says how much data there are (kBookkeeping).
+  std::vector<std::string> given;
+  std::vector<std::string> not_judged;  ///< "name: why"
+  std::vector<std::string> notes;       ///< mirrored, other speed, other options, …
 };
 
 /// B less A. Throws config::UserError where grids or units differ, or nothing can be compared.

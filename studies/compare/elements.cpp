@@ -23,6 +23,8 @@ std::uint8_t flags_of(const ResultArray& array, std::size_t i) {
 }
 double error_of(const ResultArray& array, std::size_t i) { return i < array.sem.size() ? array.sem[i] : 0; }
 bool is_exact(const ResultArray& array, std::size_t i) { return error_of(array, i) == 0; }
+/// The same in every block.
+bool is_the_same(const ResultArray& array, std::size_t i) { return (flags_of(array, i) & kNoUncertainty) != 0; }
 
 /// Rounding errors are no differences.
 double cleaned(double value, const std::string& unit) { return (unit == "1" || unit == "%") && std::abs(value) < kRounding ? 0 : value; }
@@ -85,6 +87,7 @@ class Builder {
   void add_value(std::size_t i) {
     const double a = cleaned(a_.value[i], a_.unit), b = cleaned(b_.value[i], b_.unit);
     if (!std::isfinite(a) || !std::isfinite(b) || (a == 0 && b == 0)) return;
+    if (a == b && (is_the_same(a_, i) || is_the_same(b_, i))) return;  // 100 % below the last edge
     if (is_exact(a_, i) && is_exact(b_, i)) {
       out_.exact_differences += std::abs(a - b) > 1e-9 * std::max(std::abs(a), std::abs(b)) ? 1 : 0;
       return;
@@ -99,7 +102,8 @@ class Builder {
   }
 
   bool is_fit(const ResultArray& array, std::size_t i) const {
-    const bool unusable = (flags_of(array, i) & (kOftenUndefined | kNoUncertainty)) != 0;
+    // Exact on one side only (no visit in any block, all visits alike) is no knowledge, but a visit that did not come.
+    const bool unusable = (flags_of(array, i) & (kOftenUndefined | kNoUncertainty)) != 0 || !(error_of(array, i) > 0);
     return !array.draws.empty() && !unusable && array.effective_blocks[i] >= (array.size() < kMany ? kFewestBlocks : kFewestOfMany);
   }
 

@@ -3,32 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <string_view>
 
 namespace millscope::studies {
 namespace {
-
-bool has_word(const std::string& name, std::string_view word) {
-  for (std::size_t begin = 0; begin <= name.size();) {
-    const std::size_t end = std::min(name.find('_', begin), name.size());
-    if (std::string_view(name).substr(begin, end - begin) == word) return true;
-    begin = end + 1;
-  }
-  return false;
-}
-
-bool is_along_x(const ResultArray& axis) { return has_word(axis.name, "x") && axis.unit == "m"; }
-
-/// A length, velocity, acceleration, force.
-bool is_vector_unit(const std::string& unit) { return unit == "m" || unit == "m/s" || unit == "m/s^2" || unit == "N"; }
-
-/// Whether the description says that the sign goes with that of Omega or with x.
-bool says_signed(const std::string& doc) {
-  constexpr std::array<const char*, 3> phrases{"clockwise", "that of Omega", "towards +x"};
-  return std::any_of(phrases.begin(), phrases.end(), [&](const char* phrase) { return doc.find(phrase) != std::string::npos; });
-}
 
 /// Where the mirrored array takes element `i` from.
 std::size_t source_index(std::size_t i, const std::vector<std::size_t>& shape, const std::vector<bool>& reversed) {
@@ -88,21 +65,19 @@ bool MirrorRule::changes() const {
 MirrorRule mirror_rule(const ResultSet& results, const ResultArray& array) {
   MirrorRule rule;
   if (array.is_axis) {
-    rule.reversed = {is_along_x(array)};
-    rule.changes_sign = is_along_x(array);
+    rule.reversed = {array.has(kAlongX)};
+    rule.changes_sign = array.has(kAlongX);
     return rule;
   }
   bool along_x = false;
   for (std::size_t d = 0; d < array.shape.size(); ++d) {
     const ResultArray* const axis = results.axis(array, d);
-    rule.reversed.push_back(axis != nullptr && is_along_x(*axis));
+    rule.reversed.push_back(axis != nullptr && axis->has(kAlongX));
     along_x = along_x || rule.reversed.back();
   }
-  rule.changes_sign = (has_word(array.name, "x") && is_vector_unit(array.unit)) || says_signed(array.doc);
-  const bool is_size = has_word(array.name, "error") || has_word(array.name, "deviation");
-  rule.first_changes_sign =
-      array.shape == std::vector<std::size_t>{3} && is_vector_unit(array.unit) && array.doc.ends_with("x, y, z.") && !is_size;
-  if (along_x && has_word(array.name, "cumulative")) rule.complement = array.unit == "%" ? 100 : 1;
+  rule.changes_sign = array.has(kOdd);
+  rule.first_changes_sign = array.has(kFirstOdd) && !array.value.empty();
+  if (along_x && array.has(kCumulative)) rule.complement = array.unit == "%" ? 100 : 1;
   return rule;
 }
 

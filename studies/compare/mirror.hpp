@@ -1,11 +1,11 @@
 // The mirror image of results: a mill that turns the other way, seen from the other end (x → −x).
 //
-// Angles are counted in the turning sense and powers are positive in normal running, so most results stay as they are. What changes:
-//   - grids along x: cells in reverse, edges negated;
-//   - components along x (the word "x" in the name, a length, velocity, acceleration or force): the sign;
-//   - the first of three components, where the description ends "x, y, z.": the sign;
-//   - what carries the sign of Omega or of x, which its description says ("clockwise", "sign is that of Omega", "towards +x"): the sign;
-//   - cumulative shares along x: the share on the other side.
+// Angles are counted in the turning sense and powers are positive in normal running, so most results stay as they are. What changes the
+// analyzer has said of its results (ResultTrait):
+//   - grids along x (an axis with kAlongX): cells in reverse, edges negated;
+//   - components along x, and what carries the sign of Omega (kOdd): the sign;
+//   - the first of three components (kFirstOdd): the sign;
+//   - cumulative shares (kCumulative) along x: the share on the other side.
 #pragma once
 
 #include <string>

@@ -92,6 +92,10 @@ nlohmann::ordered_json options_of(const ResultSet& results, const std::string& a
 
 }  // namespace
 
+bool is_bookkeeping(const ResultSet& a, const ResultSet& b, const ResultPair& pair) {
+  return a.arrays[pair.a].has(kBookkeeping) || b.arrays[pair.b].has(kBookkeeping);
+}
+
 std::vector<ResultPair> pair_results(const ResultSet& a, const ResultSet& b, const CompareOptions& options,
                                      std::vector<std::string>& alone) {
   require_known(options.only, "only", a, b);
@@ -109,7 +113,7 @@ std::vector<ResultPair> pair_results(const ResultSet& a, const ResultSet& b, con
       continue;
     }
     pairs.push_back({i, j});
-    require_comparable(a, b, pairs.back());
+    if (!is_bookkeeping(a, b, pairs.back())) require_comparable(a, b, pairs.back());
   }
   for (const ResultArray& array : b.arrays) {
     if (is_chosen(options, array) && find(a, array) == a.arrays.size()) alone.push_back(full_name(array) + ": only in B");

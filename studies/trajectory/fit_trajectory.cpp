@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "kernel/config/error.hpp"
 #include "studies/recording/travel.hpp"
@@ -14,18 +15,49 @@ namespace {
 
 using config::UserError;
 
-/// Dwell times: a step for each sample; the ends stand for what the piece covers of theirs; none outside low … high.
-void weigh(Piece& piece, double first, double last, const TrajectoryOptions& options, Trajectory& trajectory) {
+/// Dwell times: a step for each sample; the ends stand for what the piece covers of theirs.
+void weigh(Piece& piece, double first, double last) {
   const std::size_t n = piece.size();
   const double half = piece.step / 2, end = piece.start + static_cast<double>(n - 1) * piece.step;
   piece.weight[0] += std::clamp(piece.start - first, 0.0, half) - half;
   piece.weight[n - 1] += std::clamp(last - end, 0.0, half) - half;
-  if (!(options.high > options.low)) return;
-  for (std::size_t k = 0; k < n; ++k) {
-    const double z = piece.position[2][k];
-    if (z >= options.low && z <= options.high) continue;
-    piece.weight[k] = 0;
-    ++trajectory.samples_trimmed;
+}
+
+bool is_trimmed(const TrajectoryOptions& options) { return options.high > options.low; }
+
+/// Samples first … last − 1 of a piece.
+Piece part_of(const Piece& whole, std::size_t first, std::size_t last) {
+  const auto cut = [&](const std::vector<double>& values) {
+    return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(first), values.begin() + static_cast<std::ptrdiff_t>(last));
+  };
+  Piece part;
+  part.start = whole.start + static_cast<double>(first) * whole.step;
+  part.step = whole.step;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    part.position[axis] = cut(whole.position[axis]);
+    part.velocity[axis] = cut(whole.velocity[axis]);
+    part.acceleration[axis] = cut(whole.acceleration[axis]);
+  }
+  part.position_variance = cut(whole.position_variance);
+  part.velocity_variance = cut(whole.velocity_variance);
+  part.acceleration_variance = cut(whole.acceleration_variance);
+  part.weight = cut(whole.weight);
+  return part;
+}
+
+/// Adds what of a piece lies within low … high, a piece for each stay: a track ends where the bead leaves.
+void add_pieces(Piece&& piece, const TrajectoryOptions& options, Trajectory& trajectory) {
+  if (!is_trimmed(options)) {
+    trajectory.pieces.push_back(std::move(piece));
+    return;
+  }
+  const auto inside = [&](std::size_t k) { return piece.position[2][k] >= options.low && piece.position[2][k] <= options.high; };
+  for (std::size_t begin = 0; begin < piece.size();) {
+    std::size_t end = begin;
+    while (end < piece.size() && inside(end)) ++end;
+    if (end > begin) trajectory.pieces.push_back(part_of(piece, begin, end));
+    for (; end < piece.size() && !inside(end); ++end) ++trajectory.samples_trimmed;
+    begin = end;
   }
 }
 
@@ -147,11 +179,11 @@ Trajectory fit_trajectory(const Run& run, const TrajectoryOptions& options) {
       continue;
     }
     sample(knots.time, spline, piece);
-    weigh(piece, first, last, options, trajectory);
-    trajectory.covered += last - first;
-    trajectory.pieces.push_back(std::move(piece));
+    weigh(piece, first, last);
+    add_pieces(std::move(piece), options, trajectory);
   }
-  if (trajectory.pieces.empty()) fail_empty(run, options, trajectory);
+  if (trajectory.pieces.empty() && trajectory.samples_trimmed == 0) fail_empty(run, options, trajectory);
+  for (const Piece& piece : trajectory.pieces) trajectory.covered += std::accumulate(piece.weight.begin(), piece.weight.end(), 0.0);
   trajectory.location_time = std::move(moved.time);
   trajectory.location_position = std::move(moved.position);
   return trajectory;

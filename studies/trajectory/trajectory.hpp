@@ -28,7 +28,7 @@ struct TrajectoryOptions {
   /// Correlation of the noise from one point to the next, 0 … 0.9; absent: estimated, also where `noise` is given.
   std::optional<double> noise_correlation = std::nullopt;
   std::array<double, 2> axis{0, 0};  ///< subtracted from x and y, m
-  double low = 0, high = 0;          ///< only samples with low ≤ z ≤ high are kept (end-face trimming); equal: all
+  double low = 0, high = 0;          ///< only samples with low ≤ z ≤ high are kept (end-face trimming), pieces end there; equal: all
 };
 
 /// One unbroken stretch at even times.
@@ -41,7 +41,7 @@ struct Piece {
   std::vector<double> position_variance;            ///< per sample, mean of the components, m²
   std::vector<double> velocity_variance;            ///< (m/s)²
   std::vector<double> acceleration_variance;        ///< (m/s²)²
-  std::vector<double> weight;                       ///< s: dwell time of each sample; 0 where trimmed
+  std::vector<double> weight;                       ///< s: dwell time of each sample
   std::size_t size() const { return position[0].size(); }
 };
 
@@ -56,7 +56,7 @@ struct Trajectory {
   std::array<std::vector<double>, 3> location_position;
   std::array<double, 3> noise{0, 0, 0};  ///< standard deviation of a point that was used, m
   double noise_correlation = 0;          ///< from one point to the next
-  double covered = 0;                    ///< s in pieces
+  double covered = 0;                    ///< s in pieces, without what was trimmed
   double span = 0;                       ///< s from the first to the last point
   std::uint64_t points_left_out = 0;     ///< in pieces that are too short
   std::uint64_t samples_trimmed = 0;
@@ -71,7 +71,8 @@ NoiseEstimate estimate_noise_model(const Run& run, double gap_limit);
 /// The same from all runs of one tracker together: steadier, for TrajectoryOptions::noise and noise_correlation.
 NoiseEstimate estimate_noise_model(std::span<const Run> runs, double gap_limit);
 
-/// Throws config::UserError when nothing is left, with the reason.
+/// Throws config::UserError when no piece is long enough, with the reason. Of a run that never comes between `low` and `high` no piece is
+/// left; `samples_trimmed` tells.
 Trajectory fit_trajectory(const Run& run, const TrajectoryOptions& options);
 
 }  // namespace millscope::studies

@@ -155,6 +155,31 @@ struct Sometimes : Twice {
   }
 };
 
+/// Results of every trait.
+struct Ranges : Means {
+  using Means::Means;
+  void accumulate(const FrameBlock& b, double* const* sums) const {
+    for (std::int64_t i = 0; i < b.frame_count; ++i) {
+      const double x = b.position[0][i];
+      sums[0][0] += b.weight[i];
+      sums[0][1] += b.weight[i] * x;
+      sums[1][1] += x < 0 ? b.weight[i] : 0;
+      sums[1][3] += x > 2.3 ? b.weight[i] : 0;
+    }
+  }
+  void finish(const double* const* s, Results& r) const {
+    const double all = s[0][0];
+    const double share[] = {s[1][1] / all, 0, 1, s[1][3] / all};  // the second was never seen, the third always
+    const double constant[] = {1, 2};
+    r.add("share", "1", share, {4}, "Shares.", {}, kShare);
+    r.add("rare", "%", 100 * s[1][3] / all, "A share.", kShare | kOdd);
+    r.add("rare_without", "%", 100 * s[1][3] / all, "The same without its range.");
+    r.add("seconds", "s", all, "Time.", kBookkeeping | kNotNegative);
+    r.add("perhaps_negative", "1", s[0][1] / all, "A mean about 0, called an amount.", kNotNegative);
+    r.add("constant", "1", constant, {2}, "Exact.");
+  }
+};
+
 struct Refuses : Twice {
   using Twice::Twice;
   void accumulate(const FrameBlock&, double* const*) const { throw Refusal("the beads are of the wrong colour; paint them"); }
@@ -204,6 +229,8 @@ TEST_CASE("blocks join without loss and stay within their stretch") {
   CHECK_THAT(r.find("means", "power")->value[0], WithinRel(2.0, 1e-9));  // work is lost where frames are not shared
   CHECK(r.meta.blocks.size() >= 40);
   CHECK(r.meta.blocks.size() <= 64);
+  // N_eff = n (1 − φ)/(1 + φ) of 8000 values with the memory φ = 0.8.
+  CHECK_THAT(r.meta.times[0].independent, WithinRel(889, 0.5));
   for (const ResultBlock& b : r.meta.blocks) CHECK(b.duration >= 3 * 0.045);
   CHECK(r.meta.blocks.front().stretch == 0);
   CHECK(r.meta.blocks.back().stretch == 1);
@@ -253,6 +280,32 @@ TEST_CASE("intervals of a whole analysis hold with 90 %") {
   const double coverage = hits / (2.0 * kTrials);
   CHECK(coverage >= 0.85);
   CHECK(coverage <= 0.95);
+}
+
+TEST_CASE("what never changed among what varies has no uncertainty, and intervals keep to their range") {
+  MadeUp source(9, 400);
+  std::vector<AnalyzerInstance> instances;
+  instances.push_back(local_instance<Ranges>("ranges", source.context()));
+  EngineOptions options = with_threads(1);
+  options.block = 1.9;  // four blocks: wide intervals
+  const ResultSet r = run_analyzers(source, instances, options);
+  const ResultArray& share = *r.find("ranges", "share");
+  CHECK(share.traits == kShare);
+  CHECK(r.find("ranges", "seconds")->traits == (kBookkeeping | kNotNegative));
+  for (const std::size_t k : {1, 2}) {
+    CHECK((share.flags[k] & kNoUncertainty) != 0);
+    CHECK(std::isnan(share.sem[k]));
+    CHECK(std::isnan(share.low[k]));
+  }
+  for (const std::size_t k : {0, 3}) CHECK((share.flags[k] & kNoUncertainty) == 0);
+  // Where all of a result is the same it is exact.
+  CHECK(r.find("ranges", "constant")->sem == std::vector<double>{0, 0});
+  for (const std::uint8_t flags : r.find("ranges", "constant")->flags) CHECK((flags & kNoUncertainty) == 0);
+  CHECK(std::isnan(r.find("ranges", "perhaps_negative")->value[0]));
+  CHECK((r.find("ranges", "perhaps_negative")->flags[0] & kOftenUndefined) != 0);
+  CHECK(r.find("ranges", "rare_without")->low[0] < 0);
+  CHECK(r.find("ranges", "rare")->low[0] == 0);
+  CHECK(r.find("ranges", "rare")->high[0] == r.find("ranges", "rare_without")->high[0]);
 }
 
 TEST_CASE("a plugin that errs is named, one that gives a result only sometimes is endured") {

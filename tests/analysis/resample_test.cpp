@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "analysis/support.hpp"
+#include "analyzers/ergodicity/fluctuation.hpp"
 #include "studies/analysis/results.hpp"
 
 using namespace analysis_test;
@@ -65,6 +66,73 @@ TEST_CASE("intervals hold with 90 % where blocks are three autocorrelation times
   // An event that is seen in one block of three.
   CHECK_THAT(coverage(40, 29, phi, 0.5 * std::erfc(1.8 / std::sqrt(2)), [](double x) { return x > 1.8 ? 1.0 : 0.0; }),
              WithinAbs(0.90, 0.06));
+}
+
+namespace {
+
+/// Beads whose windows are independent: what `ergodicity` makes of them, and how often its intervals hold the truth.
+struct BeadTrials {
+  double variance = 0, exponent = 0;  ///< fraction of the intervals that hold
+  double naive_ratio = 0, ratio = 0;  ///< of the standard error of the variance to its scatter over trials
+};
+
+BeadTrials bead_trials(std::int64_t beads, std::int64_t windows, std::size_t blocks, int trials) {
+  using millscope::analyzers::find_fluctuation;
+  BeadTrials result;
+  std::vector<double> found;
+  for (int trial = 0; trial < trials; ++trial) {
+    const auto size = static_cast<std::size_t>(windows * beads);
+    const std::vector<double> noise = autoregressive(size, 0, 500 + static_cast<std::uint64_t>(trial));
+    const std::vector<std::uint32_t> counts = draw_counts(blocks, kDraws, 1 + static_cast<std::uint64_t>(trial));
+    // Metric at the end and exponent, of the windows with these weights.
+    const auto of = [&](auto&& weight) {
+      std::vector<double> time(size), value(size);
+      for (std::size_t i = 0; i < size; ++i) {
+        const double w = weight(i / static_cast<std::size_t>(beads) * blocks / static_cast<std::size_t>(windows));
+        time[i] = w, value[i] = w * noise[i];
+      }
+      const auto f = find_fluctuation({time.data(), value.data(), windows, beads, 1}, 1, 0);
+      return std::pair{f.metric.back(), f.exponent};
+    };
+    const auto [metric, exponent] = of([](std::size_t) { return 1.0; });
+    std::vector<float> metric_without, exponent_without, resampled;
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const auto [m, e] = of([&](std::size_t block) { return block == b ? 0.0 : 1.0; });
+      metric_without.push_back(static_cast<float>(m - metric)), exponent_without.push_back(static_cast<float>(e - exponent));
+    }
+    for (std::size_t d = 0; trial < 20 && d < 50; ++d) {
+      const double m = of([&](std::size_t block) { return static_cast<double>(counts[d * blocks + block]); }).first;
+      resampled.push_back(static_cast<float>(m / metric));
+    }
+    std::vector<std::uint8_t> follows(blocks, 1);
+    follows[0] = 0;
+    const Uncertainty m = uncertainty(metric, influence_draws(metric_without, counts), metric_without, follows);
+    const Uncertainty e = uncertainty(exponent, influence_draws(exponent_without, counts), exponent_without, follows);
+    const double truth = 1.0 / static_cast<double>(windows);
+    result.variance += (m.low <= truth && truth <= m.high) / static_cast<double>(trials);
+    result.exponent += (e.low <= 1 && 1 <= e.high) / static_cast<double>(trials);
+    result.ratio += m.sem / trials;
+    for (const float r : resampled) result.naive_ratio += static_cast<double>(r) / 1000;
+    found.push_back(metric);
+  }
+  const double mean = std::accumulate(found.begin(), found.end(), 0.0) / trials;
+  double square = 0;
+  for (const double f : found) square += (f - mean) * (f - mean) / (trials - 1);
+  result.ratio /= std::sqrt(square);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a spread between beads gets its error from the blocks that are left out") {
+  const BeadTrials t = bead_trials(60, 40, 20, 150);
+  // Drawn with replacement a block's own noise counts twice: the resampled variance between beads is nearly twice what it should be.
+  CHECK_THAT(t.naive_ratio, WithinAbs(1.95, 0.15));
+  CHECK(t.variance >= 0.88);
+  CHECK(t.exponent >= 0.85);
+  CHECK(t.ratio > 0.95);
+  CHECK(t.ratio < 1.7);
+  WARN("intervals hold " << t.variance << " (variance), " << t.exponent << " (exponent); error over scatter " << t.ratio);
 }
 
 TEST_CASE("how often the intervals hold, as a table", "[.coverage]") {

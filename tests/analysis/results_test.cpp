@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <hdf5.h>
+
 #include "analysis/support.hpp"
 #include "studies/analysis/tables.hpp"
 
@@ -30,12 +32,12 @@ ResultSet some_results() {
   r.meta.draws = 3;
   r.meta.block_duration = 0.5;
   r.meta.blocks = {{0, 0.5, 0.5, 0}, {0.5, 1, 0.5, 0}, {0, 0.4, 0.4, 1}};
-  r.meta.times = {{"x", 0.1, 7, true}, {"z", nan, nan, false}};
+  r.meta.times = {{"x", 0.1, 7, true, 12}, {"z", nan, nan, false, nan}};
   r.meta.inputs = {{"frames.h5", "0123456789abcdef"}};
   r.meta.notes = {"a note"};
   r.meta.left_out = {"slip: no"};
   r.meta.provenance["version"] = "0.1.0";
-  ResultArray edges{"b_grid", "edges", "m", "Edges.", {3}, {""}, true, {0, 0.5, 1}, {}, {}, {}, {}, {}, {}};
+  ResultArray edges{"b_grid", "edges", "m", "Edges.", {3}, {""}, true, {0, 0.5, 1}, {}, {}, {}, {}, {}, {}, 0};
   ResultArray map{"b_grid",
                   "map",
                   "1",
@@ -49,8 +51,10 @@ ResultSet some_results() {
                   {1.2, nan, 4, 5},
                   {12, 1, 13, 14},
                   {0, 9, 2, 0},
-                  std::vector<float>(12, 0.25F)};
-  ResultArray number{"a_power", "power", "W", "Power.", {}, {}, false, {29.8}, {0.3}, {29.3}, {30.3}, {40}, {2}, {0.1F, -0.2F, 0.1F}};
+                  std::vector<float>(12, 0.25F),
+                  millscope::kShare | millscope::kOdd};
+  edges.traits = millscope::kAlongX;
+  ResultArray number{"a_power", "power", "W", "Power.", {}, {}, false, {29.8}, {0.3}, {29.3}, {30.3}, {40}, {2}, {0.1F, -0.2F, 0.1F}, 0};
   r.arrays = {edges, map, number};
   r.covariance_entries = {{2, 0}};
   r.covariance = {0.09};
@@ -73,6 +77,7 @@ TEST_CASE("results read back as they were written") {
   REQUIRE(back.meta.blocks.size() == 3);
   CHECK(back.meta.blocks[2].stretch == 1);
   CHECK(back.meta.times[0].sets_the_block);
+  CHECK(back.meta.times[0].independent == 12);
   CHECK(std::isnan(back.meta.times[1].time));
   CHECK(back.meta.inputs[0].hash == "0123456789abcdef");
   CHECK(back.meta.notes == r.meta.notes);
@@ -86,6 +91,7 @@ TEST_CASE("results read back as they were written") {
     CHECK(back.arrays[i].axes == r.arrays[i].axes);
     CHECK(back.arrays[i].flags == r.arrays[i].flags);
     CHECK(back.arrays[i].draws == r.arrays[i].draws);
+    CHECK(back.arrays[i].traits == r.arrays[i].traits);
     CHECK(back.arrays[i].doc == r.arrays[i].doc);
   }
   CHECK(back.arrays[1].value[3] == 4);
@@ -110,6 +116,46 @@ TEST_CASE("results are never overwritten unasked, and damaged ones are refused")
   CHECK_THAT(refusal([&] { read_results(scratch / "cut.h5"); }), Contains("cut.h5"));
   Drum().write(scratch / "run");
   CHECK_THAT(refusal([&] { read_results(scratch / "run" / "frames.h5"); }), Contains("'format' is 'millscope frames'"));
+}
+
+TEST_CASE("results that do not fit together are refused") {
+  const Scratch scratch;
+  const fs::path file = scratch / "results.h5";
+  const auto read = [&](auto&& spoil) {
+    ResultSet r = some_results();
+    spoil(r);
+    write_results(file, r, true);
+    return refusal([&] { read_results(file); });
+  };
+  // Draws of another number than the file says: the writer takes the number from `draws`, so a lie is made there.
+  CHECK_THAT(read([](ResultSet& r) {
+               r.meta.draws = 4;
+               r.arrays[1].draws.resize(16);
+               r.arrays[2].draws.clear();
+               r.arrays[1].axes = {"edges", "nowhere"};
+             }),
+             Contains("b_grid.map") && Contains("axis 'nowhere'") && Contains("damaged"));
+  CHECK_THAT(read([](ResultSet& r) {
+               r.arrays[0].value = {0, 0.25, 0.5, 1};
+               r.arrays[0].shape = {4};
+             }),
+             Contains("axis 'edges'"));
+  CHECK_THAT(read([](ResultSet& r) {
+               r.meta.draws = 1;
+               r.arrays[1].draws.resize(4);
+               r.arrays[2].draws.resize(1);
+             }),
+             Contains("draws"));
+  // A dataset of draws with another number of rows or another shape, put in with HDF5 itself.
+  write_results(file, some_results(), true);
+  for (const std::vector<hsize_t>& extent : {std::vector<hsize_t>{2, 2, 2}, std::vector<hsize_t>{3, 4, 1}, std::vector<hsize_t>{0, 2, 2}}) {
+    const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    H5Ldelete(opened, "analyzers/b_grid/map/draws", H5P_DEFAULT);
+    const hid_t space = H5Screate_simple(3, extent.data(), nullptr);
+    const hid_t set = H5Dcreate2(opened, "analyzers/b_grid/map/draws", H5T_NATIVE_FLOAT, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Dclose(set), H5Sclose(space), H5Fclose(opened);
+    CHECK_THAT(refusal([&] { read_results(file); }), Contains("b_grid.map") && Contains("draws"));
+  }
 }
 
 TEST_CASE("tables hold every value with the bounds of its cell") {

@@ -56,6 +56,9 @@ TEST_CASE("a third party's analyzer measures simulations and recordings, with un
   CHECK_THAT(simulated["numbers"]["their_speed"]["mean_speed"]["value"].get<double>(), WithinRel(2 * 0.045, 1e-6));
   CHECK(simulated["numbers"]["their_speed"]["mean_speed"]["unit"] == "m/s");
   CHECK(simulated["provenance"]["plugins"][0]["name"] == "their_speed");
+  // What it says of its results arrives: its beads' time is bookkeeping.
+  CHECK(simulated["numbers"]["their_speed"]["bead_time"]["traits"] == nlohmann::json({"bookkeeping", "not negative"}));
+  CHECK(simulated["numbers"]["their_speed"]["mean_speed"]["traits"].empty());
 
   std::ofstream out(scratch / "bead.csv");
   out << "# t x y z error\n";

@@ -74,6 +74,22 @@ TEST_CASE("data shorter than the memory of the charge cannot tell") {
   CHECK(number(o, "verdict") == 0);
 }
 
+TEST_CASE("what has not yet been forgotten is not taken for what never will be") {
+  // A memory of 200 s watched for 12 s: the fluctuation is level and all of it persists, as in a charge that centrifuges.
+  const Outcome slow = Analyzer("ergodicity", mill(12)).of(wanderers(200, 0.04, 300, 4));
+  for (const char* name : {"x", "speed", "depth"}) {
+    INFO(name);
+    CHECK(number(slow, std::string(name) + "_persistent") > 0.8);
+    CHECK(number(slow, std::string(name) + "_verdict") == 0);
+  }
+  // Two turns of a charge that does centrifuge.
+  const auto times = even_times(100, 0.02);
+  const Outcome brief =
+      Analyzer("ergodicity", mill(2)).of(all_beads(turning_disc(kBeads, 0.148, kOmega), kBeads, times, even_weights(100, 0.02), kOmega));
+  CHECK(number(brief, "verdict") == 0);
+  CHECK(number(brief, "depth_persistent") > 0.9);
+}
+
 TEST_CASE("few beads cannot tell") {
   AnalyzerContext c = mill(20);
   c.largest_id = 2;

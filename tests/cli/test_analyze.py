@@ -71,6 +71,18 @@ class Analyze(CliTest):
         self.assert_one_line(self.millscope("analyze", "out", "-o", "results", *POWER), "exists already")
         self.assertEqual(self.succeed("analyze", "out", "-o", "results", "--force", "-q", *POWER).stdout, "")
 
+    def test_force_leaves_nothing_of_the_earlier_results_and_all_of_the_users(self):
+        self.succeed("analyze", "out", "-o", "twice", "-q", *POWER)
+        mine = [self.folder / "twice" / name for name in ("tables/mine.csv", "pictures/mine.png", "pictures/pept_grid.txt", "notes.md")]
+        for file in mine:
+            file.write_text("mine")
+        self.assertTrue((self.folder / "twice/pictures/pept_grid.occupancy.png").exists())
+        self.succeed("analyze", "out", "-o", "twice", "--force", "-q", "--analyzers", "power", "--no-pictures")
+        left = sorted(str(f.relative_to(self.folder / "twice")) for f in (self.folder / "twice").rglob("*") if f.is_file())
+        self.assertEqual([f for f in left if "pept_grid." in f or f.endswith((".svg", ".png"))], ["pictures/mine.png", "pictures/pept_grid.txt"])
+        self.assertIn("tables/numbers.csv", left)
+        self.assertTrue(all(file.exists() for file in mine))
+
     def test_tracers(self):
         page = self.succeed("analyze", "out", "-o", "beads", "--tracer", "all", "--analyzers", "power", "--no-pictures").stdout
         self.assertIn("2 beads followed", page)

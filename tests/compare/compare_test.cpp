@@ -41,7 +41,7 @@ TEST_CASE("two runs of the same mill do not differ") {
   const Comparison c = compare(make_results({.seed = 1}), make_results({.seed = 2}), {});
   CHECK(c.verdict_kind == Verdict::no_difference);
   CHECK(c.verdict == "no difference at 5 % family-wise in 8 observables");
-  CHECK(c.given.empty());
+  CHECK(c.given.size() == 1);
   CHECK(c.notes.empty());
   CHECK(mentions(c.not_judged, "pept_grid.kind: names, not numbers"));
 }
@@ -121,9 +121,45 @@ TEST_CASE("with too few blocks there is no verdict") {
 
 TEST_CASE("given quantities and conditions that differ are told, not judged") {
   const Comparison c = compare(make_results({.seed = 1}), make_results({.seed = 2, .omega = -5, .critical = 7.5}), {});
-  CHECK(c.given == std::vector<std::string>{"models.critical_speed: 8.0000 rad/s in A, 7.5000 rad/s in B"});
+  REQUIRE(c.given.size() == 2);
+  CHECK(c.given.front() == "models.critical_speed: 8.0000 rad/s in A, 7.5000 rad/s in B");
   CHECK(mentions(c.notes, "the turning speed is 57.30 rpm in A and 47.75 rpm in B"));
   CHECK(find(c, "models.critical_speed") == nullptr);
+}
+
+TEST_CASE("how much data there are is told, never judged") {
+  // 40 s against 160 s: 75 standard errors.
+  const ResultSet a = make_results({.seed = 1}), b = make_results({.seed = 2, .blocks = 160});
+  const Comparison c = compare(a, b, {});
+  CHECK(c.verdict_kind == Verdict::no_difference);
+  CHECK(find(c, "power.seconds") == nullptr);
+  CHECK(mentions(c.given, "power.seconds: "));
+  CHECK(mentions(c.given, "how much data"));
+  // Nor does its shape stand in the way.
+  ResultSet other = b;
+  array_named(other, "power.seconds").unit = "min";
+  CHECK_NOTHROW(compare(a, other, {}));
+  // Without the bit it is a difference like any other.
+  ResultSet plain_a = a, plain_b = b;
+  array_named(plain_a, "power.seconds").traits = array_named(plain_b, "power.seconds").traits = 0;
+  CHECK(compare(plain_a, plain_b, {}).verdict_kind == Verdict::differ);
+}
+
+TEST_CASE("a cell that one side never visited is not judged") {
+  // As `analyze` writes it, and as earlier results had it: exactly zero.
+  for (const std::uint8_t flags : {std::uint8_t{kNoUncertainty}, std::uint8_t{0}}) {
+    ResultSet a = make_results({.seed = 1});
+    const ResultSet b = make_results({.seed = 2});
+    ResultArray& x = array_named(a, "distributions.x_percent");
+    const double none = flags == 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
+    x.value[0] = 0, x.sem[0] = x.low[0] = x.high[0] = none, x.flags[0] = flags, x.effective_blocks[0] = 40;
+    for (std::size_t r = 0; r < x.draws.size(); r += x.size()) x.draws[r] = 0;
+    const Comparison c = compare(a, b, {.only = {"distributions.x_percent"}});
+    REQUIRE(c.observables.size() == 1);
+    CHECK(c.observables[0].elements.size() == x.size() - 1);
+    CHECK(c.observables[0].too_few == 1);
+    CHECK(c.verdict_kind == Verdict::no_difference);
+  }
 }
 
 TEST_CASE("other grids and units are refused, with the remedy") {

@@ -71,15 +71,15 @@ class Maker {
 };
 
 ResultArray array_of(const char* analyzer, const char* name, const char* unit, std::vector<std::size_t> shape,
-                     std::vector<std::string> axes, const char* doc = "") {
+                     std::vector<std::string> axes, std::uint32_t traits = 0, const char* doc = "") {
   ResultArray array;
   array.analyzer = analyzer, array.name = name, array.unit = unit, array.doc = doc;
-  array.shape = std::move(shape), array.axes = std::move(axes);
+  array.shape = std::move(shape), array.axes = std::move(axes), array.traits = traits;
   return array;
 }
 
 void add_edges(Maker& maker, const char* analyzer, const char* name, std::size_t cells) {
-  ResultArray edges = array_of(analyzer, name, "m", {cells + 1}, {});
+  ResultArray edges = array_of(analyzer, name, "m", {cells + 1}, {}, name[0] == 'x' ? millscope::kAlongX : 0U);
   edges.is_axis = true;
   for (std::size_t i = 0; i <= cells; ++i) edges.value.push_back(kRadius * (2 * static_cast<double>(i) / static_cast<double>(cells) - 1));
   maker.add_exact(std::move(edges));
@@ -92,7 +92,7 @@ void add_numbers(Maker& maker, const MadeUp& recipe) {
     place.push_back({(recipe.omega < 0 ? -0.05 : 0.05) + 0.004 * maker.random().normal()});
   }
   maker.add(array_of("power", "power_gravity", "W", {}, {}), power);
-  maker.add(array_of("power", "centre_of_mass_x", "m", {}, {}), place);
+  maker.add(array_of("power", "centre_of_mass_x", "m", {}, {}, millscope::kOdd), place);
   ResultArray critical = array_of("models", "critical_speed", "rad/s", {}, {});
   critical.value = {recipe.critical};
   maker.add_exact(std::move(critical));
@@ -109,8 +109,9 @@ void add_distribution(Maker& maker, const MadeUp& recipe) {
     for (double& v : p) v *= 100 / sum, c.push_back(c.back() + v);
     percent.push_back(p), cumulative.push_back(c);
   }
-  maker.add(array_of("distributions", "x_percent", "%", {recipe.cells}, {"x_edges"}), percent);
-  maker.add(array_of("distributions", "x_cumulative", "%", {recipe.cells + 1}, {"x_edges"}), cumulative);
+  maker.add(array_of("distributions", "x_percent", "%", {recipe.cells}, {"x_edges"}, millscope::kShare), percent);
+  maker.add(array_of("distributions", "x_cumulative", "%", {recipe.cells + 1}, {"x_edges"}, millscope::kShare | millscope::kCumulative),
+            cumulative);
 }
 
 void add_maps(Maker& maker, const MadeUp& recipe) {
@@ -129,10 +130,14 @@ void add_maps(Maker& maker, const MadeUp& recipe) {
     }
   }
   maker.add(array_of("pept_grid", "speed", "m/s", {n, n}, {"y_edges", "x_edges"}), speed);
-  maker.add(array_of("pept_grid", "velocity_x", "m/s", {n, n}, {"y_edges", "x_edges"}), velocity);
-  ResultArray kind = array_of("pept_grid", "kind", "1", {n, n}, {"y_edges", "x_edges"}, "0 nothing, 1 en masse, 2 cascading layer.");
+  maker.add(array_of("pept_grid", "velocity_x", "m/s", {n, n}, {"y_edges", "x_edges"}, millscope::kOdd), velocity);
+  ResultArray kind = array_of("pept_grid", "kind", "1", {n, n}, {"y_edges", "x_edges"}, 0, "0 nothing, 1 en masse, 2 cascading layer.");
   for (std::size_t cell = 0; cell < n * n; ++cell) kind.value.push_back(static_cast<double>((cell + recipe.seed) % 3));
   maker.add_exact(std::move(kind));
+  // How long it was watched: 1 s a block, give or take.
+  std::vector<std::vector<double>> seconds(recipe.blocks);
+  for (auto& block : seconds) block.push_back(static_cast<double>(recipe.blocks) * (1 + 0.1 * maker.random().normal()));
+  maker.add(array_of("power", "seconds", "s", {}, {}, millscope::kBookkeeping | millscope::kNotNegative), seconds);
 }
 
 }  // namespace

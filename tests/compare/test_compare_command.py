@@ -67,7 +67,10 @@ class Compare(unittest.TestCase):
         again = self.call("compare", "one", "fast", "-o", "out")
         self.assertEqual(again.returncode, 2)
         self.assertIn("comparison.json", again.stderr)
-        self.assertEqual(self.call("compare", "one", "fast", "-o", "out", "--force", "-q").returncode, 0)
+        (self.folder / "out" / "pictures" / "mine.png").write_text("mine")
+        self.assertEqual(self.call("compare", "one", "fast", "-o", "out", "--force", "-q", "--only", "power").returncode, 0)
+        left = [f.name for f in (self.folder / "out" / "pictures").iterdir() if not f.name.startswith("power.")]
+        self.assertEqual(left, ["mine.png"])  # nothing of the earlier comparison, all of the user's
 
     def test_json(self):
         done = self.call("compare", "one", "two", "--json", "--only", "power")

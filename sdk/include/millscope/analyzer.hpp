@@ -104,13 +104,30 @@ struct ArrayInfo {
   std::uint64_t shape[kMaxRank];
 };
 
+/// What the host must know of a result beyond its numbers. Bits of Result::traits.
+///
+/// The mirror image is that of a mill which turns the other way, seen from its other end: x → −x, Ω → −Ω. A result without one of the
+/// bits kOdd … kCumulative is the same in it, as powers and angles in the turning sense are.
+enum ResultTrait : std::uint32_t {
+  kBookkeeping = 1,   ///< how much data there are, or how sure something is: follows the length of a run; never compared
+  kOdd = 2,           ///< changes its sign in the mirror image: a component along x, what carries the sign of Ω
+  kFirstOdd = 4,      ///< of three components x, y, z the first does
+  kAlongX = 8,        ///< edges or centres along x: reversed and negated in the mirror image, and with them the cells along this axis
+  kCumulative = 16,   ///< a share below each edge; along x the mirror image has the share above it
+  kShare = 32,        ///< between 0 and 1, in "%" between 0 and 100; so is its interval
+  kNotNegative = 64,  ///< a count, an amount: its interval ends at 0; undefined where over 5 % of its resamples are below 0 or undefined
+  /// A spread between beads, or what follows from one. Blocks that a resample holds twice would count their own noise as spread, so the
+  /// error comes from leaving out one block after the other.
+  kSpread = 128,
+};
+
 /// One result.
 struct Result {
   const char* name;  ///< lower_case_words, unique in the analyzer
   const char* unit;
   const char* doc;
   std::uint32_t rank;
-  std::uint32_t reserved;
+  std::uint32_t traits;  ///< bits of ResultTrait
   std::uint64_t shape[kMaxRank];
   const double* values;  ///< row-major; NaN where undefined
   /// For each dimension the name of the result of this analyzer that holds its edges (one number more than the dimension) or its
@@ -137,7 +154,7 @@ struct AnalyzerTable {
 };
 
 inline constexpr std::uint64_t kAnalyzerLayout =
-    hash_numbers({9, sizeof(FrameBlock), sizeof(AnalyzerContext), sizeof(ArrayInfo), sizeof(Result), sizeof(AnalyzerTable), sizeof(Value),
+    hash_numbers({10, sizeof(FrameBlock), sizeof(AnalyzerContext), sizeof(ArrayInfo), sizeof(Result), sizeof(AnalyzerTable), sizeof(Value),
                   sizeof(Parameter), offsetof(FrameBlock, position), offsetof(FrameBlock, location_count), offsetof(Result, axis),
                   offsetof(AnalyzerContext, has), offsetof(AnalyzerContext, impact_energy_edge), kMaxRank});
 

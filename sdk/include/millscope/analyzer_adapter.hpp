@@ -40,13 +40,15 @@ class Results {
  public:
   explicit Results(const ResultSink& sink) : sink_(sink) {}
 
-  /// One number.
-  void add(const char* name, const char* unit, double value, const char* doc) { add(name, unit, &value, {}, doc); }
+  /// One number; `traits`: bits of ResultTrait.
+  void add(const char* name, const char* unit, double value, const char* doc, std::uint32_t traits = 0) {
+    add(name, unit, &value, {}, doc, {}, traits);
+  }
   /// An array, row-major; `axes` names the results that hold the edges or centres of its dimensions.
   void add(const char* name, const char* unit, const double* values, std::initializer_list<std::uint64_t> shape, const char* doc,
-           std::initializer_list<const char*> axes = {}) {
+           std::initializer_list<const char*> axes = {}, std::uint32_t traits = 0) {
     const ArrayInfo info = additive(name, unit, shape);
-    Result result{name, unit, doc, info.rank, 0, {info.shape[0], info.shape[1], info.shape[2]}, values, {}};
+    Result result{name, unit, doc, info.rank, traits, {info.shape[0], info.shape[1], info.shape[2]}, values, {}};
     std::copy_n(axes.begin(), std::min<std::size_t>(axes.size(), kMaxRank), result.axis);
     sink_.add(sink_.host, &result);
   }
