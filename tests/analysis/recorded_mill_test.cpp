@@ -101,7 +101,9 @@ TEST_CASE("where only a bound is found, the note says it and the value that is u
 }
 
 TEST_CASE("steps and gaps in which a motion is lost are refused") {
-  const auto read = [](const std::string& text) { return read_trajectory_options(millscope::config::parse_document(text, "settings.yaml")); };
+  const auto read = [](const std::string& text) {
+    return read_trajectory_options(millscope::config::parse_document(text, "settings.yaml"));
+  };
   CHECK(read("{step: 5 ms, gap_limit: 1 s, noise: 1 mm, noise_correlation: 0.2}").noise_correlation == 0.2);
   CHECK_FALSE(read("{noise: 1 mm}").noise_correlation);
   CHECK_THAT(refusal([&] { read("{step: 10 s}"); }), Contains("settings.yaml:1:") && Contains("give e.g. 1 ms"));
