@@ -63,7 +63,8 @@ TEST_CASE("another code's recordings of one mill: five runs, duplicates, outlier
     rows += run.report.rows;
     dropped += run.report.outliers + run.report.outside;
     duplicates += run.report.duplicates;
-    for (const double each : estimate_noise_model(run, recording.gap_limit).standard_deviation) CHECK((each > 0.5e-3 && each < 1e-3));  // its README: 0.5 to 1 mm
+    for (const double each : estimate_noise_model(run, recording.gap_limit).standard_deviation)
+      CHECK((each > 0.5e-3 && each < 1e-3));  // its README: 0.5 to 1 mm
   }
   CHECK(rows == 32180);
   CHECK(duplicates > 100);
