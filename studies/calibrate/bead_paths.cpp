@@ -87,9 +87,11 @@ TrackContext BeadPaths::context(std::size_t i, std::uint64_t seed) const {
   context.seed = studies::bead_seed(seed, ids_[i]);
   context.bead_radius = radius_[i];
   context.mill_radius = mill_.context.mill_radius;
-  context.mill_low = part ? place_.low : mill_.context.mill_low;
-  context.mill_high = part ? place_.high : mill_.context.mill_high;
+  const double half = 0.5 * (place_.high - place_.low);
+  context.mill_low = part ? place_.middle - half : mill_.context.mill_low;
+  context.mill_high = part ? place_.middle + half : mill_.context.mill_high;
   context.omega = mill_.context.omega;
+  context.period = part ? 0 : mill_.period;
   context.period = part ? place_.high - place_.low : mill_.period;
   return context;
 }

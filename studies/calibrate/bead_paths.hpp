@@ -18,15 +18,15 @@ namespace millscope::calibrate {
 inline constexpr double kFrameStep = 0.005;  ///< s, between the frames that a calibration asks for
 inline constexpr double kPathStep = 0.0005;  ///< s, between the points of a path
 
-/// Where a real mill lies along its axis, m.
+/// Where a recorded bead was along the axis, and the rig's middle, m.
 struct AxialPlace {
-  double low = 0, high = 0;
+  double low = 0, high = 0, middle = 0;
 };
 
 class BeadPaths {
  public:
-  /// At most `beads` of the run, evenly over their ids, from the time on at which the case begins its analysis. `place`: of a periodic
-  /// slice, the mill of which it is a part: its beads are spread over that length, so that the camera sees them as far away as it would.
+  /// At most `beads` of the run, evenly over their ids, from the time on at which the case begins its analysis. The beads of a periodic
+  /// slice are spread over `place`, so that the camera sees them as far away as it saw the recorded one.
   /// Throws config::UserError when the run has no frames or fewer than four.
   BeadPaths(const std::filesystem::path& run, int beads, const AxialPlace& place, const host::Registry& registry);
 

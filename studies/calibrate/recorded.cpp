@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -51,7 +52,10 @@ std::string camera_of(const studies::Recording& recording, const Study& study) {
   if (study.observing.camera == "exact") return kExactCamera;
   if (study.observing.camera != "recording") return file_text(study.observing.camera);
   try {
-    return studies::camera_text(studies::estimate_camera(recording), recording.file.string());
+    std::string text = studies::camera_text(studies::estimate_camera(recording), recording.file.string());
+    // No recording tells its location window; about one over the rate is usual, and nearer to the truth than none.
+    if (const std::size_t blur = text.find("# blur: {"); blur != std::string::npos) text.erase(blur, 2);
+    return text;
   } catch (const UserError& e) {
     throw UserError(fmt::format("the camera cannot be estimated: {}; give one with 'observe: {{camera: FILE.yaml}}'", e.what()));
   }
@@ -111,7 +115,7 @@ Json to_json(const RecordedCondition& r) {
           {"noise", r.noise},
           {"noise_correlation", r.noise_correlation},
           {"gap_limit", r.gap_limit},
-          {"place", {r.place.low, r.place.high}},
+          {"place", {r.place.low, r.place.high, r.place.middle}},
           {"mass", r.mass},
           {"omega", r.omega},
           {"measured_power", r.measured_power}};
@@ -125,12 +129,27 @@ RecordedCondition recorded_from(const Json& j, const std::string& identity) {
   r.noise = j.at("noise").get<std::array<double, 3>>();
   r.noise_correlation = j.at("noise_correlation");
   r.gap_limit = j.at("gap_limit");
-  r.place = {j.at("place").at(0), j.at("place").at(1)};
+  r.place = {j.at("place").at(0), j.at("place").at(1), j.at("place").at(2)};
   r.mass = j.at("mass");
   r.omega = j.at("omega");
   r.measured_power = j.at("measured_power");
   r.identity = identity;
   return r;
+}
+
+/// Nine tenths of the locations along the axis, and the middle from which the camera's noise is counted.
+AxialPlace place_of(const studies::Recording& recording, const Observing& observing) {
+  std::vector<double> z;
+  for (const studies::Run& run : recording.runs) {
+    for (const double value : run.position[2]) {
+      if (!observing.z_low || (value >= *observing.z_low && value <= *observing.z_high)) z.push_back(value);
+    }
+  }
+  if (z.empty()) throw UserError(fmt::format("{}: no location lies between z_low and z_high; correct 'observe'", recording.file.string()));
+  std::sort(z.begin(), z.end());
+  const auto at = [&](double part) { return z[static_cast<std::size_t>(part * static_cast<double>(z.size() - 1))]; };
+  const bool ends = recording.frame && recording.frame->high > recording.frame->low;
+  return {at(0.05), at(0.95), ends ? 0.5 * (recording.frame->low + recording.frame->high) : at(0.5)};
 }
 
 RecordedCondition look(const studies::Recording& recording, std::size_t condition, const Processing& how) {
@@ -148,7 +167,7 @@ RecordedCondition look(const studies::Recording& recording, std::size_t conditio
   options.noise_correlation = r.noise_correlation;
   if (observing.z_low) options.low = *observing.z_low, options.high = *observing.z_high;
   const studies::ResultSet results = process(recording, options, how);
-  r.place = {observing.z_low.value_or(results.meta.context.mill_low), observing.z_high.value_or(results.meta.context.mill_high)};
+  r.place = place_of(recording, observing);
   r.omega = results.meta.context.omega;
   r.measured_power = recording.condition.power.has_value();
   std::vector<std::string> notes = results.meta.notes;

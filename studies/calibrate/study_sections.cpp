@@ -122,12 +122,11 @@ std::string last_word(const std::string& path) { return path.substr(path.rfind('
 
 /// Short names where they are unique.
 void name_parameters(std::vector<Parameter>& parameters) {
-  for (Parameter& p : parameters) {
-    if (!p.name.empty()) continue;
-    const std::string word = last_word(p.path);
-    const auto same = std::count_if(parameters.begin(), parameters.end(),
-                                    [&](const Parameter& o) { return last_word(o.path) == word || o.name == word; });
-    p.name = same == 1 ? word : p.path;
+  std::vector<std::string> words;  // that would be names
+  for (const Parameter& p : parameters) words.push_back(p.name.empty() ? last_word(p.path) : p.name);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (!parameters[i].name.empty()) continue;
+    parameters[i].name = std::count(words.begin(), words.end(), words[i]) == 1 ? words[i] : parameters[i].path;
   }
 }
 

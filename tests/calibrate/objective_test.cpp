@@ -1,0 +1,68 @@
+#include "studies/calibrate/objective.hpp"
+#include "tests/calibrate/made_up_mill.hpp"
+
+using namespace millscope::calibrate;
+
+namespace {
+
+Observation observation(double power, std::vector<double> x, std::vector<double> speed, Eigen::VectorXd value, double variance) {
+  Observation o;
+  o.power = {power, 0.1, ""};
+  o.x = {{}, std::move(x), {}};
+  o.speed = {{}, std::move(speed), {}};
+  o.value = std::move(value);
+  o.covariance = variance * Eigen::MatrixXd::Identity(o.value.size(), o.value.size());
+  for (Eigen::Index i = 0; i < o.value.size(); ++i) o.observables.push_back({i == 0 ? "slip.mean" : "other", "1", "term"});
+  return o;
+}
+
+}  // namespace
+
+TEST_CASE("Eq. 4.3 by hand") {
+  // |28.6 − 30.1| = 1.5 W; x: differences 1, −1, 0, 0 % → √(2/4); speed: 3, −4 % → √(25/2)
+  const Observation recorded = observation(30.1, {10, 20, 30, 40}, {50, 50}, Eigen::Vector2d(2, 1), 1);
+  const Observation simulated = observation(28.6, {11, 19, 30, 40}, {53, 46}, Eigen::Vector2d(3, 1), 1);
+  const ChagasObjective o = chagas2015(recorded, simulated, {});
+  CHECK(o.power == Approx(1.5));
+  CHECK(o.x == Approx(0.70710678));
+  CHECK(o.speed == Approx(3.53553391));
+  CHECK(o.value() == Approx(5.74264069));
+  const ChagasObjective with_term = chagas2015(recorded, simulated, {Term{"slip", "mean", 0.1, {}}});
+  CHECK(with_term.terms == Approx(5));  // 50 % of 2, times 0.1
+  CHECK_FALSE(testing::message_of([&] { chagas2015(recorded, observation(1, {1}, {1}, Eigen::Vector2d(0, 0), 1), {}); }).empty());
+}
+
+TEST_CASE("the misfit weighs by both covariances") {
+  const Observation recorded = observation(1, {1}, {1}, Eigen::Vector2d(0, 0), 1),
+                    simulated = observation(1, {1}, {1}, Eigen::Vector2d(2, 4), 3);
+  CHECK(misfit(recorded, simulated) == Approx((4.0 + 16.0) / 4.0));
+  Observation correlated = recorded;
+  correlated.covariance << 1, 0.8, 0.8, 1;
+  Observation exact = simulated;
+  exact.covariance.setZero();
+  // r' C⁻¹ r with C⁻¹ = [1 −.8; −.8 1]/0.36: (4 − 12.8 + 16)/0.36
+  CHECK(misfit(correlated, exact) == Approx(7.2 / 0.36));
+}
+
+TEST_CASE("correlations of chance are shrunk away, real ones stay") {
+  std::srand(3);
+  const Eigen::MatrixXd independent = Eigen::MatrixXd::Random(400, 4);
+  Eigen::MatrixXd joint = independent;
+  for (int c = 1; c < 4; ++c) joint.col(c) = independent.col(0) + 0.3 * independent.col(c);
+  const Eigen::MatrixXd a = shrunk_covariance(independent, 12), b = shrunk_covariance(joint, 200);
+  CHECK(std::abs(a(0, 1)) < 0.2 * std::sqrt(a(0, 0) * a(1, 1)));
+  CHECK(b(0, 1) > 0.85 * std::sqrt(b(0, 0) * b(1, 1)));
+  CHECK(a(0, 0) == Approx(1.0 / 3.0).epsilon(0.15));
+}
+
+TEST_CASE("an observation comes back from its file") {
+  Observation o = observation(30.1, {10, 20}, {50, 50}, Eigen::Vector2d(1.0 / 3.0, 2), 0.7);
+  o.x.edges = {0, 1, 2};
+  o.x.sem = {0.1, 0.2};
+  o.notes = {"a note"};
+  const Observation back = observation_from(to_json(o));
+  CHECK(back.value == o.value);
+  CHECK(back.covariance == o.covariance);
+  CHECK(back.x.percent == o.x.percent);
+  CHECK(back.notes == o.notes);
+}

@@ -1,0 +1,58 @@
+#include "studies/calibrate/outputs.hpp"
+
+#include <fstream>
+#include <sstream>
+
+#include "studies/calibrate/validate.hpp"
+#include "tests/calibrate/made_up_mill.hpp"
+
+using namespace millscope;
+using namespace millscope::calibrate;
+using testing::Folder;
+
+namespace {
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ostringstream out;
+  out << std::ifstream(file).rdbuf();
+  return out.str();
+}
+
+}  // namespace
+
+TEST_CASE("a calibration leaves its numbers, its case, its runs and its report") {
+  const Folder folder;
+  const Study study =
+      testing::study_of(folder, "  pairs.glass~glass.mu: {range: [0.1, 0.8], tied: [pairs.glass~liner.mu]}\n  a.e: {range: [0.3, 0.9]}\n",
+                        "method: response_surface\nbudget: {simulations: 26}\n");
+  testing::MadeUpMill mill(study, Eigen::Vector2d(0.42, 0.7), 0.02);
+  mill.fails = [](const Eigen::VectorXd& p) { return p[0] > 0.62 && p[1] > 0.74; };
+  Evaluator evaluator(study, mill.machinery());
+  const Calibration c = calibrate::calibrate(evaluator);
+  const std::filesystem::path out = folder.path / "out";
+  write_outputs(evaluator, c, out);
+  CHECK(calibrated_set(out / "calibration.json", study) == c.best);
+  const config::Node found = config::load_document((out / "calibrated.yaml").string());
+  CHECK(std::stod(found.at("pairs").at("glass~liner").at("mu").text()) == c.best[0]);
+  CHECK(found.at("schema_version").text() == "1");  // of the base, too, which is found from here
+  const std::string runs = text_of(out / "runs.csv"), report = text_of(out / "report.md");
+  CHECK(std::count(runs.begin(), runs.end(), '\n') == static_cast<std::ptrdiff_t>(evaluator.trials().size()) + 1);
+  CHECK(runs.find("a bead ran away") != std::string::npos);
+  CHECK(report.find("The dominant factor is **mu**") != std::string::npos);
+  CHECK(report.find("parameter sets failed") != std::string::npos);
+  for (const char* picture : {"dry75_x.svg", "dry75_speed.svg", "surface.svg", "profile_mu.svg", "posterior_mu_e.svg"})
+    CHECK(std::filesystem::exists(out / "pictures" / picture));
+  const Validation v = validate(evaluator, c.best, {1});
+  write_validation(v, evaluator, folder.path / "val");
+  CHECK(text_of(folder.path / "val" / "validation.md").find("## dry50 (held out)") != std::string::npos);
+  CHECK(std::filesystem::exists(folder.path / "val" / "validation.json"));
+}
+
+TEST_CASE("a calibration of another study is refused") {
+  const Folder folder;
+  const Study study = testing::study_of(folder, "  a.mu: {range: [0.1, 0.8]}\n", "");
+  const auto other = folder.write("c.json", R"({"parameters": [{"path": "a.e", "value": 1}]})");
+  CHECK(testing::message_of([&] { calibrated_set(other, study); }).find("parameter 'a.mu' has no value in") != std::string::npos);
+  CHECK_FALSE(testing::message_of([&] { calibrated_set(folder.write("n.json", "[]"), study); }).empty());
+  CHECK_FALSE(testing::message_of([&] { calibrated_set(folder.path / "gone.json", study); }).empty());
+}
