@@ -19,6 +19,7 @@ import time
 from pathlib import Path
 
 sys.dont_write_bytecode = True
+from verify_calibrate import calibrate
 from verify_camera import bbosa, camera, roundtrip
 from verify_compare import differences
 from verify_rows import row, show
@@ -270,7 +271,7 @@ def single_beads(bench, run):
     return {"single": single, "all": every, "spread": spread, "spread_error": spread / math.sqrt(2 * len(single))}
 
 
-ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences)}
+ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate)}
 QUICK = ("crosscheck", "hashes", "memory")
 
 
