@@ -188,7 +188,8 @@ class Circulation {
                   ("Correlation of a bead's " + name + " with itself.").c_str(), {"lag"});
       results.add(
           (name + "_correlation_time").c_str(), "s", tau,
-          ("Integral correlation time of a bead's " + name + " over the longest lag seen; NaN where a sixth of that is shorter.").c_str());
+          ("Integral correlation time of a bead's " + name + " over the longest lag seen; NaN where a sixth of that is shorter.").c_str(),
+          kBookkeeping);
       results.add((name + "_independent_samples").c_str(), "1", tau > 0 ? time / (2 * tau) : kNaN,
                   ("Independent samples of " + name + " in the followed beads' time, T/(2 tau); NaN where tau may be 0.").c_str(),
                   kBookkeeping | kNotNegative);
