@@ -105,8 +105,9 @@ inline void add_decay(double instant_variance, Fluctuation& out) {
   out.diffusion = ratio(inverse, late);
 }
 
-/// Memory of the windows' means about each bead's own mean, s.
-inline double memory_within(const WindowSums& sums, double window) {
+/// Memory of the windows' means about each bead's own mean, s; `between`: variance between the beads.
+inline double memory_within(const WindowSums& sums, double window, double between) {
+  constexpr double kStill = 1e-3;  // of the variance between beads: they stand still in f
   const std::vector<double> means = bead_means(sums, 0, sums.windows);
   const auto beads = static_cast<std::size_t>(sums.beads), windows = static_cast<std::size_t>(sums.windows);
   std::vector<double> deviation(windows * beads);
@@ -114,7 +115,7 @@ inline double memory_within(const WindowSums& sums, double window) {
     const auto w = static_cast<std::int64_t>(i / beads), bead = static_cast<std::int64_t>(i % beads);
     deviation[i] = ratio(sums.v(w, bead), sums.t(w, bead)) - means[i % beads];
   }
-  double variance = 0, memory = 0, size = 0;
+  double variance = 0, memory = 0;
   for (std::size_t lag = 0; lag < windows; ++lag) {
     double product = 0, pairs = 0;
     for (std::size_t i = 0; i + lag * beads < deviation.size(); ++i) {
@@ -124,8 +125,7 @@ inline double memory_within(const WindowSums& sums, double window) {
     const double covariance = ratio(product, pairs);
     if (lag == 0) {
       variance = covariance;
-      for (const double m : means) size = std::fmax(size, std::isnan(m) ? 0 : m * m);
-      if (!(variance > 1e-12 * size)) return 0;  // each bead stands still in f
+      if (!(variance > kStill * between)) return 0;
     } else if (!(covariance > 0)) {
       break;
     } else {
@@ -183,7 +183,7 @@ inline Fluctuation find_fluctuation(const WindowSums& sums, double instant_varia
   out.persistent = kept / final_metric;
   out.persistent_error = std::sqrt(covariance(first, first) * covariance(last, last) / (beads - 1)) / final_metric;
   const double span = out.elapsed.back();
-  out.memory = detail::memory_within(sums, span / static_cast<double>(sums.windows));
+  out.memory = detail::memory_within(sums, span / static_cast<double>(sums.windows), final_metric);
   if (span < kTurns * turn || span < kMemories * out.memory) return out;
   const bool forgotten = out.persistent < 2 * out.persistent_error;
   if (forgotten && out.exponent >= kDecays) out.verdict = 1;
