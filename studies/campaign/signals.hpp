@@ -1,7 +1,7 @@
 // SIGINT and SIGTERM while a campaign runs.
 #pragma once
 
-#include <signal.h>
+#include <csignal>
 
 namespace millscope::campaign {
 

@@ -125,7 +125,7 @@ std::optional<std::map<std::string, std::string>> queue(std::string& trouble) {
     std::istringstream cells(row);
     std::string name, index, state;
     if (cells >> name && name == ";") cells >> name;  // between two rows
-    if (cells >> index >> state) tasks[name + " " + index] = state;
+    if (cells >> index >> state) tasks[fmt::format("{} {}", name, index)] = state;
   }
   return tasks;
 }

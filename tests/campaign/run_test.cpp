@@ -22,7 +22,7 @@ std::map<std::string, std::pair<fs::file_time_type, std::uintmax_t>> state_of(co
 
 /// A program that notes when simulations begin and end, and lasts long enough for two to meet.
 fs::path noting_program(const Folder& folder, const fs::path& notes) {
-  const fs::path script = folder.path() / "noting.sh";
+  fs::path script = folder.path() / "noting.sh";
   write(script, "#!/bin/sh\necho begin >> '" + notes.string() + "'\nsleep 0.3\n'" + folder.options().program.string() +
                     "' \"$@\"\ncode=$?\necho end >> '" + notes.string() + "'\nexit $code\n");
   ::chmod(script.c_str(), 0755);
