@@ -25,10 +25,12 @@ VectorXd flattened(const VectorXd& log_weights) {
   const double most = log_weights.maxCoeff();
   if (!std::isfinite(most))
     throw config::UserError("no parameters in the ranges explain the recording at all: the emulator's covariance is singular there");
-  VectorXd weights;
-  for (double temperature = 1; temperature < 1e12; temperature *= 1.5) {
+  const auto enough = [](const VectorXd& w) { return w.sum() * w.sum() >= kFraction * static_cast<double>(w.size()) * w.squaredNorm(); };
+  VectorXd weights = (log_weights.array() - most).exp();
+  double temperature = 1;
+  while (!enough(weights) && temperature < 1e12) {
+    temperature *= 1.5;
     weights = ((log_weights.array() - most) / temperature).exp();
-    if (weights.sum() * weights.sum() >= kFraction * static_cast<double>(weights.size()) * weights.squaredNorm()) break;
   }
   return weights;
 }
