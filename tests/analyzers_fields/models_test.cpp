@@ -69,6 +69,8 @@ TEST_CASE("options stand for what a recording does not know; the rest is left ou
   const Outcome o = of_study(0.75, "filling=0.313 porosity=0.37 length=0.27", bare);
   CHECK(number(o, "power_austin_concha") == Approx(28.8).margin(0.05));
   CHECK(number(o, "power_morrell_grate") == Approx(30.6).margin(0.05));
+  bare.mill_length = 0.27;  // known, though the end faces are not
+  CHECK(number(of_study(0.75, "filling=0.313 porosity=0.37", bare), "power_morrell_grate") == Approx(30.6).margin(0.05));
   const Outcome no_porosity = of_study(0.75, "filling=0.313 length=0.27", bare);
   CHECK(no_porosity.count("power_bond") == 1);
   CHECK(no_porosity.count("power_morrell_grate") == 0);
