@@ -96,7 +96,7 @@ TEST_CASE("a simulation that fails is recorded, and tried again only when asked"
   CHECK((!third[0].cached && third[0].message == first[0].message && attempts() == 2));
 }
 
-TEST_CASE("a program that crashes or says nothing is recorded; one that cannot be started ends the campaign") {
+TEST_CASE("a program that crashes or says nothing is recorded, one that cannot be started ends the campaign") {
   const Folder folder;
   Options options = folder.options();
   const fs::path script = folder.path() / "crash.sh";
