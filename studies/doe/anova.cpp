@@ -143,6 +143,8 @@ void add_notes(Anova& anova, const Plan& plan, const PureError& split) {
   }
   if (anova.residual.df == 0)
     note("no degrees of freedom are left for the residual: no F and p; repeat runs, add centre runs or use main effects");
+  if (anova.residual.df > 0 && anova.residual.value == 0)
+    note("the model fits exactly: no error is left to measure, and no F or p means anything");
   if (split.copies)
     note("repeated runs agree to the last digit: no error was measured (simulations with one seed?), lack of fit is not tested");
   if (anova.curvature && anova.curvature->p < 1 - kConfidence) {

@@ -174,10 +174,10 @@ void find_structure(RecognisedTable& found) {
 std::string describe(const RecognisedTable& found) {
   std::map<std::string, int> count;
   for (const std::string& kind : found.design.kind) ++count[kind];
-  const auto runs = [&count](const char* kind, const char* name) {
-    return count[kind] > 0 ? fmt::format(", {} {}", count[kind], name) : std::string();
+  const auto runs = [&count](const char* kind) {
+    return count[kind] > 0 ? fmt::format(", {} {} run{}", count[kind], kind, count[kind] > 1 ? "s" : "") : std::string();
   };
-  const std::string corners = runs("factorial", "factorial runs") + runs("axial", "axial runs") + runs("centre", "centre runs");
+  const std::string corners = runs("factorial") + runs("axial") + runs("centre");
   switch (found.kind) {
     case PlanKind::two_level: {
       const std::string& r = found.design.resolution;

@@ -143,6 +143,8 @@ Surface fit_surface(const Design& design, const Eigen::VectorXd& response, doubl
     s.notes.push_back(
         fmt::format("the surface is not significantly better than the mean (p = {:.2g}): its shape may be chance", s.model.p));
   }
+  if (fit.df > 0 && fit.residual_sum == 0)
+    s.notes.push_back("the model fits exactly: no error is left to measure, and no F or p means anything");
   if (fit.df == 0) s.notes.push_back("no degrees of freedom are left for the residual: no standard errors, F and p; add or repeat runs");
   return s;
 }

@@ -97,6 +97,14 @@ TEST_CASE("a lost run leaves a plan that can still be analysed, by partial sums"
   CHECK(a.notes[0].find("no regular fraction") != std::string::npos);
 }
 
+TEST_CASE("a model that fits exactly leaves no error, and the report says so") {
+  const Design d = two_level(factors(2), {}, 0);
+  const Anova a = analyze_two_level(d, Eigen::Vector4d(1, 2, 3, 4));
+  CHECK(std::isinf(a.effects[0].sum.F));
+  REQUIRE(a.notes.size() == 1);
+  CHECK(a.notes[0].find("fits exactly") != std::string::npos);
+}
+
 TEST_CASE("repeated runs that agree to the last digit measure no error") {
   const Design d = two_level(factors(2), {}, 3);
   Eigen::VectorXd y(7);
