@@ -15,7 +15,7 @@ void add(std::string& out, fmt::format_string<Values...> text, Values&&... value
 }
 
 void parameters(const Study& study, const Calibration& c, std::string& out) {
-  out += "| parameter | range | value | 90 % interval | determined |\n|---|---|---|---|---|\n";
+  out += "| parameter | range | value | most likely by all observables | 90 % interval | determined |\n|---|---|---|---|---|---|\n";
   for (std::size_t p = 0; p < study.parameters.size(); ++p) {
     const Parameter& of = study.parameters[p];
     add(out, "| {} | {:.4g} … {:.4g} | **{:.4g}** |", of.name, of.low, of.high, c.best[static_cast<Eigen::Index>(p)]);
@@ -24,9 +24,9 @@ void parameters(const Study& study, const Calibration& c, std::string& out) {
       const char* word = m.determined == emulate::Determined::well     ? "well"
                          : m.determined == emulate::Determined::weakly ? "weakly"
                                                                        : "hardly";
-      add(out, " {:.4g} … {:.4g} | {} |\n", m.low90, m.high90, word);
+      add(out, " {:.4g} | {:.4g} … {:.4g} | {} |\n", m.mode, m.low90, m.high90, word);
     } else {
-      out += " not known | not known |\n";
+      out += " not known | not known | not known |\n";
     }
   }
   out += "\n";
