@@ -10,8 +10,8 @@
 //   persistent  cov_j(f̄_j over the first third, f̄_j over the last third)/Ω(T)                     0: forgotten, 1: kept
 //
 // Ergodic within the data: nothing persists beyond twice its error, and the exponent is at least 0.7. Not ergodic: most persists beyond
-// twice its error and the exponent is at most 0.1. Anything else, and fewer than eight beads, cannot tell: the data are too short. So are
-// less than five turns of the mill, and less than twenty times
+// twice its error and the exponent is at most 0.1. Anything else, fewer than eight beads and less than five turns of the mill cannot tell:
+// the data are too short. To call a charge not ergodic they must also last twenty times
 //
 //   memory      τ = Δ Σ_l ρ_l up to the first zero, ρ_l: correlation at lag l Δ of what is left of f when each bead's own mean is taken out
 //
@@ -184,11 +184,11 @@ inline Fluctuation find_fluctuation(const WindowSums& sums, double instant_varia
   out.persistent_error = std::sqrt(covariance(first, first) * covariance(last, last) / (beads - 1)) / final_metric;
   const double span = out.elapsed.back();
   out.memory = detail::memory_within(sums, span / static_cast<double>(sums.windows), final_metric);
-  if (span < kTurns * turn || span < kMemories * out.memory) return out;
+  if (span < kTurns * turn) return out;
   const bool forgotten = out.persistent < 2 * out.persistent_error;
   if (forgotten && out.exponent >= kDecays) out.verdict = 1;
   const bool kept_for_ever = out.persistent - 2 * out.persistent_error > kKept;
-  if (kept_for_ever && out.exponent <= kLevel) out.verdict = -1;
+  if (kept_for_ever && out.exponent <= kLevel && span >= kMemories * out.memory) out.verdict = -1;
   return out;
 }
 

@@ -153,6 +153,10 @@ void judge(ResultArray& array, std::size_t first, const Deviations& deviations, 
   const bool keep = size <= kMostDrawnValues && blocks >= 2;
   if (keep) array.draws.resize(draws * size);
   std::vector<float> column(resampling.items());
+  // What sets stretches of time against each other (a decay, what persists) feels neighbouring blocks alike because of their place in time;
+  // that is no memory, and to widen for it would make errors four times too large.
+  const bool by_place = array.has(kSpread) && array.has(kBookkeeping) && !array.has(kNotNegative);
+  const std::vector<std::uint8_t> related = by_place ? std::vector<std::uint8_t>(blocks, 0) : follows;
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t item = 0; item < column.size(); ++item) column[item] = deviations.numbers[item * deviations.values + first + i];
     const std::span<const float> all(column);
@@ -160,7 +164,7 @@ void judge(ResultArray& array, std::size_t first, const Deviations& deviations, 
       const std::vector<float> linear = influence_draws(all.subspan(draws), resampling.counts);
       std::copy(linear.begin(), linear.end(), column.begin());
     }
-    const Uncertainty u = uncertainty(array.value[i], all.first(draws), all.subspan(draws), follows);
+    const Uncertainty u = uncertainty(array.value[i], all.first(draws), all.subspan(draws), related);
     array.sem[i] = u.sem;
     array.low[i] = u.low;
     array.high[i] = u.high;
