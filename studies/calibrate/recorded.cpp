@@ -18,7 +18,7 @@ namespace {
 using config::UserError;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kVersion = "observations 1";  // grows when what is computed here changes
+constexpr const char* kVersion = "observations 2";  // grows when what is computed here changes
 constexpr const char* kExactCamera = "observations: {rate: {kind: sampling, rate: 1000 Hz, shape: 1000}}\n";
 constexpr double kEvenStep = 0.002;  // s between the even times: recordings have a location every 5 ms
 constexpr double kNormal90 = 1.645;
