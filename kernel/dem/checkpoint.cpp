@@ -45,7 +45,8 @@ void demand_indices(const std::vector<std::int64_t>& values, std::int64_t end) {
   demand(std::all_of(values.begin(), values.end(), [end](std::int64_t v) { return v >= 0 && v < end; }));
 }
 
-/// Lists and wall contacts of the slab of the beads [begin, end), of `beads` in all. Candidates are the geometry's own: the seal alone guards them.
+/// Lists and wall contacts of the slab of the beads [begin, end), of `beads` in all. Candidates are the geometry's own: the seal alone
+/// guards them.
 void demand_sound(const SlabState& slab, std::int64_t begin, std::int64_t end, std::int64_t beads) {
   for (const PairList& list : slab.lists) {
     demand(list.partner.size() == list.owner.size() && list.touching.size() == list.owner.size());
@@ -53,7 +54,8 @@ void demand_sound(const SlabState& slab, std::int64_t begin, std::int64_t end, s
       demand(list.owner[s] >= begin && list.owner[s] < end && list.partner[s] > list.owner[s] && list.partner[s] < beads);
       demand(list.touching[s] <= 1 && (s == 0 || list.owner[s] >= list.owner[s - 1]));
     }
-    for (const std::vector<double>& h : list.history) demand(static_cast<std::int64_t>(h.size()) == list.contact_count());
+    const std::int64_t contacts = list.contact_count();
+    for (const std::vector<double>& h : list.history) demand(static_cast<std::int64_t>(h.size()) == contacts);
   }
   for (const WallSlab& wall : slab.walls) {
     demand(wall.first.size() == wall.bead.size() + 1 || (wall.first.empty() && wall.bead.empty()));

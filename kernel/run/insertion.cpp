@@ -17,20 +17,6 @@ using config::UserError;
 constexpr double kSpacing = 1.04;   // of the largest diameter: neighbouring sites, so that jitter leaves no overlap
 constexpr double kMostSites = 4e9;  // of the whole lattice: beyond, walking through it takes minutes
 
-/// Against gravity, m²/s²: what is lower is filled first.
-double height(const Assembly& a, const Point& p) { return -(p[0] * a.gravity[0] + p[1] * a.gravity[1] + p[2] * a.gravity[2]); }
-
-/// The height below which the share `part` of the region's extent along gravity lies.
-double level(const Assembly& a, const Region& r, double part) {
-  double low = 0, high = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double one = -a.gravity[axis] * r.box.low[axis], other = -a.gravity[axis] * r.box.high[axis];
-    low += std::min(one, other);
-    high += std::max(one, other);
-  }
-  return part >= 1 ? 1e300 : low + part * (high - low);
-}
-
 /// Sites below `top` of a hexagonal close packing with neighbour distance `spacing`, stretched to fit a periodic axis z exactly.
 std::vector<Point> sites_of(const Assembly& a, const Region& r, double diameter, double top) {
   const double spacing = kSpacing * diameter;
@@ -108,10 +94,7 @@ std::vector<BeadType> draw_types(const Assembly& a, std::uint64_t count, Random&
 /// costs little.
 std::vector<Point> lattice_sites(const Assembly& a, const Region& region, double jitter) {
   const double diameter = a.c.largest_diameter(), cell = std::pow(kSpacing * diameter, 3) / std::numbers::sqrt2;
-  double volume = 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) volume *= region.box.high[axis] - region.box.low[axis];
-  const bool falls = a.gravity[0] != 0 || a.gravity[1] != 0 || a.gravity[2] != 0;
-  for (double part = falls ? std::min(1.0, 8 * static_cast<double>(a.bead_count) * cell / volume) : 1.0;; part = std::min(1.0, 2 * part)) {
+  for (double part = first_part(a, region, 8 * static_cast<double>(a.bead_count) * cell);; part = std::min(1.0, 2 * part)) {
     std::vector<Point> sites = sites_of(a, region, diameter, level(a, region, part));
     const std::vector<std::uint8_t> bad = blocked(a, sites, 0.5 * diameter + 2 * jitter);
     std::size_t kept = 0;

@@ -86,13 +86,7 @@ class Cells {
 /// Random points of the region for spheres of one radius, clear of the walls.
 class Points {
  public:
-  Points(const Assembly& a, const Region& r, Random& random) : a_(a), r_(r), random_(random) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double one = -a.gravity[axis] * r.box.low[axis], other = -a.gravity[axis] * r.box.high[axis];
-      low_ += std::min(one, other);
-      high_ += std::max(one, other);
-    }
-  }
+  Points(const Assembly& a, const Region& r, Random& random) : a_(a), r_(r), random_(random) {}
   /// `part`: share of the region's height.
   Point next(double radius, double part) {
     while (free_.empty()) fill(radius, part);
@@ -104,8 +98,9 @@ class Points {
 
  private:
   void fill(double radius, double part) {
+    const double top = level(a_, r_, part);
     std::vector<Point> points(kBatch);
-    for (Point& p : points) p = draw(radius, part);
+    for (Point& p : points) p = draw(radius, top);
     const std::vector<std::uint8_t> bad = blocked(a_, points, radius * (1 + 1e-6));
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!bad[i]) free_.push_back(points[i]);
@@ -115,17 +110,15 @@ class Points {
                               "no place is clear of the walls; check the liner's unit and orientation (millscope geometry report)");
     }
   }
-  Point draw(double radius, double part) {
+  Point draw(double radius, double top) {
     for (;;) {
       Point p;
-      double height = 0;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double margin = a_.c.domain.periodic[axis] ? 0 : radius;
         const double low = r_.box.low[axis] + margin, high = r_.box.high[axis] - margin;
         p[axis] = low + (high - low) * random_.uniform();
-        height -= a_.gravity[axis] * p[axis];
       }
-      if (part < 1 && height > low_ + part * (high_ - low_)) continue;
+      if (height(a_, p) > top) continue;
       if (r_.cylinder && std::hypot(p[0] - r_.axis_point[0], p[1] - r_.axis_point[1]) > r_.radius - radius) continue;
       return p;
     }
@@ -134,7 +127,6 @@ class Points {
   const Assembly& a_;
   const Region& r_;
   Random& random_;
-  double low_ = 0, high_ = 0;
   std::vector<Point> free_;
   int vain_ = 0;
 };
@@ -145,11 +137,9 @@ std::vector<Point> scattered(const Assembly& a, const Region& region, const std:
   std::vector<std::size_t> order(types.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&types](std::size_t p, std::size_t q) { return types[p].diameter > types[q].diameter; });
-  double solid = 0, volume = 1;
+  double solid = 0;
   for (const BeadType& t : types) solid += std::numbers::pi / 6 * t.diameter * t.diameter * t.diameter;
-  for (std::size_t axis = 0; axis < 3; ++axis) volume *= region.box.high[axis] - region.box.low[axis];
-  const bool falls = a.gravity[0] != 0 || a.gravity[1] != 0 || a.gravity[2] != 0;
-  double part = falls ? std::min(1.0, solid / (kFirstShare * volume)) : 1.0;
+  double part = first_part(a, region, solid / kFirstShare);
   Cells cells(a, region, types[order.front()].diameter);
   Points points(a, region, random);
   std::vector<Point> centres(types.size());

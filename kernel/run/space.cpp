@@ -145,6 +145,25 @@ Region region_of(const Assembly& a) {
   return r;
 }
 
+double height(const Assembly& a, const Point& p) { return -(p[0] * a.gravity[0] + p[1] * a.gravity[1] + p[2] * a.gravity[2]); }
+
+double level(const Assembly& a, const Region& r, double part) {
+  double low = 0, high = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double one = -a.gravity[axis] * r.box.low[axis], other = -a.gravity[axis] * r.box.high[axis];
+    low += std::min(one, other);
+    high += std::max(one, other);
+  }
+  return part >= 1 ? 1e300 : low + part * (high - low);
+}
+
+double first_part(const Assembly& a, const Region& r, double volume) {
+  if (a.gravity == std::array<double, 3>{}) return 1;
+  double all = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) all *= r.box.high[axis] - r.box.low[axis];
+  return std::min(1.0, volume / all);
+}
+
 std::vector<std::uint8_t> blocked(const Assembly& a, const std::vector<Point>& centres, double radius) {
   std::vector<std::uint8_t> bad(centres.size(), 0);
   for (const GeometryUse& g : a.geometries) {

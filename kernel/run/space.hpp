@@ -18,6 +18,13 @@ struct Region {
   Point axis_point{};
 };
 
+/// Against gravity, m²/s²: what is lower is filled first.
+double height(const Assembly& a, const Point& p);
+/// The height below which the share `part` of the region's extent along gravity lies; all of it from 1 on, and without gravity.
+double level(const Assembly& a, const Region& r, double part);
+/// The share of the region that is filled first, for what takes `volume` of it, m³: 1 without gravity.
+double first_part(const Assembly& a, const Region& r, double volume);
+
 /// Where beads may be put: what the user says, else the intersection of what the geometries call their inside.
 Region region_of(const Assembly& a);
 
