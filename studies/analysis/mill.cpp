@@ -9,26 +9,10 @@
 #include "kernel/config/case.hpp"
 #include "kernel/config/values.hpp"
 #include "kernel/host/objects.hpp"
+#include "kernel/run/bodies.hpp"
 
 namespace millscope::studies {
 namespace {
-
-dem::Motion motion_of(const config::MotionCase& m) {
-  dem::Motion motion;
-  if (!m.rotation) return motion;
-  const config::RotationCase& r = *m.rotation;
-  motion.speed = r.speed;
-  motion.axis = r.axis;
-  motion.point = r.point;
-  motion.start = r.start;
-  motion.ramp = r.ramp;
-  if (r.ripple) {
-    motion.ripple_amplitude = r.ripple->amplitude;
-    motion.ripple_frequency = r.ripple->frequency;
-    motion.ripple_phase = r.ripple->phase;
-  }
-  return motion;
-}
 
 Interior interior_of(const config::GeometryCase& g, const host::Registry& registry) {
   const host::Loaded& plugin = registry.find(Kind::geometry, g.plugin.kind, g.plugin.where);
@@ -50,7 +34,7 @@ Shell find_shell(const config::Case& c, const host::Registry& registry) {
   for (const config::GeometryCase& g : c.geometry) {
     const Interior interior = interior_of(g, registry);
     if (interior.is_bounded == 0 || interior.is_cylinder == 0) continue;
-    const dem::Motion motion = motion_of(g.motion);
+    const dem::Motion motion = run::motion_of(g.motion);
     if (shell.interior && (shell.motion.speed != 0 || motion.speed == 0)) continue;
     shell = {interior, motion};
   }
