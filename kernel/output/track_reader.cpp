@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "kernel/config/error.hpp"
@@ -88,6 +89,15 @@ TrackSamples TrackReader::read(std::size_t track) const {
     for (std::size_t i = 0; i < samples.size(); ++i) samples.position[axis][i] = position[3 * i + axis];
   }
   return samples;
+}
+
+void unwrap(std::vector<double>& coordinate, double period) {
+  double shift = 0, before = coordinate.empty() ? 0.0 : coordinate.front();
+  for (double& value : coordinate) {
+    shift -= period * std::round((value - before) / period);
+    before = value;
+    value += shift;
+  }
 }
 
 bool is_track_file(const fs::path& path) {

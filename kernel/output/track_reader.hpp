@@ -37,6 +37,9 @@ class TrackReader {
   std::unique_ptr<Impl> impl_;
 };
 
+/// A coordinate along a periodic axis (m), continued: jumps of more than half the period become steps into the next image.
+void unwrap(std::vector<double>& coordinate, double period);
+
 /// Whether the file says that it is a tracks.h5; false also for what is no HDF5 file.
 bool is_track_file(const std::filesystem::path& path);
 

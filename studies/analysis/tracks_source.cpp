@@ -40,16 +40,6 @@ std::vector<std::size_t> pick(const output::TrackReader& reader, const std::vect
   return {picked.begin(), picked.end()};
 }
 
-/// Steps over the periodic border become steps into the next image.
-void unwrap(std::vector<double>& z, double period) {
-  double shift = 0, before = z.empty() ? 0 : z.front();
-  for (double& value : z) {
-    shift -= period * std::round((value - before) / period);
-    before = value;
-    value += shift;
-  }
-}
-
 void wrap(std::vector<double>& z, double low, double period) {
   for (double& value : z) value -= period * std::floor((value - low) / period);
 }
@@ -68,7 +58,7 @@ Run run_of(const output::TrackReader& reader, std::size_t track, const SourceReq
     throw UserError(fmt::format("{}: track '{}' has {} samples in the span asked for, at least 8 are needed; run longer, or widen the span",
                                 run.source, run.name, run.size()));
   }
-  if (period > 0) unwrap(run.position[2], period);
+  if (period > 0) output::unwrap(run.position[2], period);
   run.report.rows = run.report.used = run.size();
   return run;
 }

@@ -133,14 +133,4 @@ Run observe(const output::TrackSamples& track, const Camera& camera, const Track
 
 std::uint64_t bead_seed(std::uint64_t seed, std::int64_t id) { return mixed(seed, static_cast<std::uint64_t>(id) + 1); }
 
-void unwrap(output::TrackSamples& track, int axis, double period) {
-  std::vector<double>& x = track.position[static_cast<std::size_t>(axis)];
-  double shift = 0, before = x.empty() ? 0.0 : x[0];
-  for (double& value : x) {
-    shift -= period * std::round((value - before) / period);
-    before = value;
-    value += shift;
-  }
-}
-
 }  // namespace millscope::studies

@@ -54,7 +54,4 @@ Run observe(const output::TrackSamples& track, const Camera& camera, const Track
 /// A seed for bead `id` of a run, as different as can be from those of its neighbours.
 std::uint64_t bead_seed(std::uint64_t seed, std::int64_t id);
 
-/// A path through a periodic box, continued: jumps of more than half the period along `axis` become steps into the next image.
-void unwrap(output::TrackSamples& track, int axis, double period);
-
 }  // namespace millscope::studies

@@ -72,7 +72,7 @@ SimulatedBeads::SimulatedBeads(std::filesystem::path run, const host::Registry& 
 
 output::TrackSamples SimulatedBeads::path(std::size_t i, double from) const {
   output::TrackSamples track = reader_.read(i);
-  if (period_ > 0) unwrap(track, 2, period_);
+  if (period_ > 0) output::unwrap(track.position[2], period_);
   const auto first = std::lower_bound(track.time.begin(), track.time.end(), from) - track.time.begin();
   track.time.erase(track.time.begin(), track.time.begin() + first);
   for (auto& x : track.position) x.erase(x.begin(), x.begin() + first);

@@ -83,7 +83,7 @@ TEST_CASE("a path through a periodic box is continued") {
     truth.push_back(0.01 + 0.05 * std::sin(0.2 * static_cast<double>(i)));
     track.position[2][i] = truth.back() - 0.04 * std::floor(truth.back() / 0.04);
   }
-  unwrap(track, 2, 0.04);
+  output::unwrap(track.position[2], 0.04);
   const double shift = track.position[2][0] - truth[0];
   for (std::size_t i = 0; i < truth.size(); ++i) CHECK_THAT(track.position[2][i] - truth[i], WithinAbs(shift, 1e-12));
 }
