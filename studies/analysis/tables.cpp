@@ -7,6 +7,7 @@
 #include <map>
 
 #include "kernel/config/units.hpp"
+#include "kernel/output/csv.hpp"
 #include "kernel/output/file.hpp"
 #include "studies/analysis/results_file.hpp"
 
@@ -15,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+using output::csv_cell;
 
 /// What an analyzer says of a result, in words.
 std::vector<std::string> trait_names(std::uint32_t traits) {
@@ -28,14 +30,6 @@ std::vector<std::string> trait_names(std::uint32_t traits) {
   return names;
 }
 
-/// A cell of a CSV: quoted where it must be.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 std::string number(double value) { return std::isfinite(value) ? config::number_text(value) : ""; }
 
 bool is_number(const ResultArray& a) { return a.shape.empty() && !a.is_axis; }
@@ -45,9 +39,9 @@ void write_numbers(const fs::path& file, const ResultSet& results) {
   out.write("analyzer,name,unit,value,sem,low_90,high_90,effective_blocks,doubts,meaning\n");
   for (const ResultArray& a : results.arrays) {
     if (!is_number(a)) continue;
-    out.write(fmt::format("{},{},{},{},{},{},{},{},{},{}\n", a.analyzer, a.name, quoted(a.unit), number(a.value[0]), number(a.sem[0]),
-                          number(a.low[0]), number(a.high[0]), number(a.effective_blocks[0]), quoted(flag_text(a.flags[0])),
-                          quoted(a.doc)));
+    out.write(fmt::format("{},{},{},{},{},{},{},{},{},{}\n", a.analyzer, a.name, csv_cell(a.unit), number(a.value[0]), number(a.sem[0]),
+                          number(a.low[0]), number(a.high[0]), number(a.effective_blocks[0]), csv_cell(flag_text(a.flags[0])),
+                          csv_cell(a.doc)));
   }
   out.commit();
 }
@@ -71,14 +65,14 @@ std::string head(const ResultSet& results, const Table& table) {
     if (axis == nullptr) {
       line += fmt::format("index_{},", d);
     } else if (axis->size() == first.shape[d] + 1) {
-      line += quoted(fmt::format("{}_from [{}]", axis->name, axis->unit)) + "," +
-              quoted(fmt::format("{}_to [{}]", axis->name, axis->unit)) + ",";
+      line += csv_cell(fmt::format("{}_from [{}]", axis->name, axis->unit)) + "," +
+              csv_cell(fmt::format("{}_to [{}]", axis->name, axis->unit)) + ",";
     } else {
-      line += quoted(fmt::format("{} [{}]", axis->name, axis->unit)) + ",";
+      line += csv_cell(fmt::format("{} [{}]", axis->name, axis->unit)) + ",";
     }
   }
   for (const ResultArray* a : table.columns)
-    line += quoted(fmt::format("{} [{}]", a->name, a->unit)) + fmt::format(",{0}_sem,{0}_low,{0}_high,", a->name);
+    line += csv_cell(fmt::format("{} [{}]", a->name, a->unit)) + fmt::format(",{0}_sem,{0}_low,{0}_high,", a->name);
   line.back() = '\n';
   return line;
 }

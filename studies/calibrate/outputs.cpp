@@ -6,6 +6,7 @@
 #include <map>
 
 #include "kernel/config/units.hpp"
+#include "kernel/output/csv.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
 
@@ -109,13 +110,6 @@ Json parameters_json(const Study& study, const Calibration& c) {
   return all;
 }
 
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 /// A map of maps from "a.b.c=value".
 struct Tree {
   std::map<std::string, Tree> children;
@@ -206,13 +200,13 @@ std::string calibrated_yaml(const Study& study, const Eigen::VectorXd& best, con
 std::string runs_csv(const Evaluator& evaluator) {
   const Study& study = evaluator.study();
   std::string out = "number,stage,replicate,state";
-  for (const Parameter& p : study.parameters) out += "," + csv_cell(p.name);
+  for (const Parameter& p : study.parameters) out += "," + output::csv_cell(p.name);
   out += ",objective,chagas2015,chagas_power_W,chagas_x_percent,chagas_speed_percent,misfit,wall_s";
   const std::vector<std::size_t> conditions = study.with_role(Role::fit);
   for (const std::size_t c : conditions) {
-    out += "," + csv_cell(study.conditions[c].name + " power (W)");
+    out += "," + output::csv_cell(study.conditions[c].name + " power (W)");
     for (const Observable& o : evaluator.machinery().recorded[c].observables)
-      out += "," + csv_cell(study.conditions[c].name + " " + o.name + " (" + o.unit + ")");
+      out += "," + output::csv_cell(study.conditions[c].name + " " + o.name + " (" + o.unit + ")");
   }
   out += ",folders,message\n";
   std::size_t number = 0;
@@ -229,7 +223,7 @@ std::string runs_csv(const Evaluator& evaluator) {
     }
     std::string folders;
     for (const fs::path& folder : t.folders) folders += (folders.empty() ? "" : " ") + folder.string();
-    out += "," + csv_cell(folders) + "," + csv_cell(t.message) + "\n";
+    out += "," + output::csv_cell(folders) + "," + output::csv_cell(t.message) + "\n";
   }
   return out;
 }

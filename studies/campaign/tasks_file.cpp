@@ -4,6 +4,7 @@
 
 #include "kernel/config/document.hpp"
 #include "kernel/config/units.hpp"
+#include "kernel/output/csv.hpp"
 #include "kernel/output/file.hpp"
 
 namespace millscope::campaign {
@@ -21,14 +22,6 @@ std::vector<std::string> settings_of(const Node& node) {
     }
   }
   return settings;
-}
-
-/// A cell of a CSV file (RFC 4180).
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
 }
 
 }  // namespace
@@ -64,11 +57,11 @@ void write_table(const std::filesystem::path& file, std::span<const Simulation> 
     const Outcome& o = outcomes[i];
     const char* state = !known[i] ? "open" : o.state == State::done ? "done" : "failed";
     const std::string wall = known[i] && o.state == State::done ? fmt::format("{:.3f}", o.wall_s) : "";
-    out.write(fmt::format("{},{},{},{},{},{},{}\n", cell(simulations[i].label), o.key, state, wall,
+    out.write(fmt::format("{},{},{},{},{},{},{}\n", output::csv_cell(simulations[i].label), o.key, state, wall,
                           !known[i]  ? ""
                           : o.cached ? "yes"
                                      : "no",
-                          cell(o.folder.string()), cell(o.message)));
+                          output::csv_cell(o.folder.string()), output::csv_cell(o.message)));
   }
   out.commit();
 }

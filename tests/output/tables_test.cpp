@@ -3,6 +3,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "kernel/output/csv.hpp"
 #include "kernel/output/series.hpp"
 #include "kernel/output/summary.hpp"
 #include "output/support.hpp"
@@ -52,6 +53,15 @@ TEST_CASE("a series refuses what does not belong to it") {
   CHECK_THAT(refusal([&] { SeriesWriter::resume(scratch / "none.csv", kColumns, 0); }), Contains("is missing"));
   const std::vector<std::string> other{"time_s", "power_W"};
   CHECK_THAT(refusal([&] { SeriesWriter::resume(scratch / "series.csv", other, 0); }), Contains("its columns"));
+}
+
+TEST_CASE("a cell is quoted where a table would break, and only there") {
+  CHECK(csv_cell("") == "");
+  CHECK(csv_cell("dry 75 %") == "dry 75 %");
+  CHECK(csv_cell("a,b") == "\"a,b\"");
+  CHECK(csv_cell("two\nlines") == "\"two\nlines\"");
+  CHECK(csv_cell("half a\rline") == "\"half a\rline\"");
+  CHECK(csv_cell("the \"mill\"") == "\"the \"\"mill\"\"\"");
 }
 
 TEST_CASE("JSON keeps its order and is written whole") {
