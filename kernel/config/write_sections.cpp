@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 
+#include "kernel/config/writer.hpp"
 #include "kernel/config/yaml_lines.hpp"
 
 namespace millscope::config {

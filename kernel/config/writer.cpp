@@ -174,6 +174,8 @@ class Writer {
 
 }  // namespace
 
+std::string quoted(const std::string& text) { return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
+
 std::string resolved_yaml(const Case& c, std::span<const Descriptor* const> descriptors) { return Writer(c, descriptors).write(); }
 
 }  // namespace millscope::config

@@ -15,6 +15,9 @@ namespace millscope::config {
 /// Call it after `finish`: what it copies counts as read.
 std::string resolved_yaml(const Case& c, std::span<const Descriptor* const> descriptors = {});
 
+/// A text as `resolved_yaml` writes it: in double quotes; JSON's quoting is also YAML's.
+std::string quoted(const std::string& text);
+
 /// JSON Schema (draft 7) of case files with the parameters of these plugins.
 nlohmann::json case_schema(std::span<const Descriptor* const> descriptors);
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
@@ -10,11 +9,6 @@
 #include "kernel/config/units.hpp"
 
 namespace millscope::config {
-
-/// A text in double quotes; JSON's quoting is also YAML's.
-inline std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 
 inline std::string vector_text(const double* v) {
   return fmt::format("[{}, {}, {}]", number_text(v[0]), number_text(v[1]), number_text(v[2]));

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "kernel/config/writer.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
 
@@ -80,7 +81,7 @@ void Entry::prepare(const Identity& identity, const std::string& label) const {
   if (!fs::exists(case_file())) {
     std::string text = identity.case_yaml;
     for (const NamedFile& file : identity.files) {
-      if (file.alone) text = replaced(std::move(text), quoted(file.path), quoted(keep_copy(file, folder_.parent_path())));
+      if (file.alone) text = replaced(std::move(text), config::quoted(file.path), config::quoted(keep_copy(file, folder_.parent_path())));
     }
     output::write_file(case_file(), text);
   }

@@ -112,7 +112,7 @@ std::string essence(config::Case c, const host::Registry& registry, const std::v
   c.run.threads = 0;
   c.output.checkpoint = config::OutputCase::Checkpoint{};
   std::string text = config::resolved_yaml(c, registry.descriptors());
-  for (const NamedFile& file : files) text = replaced(std::move(text), quoted(file.path), "content " + file.hash);
+  for (const NamedFile& file : files) text = replaced(std::move(text), config::quoted(file.path), "content " + file.hash);
   return text;
 }
 
@@ -154,8 +154,6 @@ std::string content_hash(const std::string& bytes) {
   for (const std::uint8_t byte : hash) text += fmt::format("{:02x}", byte);
   return text;
 }
-
-std::string quoted(const std::string& text) { return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) text.replace(at, from.size(), to);

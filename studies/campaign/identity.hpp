@@ -40,9 +40,6 @@ class Identifier {
 /// SHA-1 of bytes as 32 hexadecimal digits (a version 5 UUID).
 std::string content_hash(const std::string& bytes);
 
-/// How a text stands in a resolved case.
-std::string quoted(const std::string& text);
-
 /// Every `from` in `text` replaced by `to`.
 std::string replaced(std::string text, const std::string& from, const std::string& to);
 

@@ -48,6 +48,16 @@ TEST_CASE("a resolved case states every default in SI") {
   CHECK(text.find("  vtk: off\n") != std::string::npos);
 }
 
+TEST_CASE("a text stands in a resolved case as `quoted` gives it, so that it can be found there") {
+  for (const std::string& name : {std::string("a b"), std::string("a \"b\": \\#c"), std::string("Mühle")}) {
+    Case c = read_all(testing::kCase);
+    c.name = name;
+    CHECK(resolved_yaml(c, kPlugins).find("name: " + quoted(name) + "\n") != std::string::npos);
+  }
+  CHECK(quoted("a \"b\"\n") == "\"a \\\"b\\\"\\n\"");
+  CHECK(quoted("\xff") == "\"\xef\xbf\xbd\"");  // no UTF-8: the character that stands for others
+}
+
 TEST_CASE("without descriptors a plugin's keys are copied") {
   const std::string text = resolved_yaml(parse_case(testing::kCase, "case.yaml"));
   CHECK(text.find("    stiffness: \"1 kN/m\"\n") != std::string::npos);
