@@ -2,22 +2,19 @@
 //
 // symbol   here        meaning
 // u        slip        fluid velocity − bead velocity, m/s
-// ρ, η     density_, viscosity_   of the fluid, kg/m³, Pa s
-// Re       reynolds    ρ |u| d/η
+// ρ, η     fluid_      its density and viscosity, kg/m³, Pa s
+// Re       –           ρ |u| d/η
 // C_d      –           24/Re (1 + 0.15 Re^0.687) for Re < 800, at least 0.44 above (Newton's regime)
 //
 //   F = s · 3 π η d (1 + 0.15 Re^0.687) u,  s = strength (1: as it is, 0: none)
 //
 // The fluid is at rest or turns with the mill as a rigid body at Ω about z. Neighbours, walls and the bead's spin do not change the drag.
 // Power taken from the bead is −F·v, negative where a turning fluid drives it.
-#include <algorithm>
-
+#include "drag.hpp"
 #include "millscope/body_force_adapter.hpp"
 
 namespace millscope::body_forces {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 constexpr Parameter kParameters[] = {
     number_parameter("fluid_density", "kg/m^3", 1.204, 0.0, 100.0, "Density of the gas; air at 20 C and 1 atm: 1.204."),
@@ -36,8 +33,7 @@ constexpr Hypothesis kHypotheses[] = {
 class AirDrag {
  public:
   explicit AirDrag(const Parameters& values)
-      : density_(values.number("fluid_density")),
-        viscosity_(values.number("viscosity")),
+      : fluid_{values.number("fluid_density"), values.number("viscosity")},
         strength_(values.number("strength")),
         turning_(values.text("flow") == "turning" ? values.number("angular_velocity") : 0.0) {
     if (values.text("flow") == "at_rest" && values.number("angular_velocity") != 0.0) {
@@ -51,18 +47,13 @@ class AirDrag {
   void act(const Bead& bead, BeadForce& out) const {
     const Vec<double> fluid{-turning_ * bead.position.y, turning_ * bead.position.x, 0.0};
     const Vec<double> slip = fluid - bead.velocity;
-    const double diameter = 2.0 * bead.radius, speed = length(slip);
-    const double momentum = density_ * speed * diameter;  // η Re
-    const double reynolds = viscosity_ > 0.0 ? momentum / viscosity_ : 0.0;
-    const double schiller = 3.0 * kPi * diameter * viscosity_ * (1.0 + 0.15 * std::pow(reynolds, 0.687));
-    const double newton = 0.44 * kPi / 8.0 * diameter * momentum;
-    const double rate = strength_ * (reynolds > 800.0 || viscosity_ == 0.0 ? std::max(schiller, newton) : schiller);
-    out.force = rate * slip;
+    out.force = (strength_ * drag_rate(fluid_, 2.0 * bead.radius, length(slip))) * slip;
     out.power = -dot(out.force, bead.velocity);
   }
 
  private:
-  double density_, viscosity_, strength_, turning_;
+  Fluid fluid_;
+  double strength_, turning_;
 };
 
 constexpr BodyForceTable kTable = make_body_force_table<AirDrag>();

@@ -1,0 +1,113 @@
+// Beads in a pool of liquid: fall, float, dive in, and the energy that the liquid takes.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+
+#include "dem/support.hpp"
+
+using namespace dem_test;
+
+namespace {
+
+/// One bead of this density under gravity and a pool of water with its surface at y = 0; 10 µs steps.
+Assembly one_bead(double density, const Vector& position, const Vector& velocity) {
+  Setup s;
+  s.body_forces = "{gravity: {kind: gravity}, pool: {kind: fluid_pool, level: 0 m}}";
+  s.time = "{end_s: 100, step_s: 1e-5}";
+  s.run = "{partitions: 1, allow_unstable: true}";
+  Assembly a = assembled(s);
+  Bead b;
+  b.position = position;
+  b.velocity = velocity;
+  b.density = density;
+  start(a, {b});
+  return a;
+}
+
+/// Fluid that moves with a bead at this height, kg.
+double added_mass(double y) {
+  const double depth = std::min(std::max(kRadius - y, 0.0), 2 * kRadius);
+  return 0.5 * 1000 * std::numbers::pi / 3 * depth * depth * (3 * kRadius - depth);
+}
+
+}  // namespace
+
+TEST_CASE("a glass bead sinks in water at the speed at which drag carries its submerged weight") {
+  Assembly a = one_bead(kDensity, {0, -0.5, 0}, {});
+  advance(a, 100000);
+  // Re is above 800, where C_d is the larger of 0.44 and Schiller and Naumann's; found by bisection.
+  const double d = 2 * kRadius, weight = bead_mass(kRadius, kDensity - 1000) * kGravity;
+  double low = 0, high = 5;
+  for (int k = 0; k < 60; ++k) {
+    const double u = 0.5 * (low + high), re = 1000 * u * d / 1e-3;
+    const double drag = std::max(3 * std::numbers::pi * 1e-3 * d * (1 + 0.15 * std::pow(re, 0.687)) * u,
+                                 re > 800 ? 0.44 * std::numbers::pi / 8 * 1000 * d * d * u * u : 0.0);
+    (drag < weight ? low : high) = u;
+  }
+  INFO(low << " m/s");
+  CHECK(velocity(a, 0)[1] == Approx(-low).epsilon(0.001));
+  CHECK(low == Approx(0.45).margin(0.05));  // water, glass, 5 mm
+}
+
+TEST_CASE("a bead of the density of water hovers, a lighter one floats where theory says") {
+  Assembly still = one_bead(1000, {0, -0.1, 0}, {});
+  for (dem::MotionLine& line : still.system->particles.half) line.v[1] = 0;  // half a step of free fall was taken for granted
+  advance(still, 20000);
+  CHECK(position(still, 0)[1] == Approx(-0.1).margin(1e-9));
+  Assembly floating = one_bead(500, {0, 0.2 * kRadius, 0}, {});
+  advance(floating, 1000000);
+  CHECK(position(floating, 0)[1] == Approx(0.0).margin(0.01 * kRadius));
+}
+
+TEST_CASE("submerged glass falls from rest with the acceleration that added mass leaves") {
+  Assembly a = one_bead(kDensity, {0, -0.1, 0}, {});
+  for (dem::MotionLine& line : a.system->particles.half) line.v[1] = 0;
+  advance(a, 100);
+  CHECK(velocity(a, 0)[1] == Approx(-kGravity * (kDensity - 1000) / (kDensity + 500) * 1e-3).epsilon(2e-3));
+}
+
+TEST_CASE("a bead that dives in and one that leaps out lose what the ledger says, the moving liquid counted") {
+  for (const Vector& v : {Vector{0.7, -2, 0}, Vector{0.2, 2.5, 0.1}}) {
+    const Vector from{0, v[1] < 0 ? 0.01 : -0.01, 0};
+    Assembly a = one_bead(kDensity, from, v);
+    const auto liquid = [&a] {
+      const Vector u = velocity(a, 0);
+      return 0.5 * added_mass(position(a, 0)[1]) * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+    };
+    const double liquid_first = liquid();
+    const Energy first = observed(a);
+    advance(a, 2500);
+    const double liquid_last = liquid();
+    const Energy last = observed(a);
+    const double kept = last.stored() + liquid_last - first.stored() - liquid_first;
+    INFO("from y = " << from[1] << " to " << position(a, 0)[1] << ", lost " << last.dissipated << " J, kept " << kept << " J");
+    CHECK(from[1] * position(a, 0)[1] < 0);
+    CHECK(last.dissipated > 0);
+    CHECK(last.dissipated - first.dissipated == Approx(-kept).epsilon(2e-3));
+  }
+}
+
+TEST_CASE("a charge shaken in a pool keeps its book within 1 %") {
+  Setup s;
+  s.pairs = "restitution: 0.8, static_friction: 0.34";
+  s.wall_pairs = "restitution: 0.55, static_friction: 0.30";
+  s.fill = "{count: 200, settle_s: 0.05}";
+  s.body_forces = "{gravity: {kind: gravity}, pool: {kind: fluid_pool, level: 20 mm}}";
+  s.geometry =
+      "{box: {kind: box, low: [0, 0, 0], high: [30 mm, 60 mm, 30 mm], material: wall, "
+      "motion: {translation: {oscillation: {amplitude: [0, 4 mm, 2 mm], frequency: 20 Hz}}}}}";
+  s.domain = "{}";
+  s.run = "{partitions: 4}";
+  Assembly a = assembled(s);
+  run::insert_beads(a);
+  run::begin(a);
+  advance(a, a.settle_steps + std::llround(0.15 / a.time_step));
+  const Energy first = observed(a);
+  advance(a, std::llround(0.4 / a.time_step));
+  const Energy last = observed(a);
+  const double input = last.wall_work - first.wall_work, lost = last.dissipated - first.dissipated;
+  INFO("input " << input << " J, lost " << lost << " J, kept " << last.stored() - first.stored() << " J");
+  CHECK(input > 0.01);
+  CHECK(std::fabs(input - lost - (last.stored() - first.stored())) < 0.01 * input);
+}
