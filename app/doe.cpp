@@ -169,10 +169,7 @@ int design(const Arguments& arguments) {
     return kDone;
   }
   const fs::path output = options.text("output");
-  if (!options.has("force")) output::refuse_existing(output);
-  output::AtomicFile file(output);
-  file.write(table);
-  file.commit();
+  output::write_file(output, table, options.has("force"));
   fmt::print("{} runs in {}{}\n", plan.coded.rows(), output.string(), plan.resolution.empty() ? "" : ", resolution " + plan.resolution);
   return kDone;
 }

@@ -239,9 +239,7 @@ std::uint64_t disk_estimate(const Assembly& a) {
 }
 
 void write_resolved(const Session& s, const host::Registry& registry) {
-  output::AtomicFile file(s.directory / kResolvedCase);
-  file.write(config::resolved_yaml(s.assembly.c, registry.descriptors()));
-  file.commit();
+  output::write_file(s.directory / kResolvedCase, config::resolved_yaml(s.assembly.c, registry.descriptors()));
 }
 
 /// The newest sound checkpoint. `damaged`: it is the previous one, because the newest cannot be read.

@@ -67,10 +67,8 @@ std::unique_ptr<Lock> Lock::try_take(const fs::path& cache, const fs::path& file
   if (const std::optional<std::string> text = text_of(file)) {
     if (!is_stale(file, *text, guard.file())) return nullptr;
   }
-  output::AtomicFile out(file);
   const std::string text = own_text();
-  out.write(text);
-  out.commit();
+  output::write_file(file, text);
   return std::unique_ptr<Lock>(new Lock(file, text));
 }
 
