@@ -56,6 +56,9 @@ TEST_CASE("every interaction holds to the conformance suite with every option") 
       {"rolling_epsd", "rolling_friction=0.05 damping_ratio=0.3 length=radius"},
       {"cohesion_sjkr", "cohesion_energy_density=50000"},
       {"cohesion_sjkr", "cohesion_energy_density=50000 friction=net"},
+      {"capillary_bridge", "surface_tension=0.07"},
+      {"capillary_bridge", "surface_tension=0.07 contact_angle=0.5 volume_ratio=0.01 friction=net"},
+      {"capillary_bridge", "surface_tension=0.07 volume_ratio=1e-9"},
   };
   for (const auto& [name, text] : cases) {
     const Descriptor& d = plugin(name);
