@@ -11,6 +11,7 @@
 #include "app/commands.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
+#include "kernel/output/terminal.hpp"
 #include "studies/analysis/analysis.hpp"
 #include "studies/analysis/tables.hpp"
 #include "studies/picture/outline.hpp"
@@ -30,23 +31,18 @@ using Clock = std::chrono::steady_clock;
 class Line {
  public:
   explicit Line(bool quiet) : shown_(!quiet && isatty(STDERR_FILENO) != 0) {}
-  ~Line() { clear(); }
   void update(const char* doing, double fraction) {
     const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
     if (!shown_ || elapsed < next_) return;
     next_ = elapsed + 0.3;
-    drawn_ = true;
     const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0;
-    fmt::print(stderr, "\r\033[K{} {:.0f} %, ETA {:.0f} s", doing, 100 * fraction, left);
-    std::fflush(stderr);
+    line_.draw(fmt::format("{} {:.0f} %, ETA {:.0f} s", doing, 100 * fraction, left));
   }
-  void clear() {
-    if (drawn_) fmt::print(stderr, "\r\033[K");
-    drawn_ = false;
-  }
+  void clear() { line_.clear(); }
 
  private:
-  bool shown_, drawn_ = false;
+  bool shown_;
+  output::TerminalLine line_;
   double next_ = 0.5;
   Clock::time_point start_ = Clock::now();
 };

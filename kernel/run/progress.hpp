@@ -4,6 +4,7 @@
 #include <chrono>
 #include <string>
 
+#include "kernel/output/terminal.hpp"
 #include "kernel/run/assembly.hpp"
 
 namespace millscope::run {
@@ -11,21 +12,17 @@ namespace millscope::run {
 class Progress {
  public:
   Progress(const Assembly& a, bool quiet, bool terminal);
-  /// Clears the line, so that an error's own line stands alone.
-  ~Progress() { clear(); }
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
   /// `first_step`: where this session began, for speed and the time left.
   void update(std::int64_t step, std::int64_t first_step);
   void finish(const std::string& message);
 
  private:
-  std::string line(std::int64_t step, std::int64_t first_step) const;
+  std::string text(std::int64_t step, std::int64_t first_step) const;
   double elapsed() const;
-  void clear();
 
   const Assembly& a_;
-  bool quiet_, terminal_, drawn_ = false;
+  bool quiet_, terminal_;
+  output::TerminalLine line_;
   std::chrono::steady_clock::time_point start_;
   double next_ = 0;
 };

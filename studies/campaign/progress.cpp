@@ -1,32 +1,14 @@
 #include "studies/campaign/progress.hpp"
 
 #include <fmt/core.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 
 namespace millscope::campaign {
-namespace {
-
-std::string duration(double seconds) {
-  const long s = std::lround(seconds);
-  if (s >= 3600) return fmt::format("{}:{:02d}:{:02d}", s / 3600, s / 60 % 60, s % 60);
-  return fmt::format("{}:{:02d}", s / 60, s % 60);
-}
-
-/// A line longer than the terminal would wrap, and then not be rewritten.
-std::string cut_to_terminal(std::string line) {
-  struct winsize size {};
-  if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 && line.size() >= size.ws_col) line.resize(size.ws_col - 1U);
-  return line;
-}
-
-}  // namespace
 
 ProgressLine::ProgressLine(bool quiet, std::size_t total) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0), total_(total) {}
 
@@ -73,23 +55,16 @@ std::optional<double> ProgressLine::time_left(const std::vector<Underway>& under
 void ProgressLine::update(const std::vector<Underway>& underway, double waiting, int slots) {
   if (!due()) return;
   const std::optional<double> left = time_left(underway, waiting, slots);
-  const std::string text =
-      fmt::format("campaign: {}, {} running, {}", counts(), underway.size(), left ? "ETA " + duration(*left) : "ETA not known yet");
+  const std::string text = fmt::format("campaign: {}, {} running, {}", counts(), underway.size(),
+                                       left ? "ETA " + output::duration_text(*left) : "ETA not known yet");
   if (terminal_) {
-    fmt::print(stderr, "\r\033[K{}", cut_to_terminal(text));
-    drawn_ = true;
+    line_.draw(text);
     next_ = elapsed() + 0.5;
   } else {
     fmt::print(stderr, "{}\n", text);
     next_ = elapsed() + interval_;
     interval_ = std::min(300.0, interval_ * 1.5);
   }
-  std::fflush(stderr);
-}
-
-void ProgressLine::clear() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
-  drawn_ = false;
 }
 
 double simulated_time(const std::filesystem::path& run) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "kernel/output/terminal.hpp"
+
 namespace millscope::campaign {
 
 /// A simulation under way, for the estimate of the time that is left.
@@ -19,9 +21,6 @@ struct Underway {
 class ProgressLine {
  public:
   ProgressLine(bool quiet, std::size_t total);
-  ~ProgressLine() { clear(); }
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
 
   /// A simulation has ended. `wall`: its cost in s, 0 when it tells nothing.
   void count(bool done, bool cached, double work, double wall);
@@ -29,7 +28,7 @@ class ProgressLine {
   bool due() const;
   /// `waiting`: work of those that have not begun; `slots`: how many run at once.
   void update(const std::vector<Underway>& underway, double waiting, int slots);
-  void clear();
+  void clear() { line_.clear(); }
   /// "12 of 26 done, 3 of them from the cache, 1 failed".
   std::string counts() const;
   /// s, or nothing while no simulation has told what work costs.
@@ -37,7 +36,8 @@ class ProgressLine {
 
  private:
   double elapsed() const;
-  bool quiet_, terminal_, drawn_ = false;
+  bool quiet_, terminal_;
+  output::TerminalLine line_;
   std::size_t total_, done_ = 0, cached_ = 0, failed_ = 0;
   double known_work_ = 0, known_wall_ = 0;
   double next_ = 0, interval_ = 5;
