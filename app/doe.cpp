@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "app/actions.hpp"
 #include "app/commands.hpp"
 #include "kernel/config/document.hpp"
 #include "kernel/output/file.hpp"
@@ -174,37 +175,15 @@ int design(const Arguments& arguments) {
   return kDone;
 }
 
-struct Action {
-  const char* name;
-  const char* what;
-  int (*call)(const Arguments&);
-};
-
 constexpr Action kActions[] = {
     {"analyze", "what planned runs tell: effects, surfaces, runs that stand out", analyze_plan},
     {"design", "plan runs", design},
 };
 
-void print_actions() {
-  fmt::print("usage: millscope doe ACTION …\n\nDesign of experiments.\n\n");
-  for (const Action& a : kActions) fmt::print("  {:<12} {}\n", a.name, a.what);
-  fmt::print(
-      "\n'millscope doe ACTION --help' explains one, with an example.\n\nExample:\n  millscope doe analyze tests/doe/data/ccd_75.csv\n");
-}
-
 }  // namespace
 
 int design_of_experiments(const Arguments& arguments) {
-  if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h") {
-    print_actions();
-    return arguments.empty() ? kBadInput : kDone;
-  }
-  std::vector<std::string> names;
-  for (const Action& a : kActions) {
-    if (arguments[0] == a.name) return a.call(Arguments(arguments.begin() + 1, arguments.end()));
-    names.emplace_back(a.name);
-  }
-  throw UserError(fmt::format("'doe {}' is no action; {}", arguments[0], config::suggestion(arguments[0], names)));
+  return call_action({"doe", "Design of experiments.", kActions, "millscope doe analyze tests/doe/data/ccd_75.csv"}, arguments);
 }
 
 }  // namespace millscope::app

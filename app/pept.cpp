@@ -3,9 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/actions.hpp"
 #include "app/commands.hpp"
-#include "kernel/config/document.hpp"
-#include "kernel/config/error.hpp"
 #include "kernel/output/file.hpp"
 #include "studies/inspect/report.hpp"
 
@@ -48,12 +47,6 @@ int convert(const Arguments& arguments) {
   return kDone;
 }
 
-struct Action {
-  const char* name;
-  const char* what;
-  int (*call)(const Arguments&);
-};
-
 constexpr Action kActions[] = {
     {"inspect", "how good a recording is and what it can support", inspect},
     {"convert", "the points of a recording in the layout of a simulation's tracks", convert},
@@ -61,25 +54,12 @@ constexpr Action kActions[] = {
     {"synthesize", "what a camera would have recorded of simulated beads", pept_synthesize},
 };
 
-void print_actions() {
-  fmt::print("usage: millscope pept ACTION …\n\nRecordings of a tracer in a mill (positron emission particle tracking).\n\n");
-  for (const Action& a : kActions) fmt::print("  {:<12} {}\n", a.name, a.what);
-  fmt::print("\n'millscope pept ACTION --help' explains one, with an example.\n\nExample:\n  millscope pept inspect run1.a\n");
-}
-
 }  // namespace
 
 int pept(const Arguments& arguments) {
-  if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h") {
-    print_actions();
-    return arguments.empty() ? kBadInput : kDone;
-  }
-  std::vector<std::string> names;
-  for (const Action& a : kActions) {
-    if (arguments[0] == a.name) return a.call(Arguments(arguments.begin() + 1, arguments.end()));
-    names.emplace_back(a.name);
-  }
-  throw config::UserError(fmt::format("'pept {}' is no action; {}", arguments[0], config::suggestion(arguments[0], names)));
+  return call_action(
+      {"pept", "Recordings of a tracer in a mill (positron emission particle tracking).", kActions, "millscope pept inspect run1.a"},
+      arguments);
 }
 
 }  // namespace millscope::app
