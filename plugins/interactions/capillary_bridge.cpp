@@ -12,9 +12,9 @@
 //   U = −∫_s^{s_c} |F| ds − |F(0)| max(δ_n, 0) = −|F(0)| (√(V/R) 2/D atan z + max(δ_n, 0)),  D² = 4 · 2.5 − 1.05²,
 //   z = D (ŝ_c − ŝ)/(2 + 1.05 (ŝ + ŝ_c) + 5 ŝ ŝ_c)
 //
-// A bridge forms when the surfaces touch and lives until s_c: history remembers it. What a bridge gains from touch to breakage it does not
-// give back; the loss U(0) is the channel `bridge`. It is booked at the touch, where U begins: at s_c the host may already have dropped the
-// pair. Volume is neither exchanged nor conserved: every touch finds the same liquid.
+// A bridge forms when the surfaces touch and lives until s_c: history remembers it. Breaking it takes −U(0), which is not given back: the
+// channel `bridge`. It is booked at the touch, where U begins: at s_c the host may already have dropped the pair. Volume is neither
+// exchanged nor conserved: every touch finds the same liquid.
 //
 // The law's own F_n grows by what the bridge presses, so with `friction: contact` its cap μ F_n counts that as load; with
 // `friction: net` it is taken off the cap.

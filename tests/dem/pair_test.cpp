@@ -65,6 +65,7 @@ constexpr NamedLaw kLaws[] = {
     {"{kind: hertz_mindlin}", "restitution: 0.7, static_friction: 0.3, cohesion_energy_density: 1e4 J/m^3",
      "{cohesion: {kind: cohesion_sjkr}}"},
     {"{kind: hertz_mindlin}", "restitution: 0.7, static_friction: 0.3, surface_tension: 0.07 N/m", "{bridge: {kind: capillary_bridge}}"},
+    {"{kind: hertz_mindlin}", "restitution: 0.7, static_friction: 0.3", "{film: {kind: lubrication, viscosity: 0.02}}"},
 };
 
 struct SeenSpins {

@@ -84,8 +84,9 @@ TEST_CASE("two wet beads part with what the bridge leaves them, slow ones stick"
   }
 }
 
-TEST_CASE("a wet charge in a shaken box keeps its book within 0.5 %") {
+TEST_CASE("a wet charge with a viscous film in a shaken box keeps its book within 0.5 %") {
   Setup s = wet("0.6");
+  s.interactions = "{bridge: {kind: capillary_bridge}, film: {kind: lubrication, viscosity: 0.02}}";
   s.fill = "{count: 200, settle_s: 0.05}";
   s.body_forces = kWithGravity;
   s.geometry =
@@ -108,6 +109,7 @@ TEST_CASE("a wet charge in a shaken box keeps its book within 0.5 %") {
 
 TEST_CASE("threads and instruction sets change no bit of a wet charge in a pool") {
   Setup s = wet("0.6");
+  s.interactions = "{bridge: {kind: capillary_bridge}, film: {kind: lubrication, viscosity: 0.02}}";
   s.fill = "{count: 300, settle_s: 0.01}";
   s.body_forces = "{gravity: {kind: gravity}, pool: {kind: fluid_pool, level: -15 mm, porosity: 0.6}}";
   s.geometry =

@@ -59,6 +59,8 @@ TEST_CASE("every interaction holds to the conformance suite with every option") 
       {"capillary_bridge", "surface_tension=0.07"},
       {"capillary_bridge", "surface_tension=0.07 contact_angle=0.5 volume_ratio=0.01 friction=net"},
       {"capillary_bridge", "surface_tension=0.07 volume_ratio=1e-9"},
+      {"lubrication", "viscosity=0.01"},
+      {"lubrication", "viscosity=10 cut=0.1 range=0.2"},
   };
   for (const auto& [name, text] : cases) {
     const Descriptor& d = plugin(name);
