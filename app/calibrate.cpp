@@ -2,9 +2,9 @@
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <sstream>
 
 #include "app/commands.hpp"
+#include "app/study_options.hpp"
 #include "kernel/output/file.hpp"
 #include "studies/calibrate/outputs.hpp"
 #include "studies/calibrate/session.hpp"
@@ -15,44 +15,6 @@ namespace {
 namespace po = boost::program_options;
 namespace fs = std::filesystem;
 using config::UserError;
-
-void add_options(Options& options) {
-  options.positional("STUDY.yaml", "base case, conditions with recordings, parameters, objective, method, budget");
-  options.add()("output,o", po::value<std::string>()->value_name("OUT"), "directory for the results");
-  options.add()("cache", po::value<std::string>()->value_name("DIR"), "where simulations are kept, each once (default: OUT/cache)");
-  options.add()("runner", po::value<std::string>()->value_name("local|slurm"), "where simulations run (default: the study's)");
-  options.add()("slots", po::value<int>()->value_name("N"), "simulations at once (default: as many as cores); no influence on results");
-  options.add()("slurm", po::value<std::vector<std::string>>()->value_name("OPTIONS"), "more options for sbatch");
-  options.add()("retry-failed", "run again what failed");
-  options.add()("quiet,q", "print nothing but errors");
-  options.with_overrides("replace a value of the study (may be repeated), e.g. --set budget.simulations=80");
-  options.with_plugins();
-}
-
-calibrate::SessionOptions session_options(const Options& options, const fs::path& output) {
-  calibrate::SessionOptions s;
-  s.output = output;
-  if (options.has("cache")) s.cache = options.text("cache");
-  if (options.has("runner")) s.runner = options.text("runner");
-  if (options.has("slots")) {
-    s.slots = options.integer("slots");
-    if (s.slots < 1) throw UserError(fmt::format("--slots {}: give 1 or more", s.slots));
-  }
-  for (const std::string& directory : options.list("plugin-dir")) s.plugin_directories.emplace_back(directory);
-  for (const std::string& text : options.list("slurm")) {
-    std::istringstream words(text);
-    for (std::string word; words >> word;) s.slurm_options.push_back(word);
-  }
-  s.quiet = options.has("quiet");
-  s.retry_failed = options.has("retry-failed");
-  if (!s.quiet) {
-    s.say = [](const std::string& line) {
-      fmt::print("{}\n", line);
-      std::fflush(stdout);
-    };
-  }
-  return s;
-}
 
 void print_found(const calibrate::Study& study, const calibrate::Calibration& c, const fs::path& output) {
   fmt::print("\n{:<24} {:>10}   90 % interval\n", "parameter", "value");
@@ -78,12 +40,12 @@ int calibrate_study(const Arguments& arguments) {
                   "Finds the parameters of a case with which its simulations look like the recordings. Started again, it goes on where it "
                   "stopped and computes nothing twice.",
                   "millscope calibrate configs/chagas2015/study.yaml -o study-out");
-  add_options(options);
+  add_study_options(options);
   if (!options.parse(arguments)) return kDone;
   const fs::path output = options.text("output");
   const calibrate::Study study = calibrate::read_study(options.text("STUDY.yaml"), options.list("set"));
   const host::Registry registry = options.registry();
-  calibrate::Session session(study, registry, session_options(options, output));
+  calibrate::Session session(study, registry, study_session(options, output));
   const calibrate::Calibration found = calibrate::calibrate(session.evaluator());
   calibrate::write_outputs(session.evaluator(), found, output);
   if (!options.has("quiet")) print_found(study, found, output);
@@ -96,7 +58,7 @@ int validate(const Arguments& arguments) {
       "Simulates the calibrated set in the conditions that were held out of the fit and judges every observable: difference with "
       "interval, pass or fail.",
       "millscope validate configs/chagas2015/study.yaml --calibration study-out/calibration.json -o validation-out");
-  add_options(options);
+  add_study_options(options);
   options.add()("calibration", po::value<std::string>()->value_name("FILE"), "calibration.json of 'millscope calibrate'");
   options.add()("all", "also the conditions that were fitted");
   if (!options.parse(arguments)) return kDone;
@@ -111,7 +73,7 @@ int validate(const Arguments& arguments) {
   if (conditions.empty())
     throw UserError(fmt::format("{}: no condition has 'role: held_out'; add one, or validate with --all", study.file.string()));
   const host::Registry registry = options.registry();
-  calibrate::SessionOptions session_of = session_options(options, output);
+  calibrate::SessionOptions session_of = study_session(options, output);
   const fs::path beside = fs::absolute(file).parent_path() / "cache";
   if (session_of.cache.empty() && fs::exists(beside)) session_of.cache = beside;  // what calibrate simulated serves here, too
   calibrate::Session session(study, registry, session_of);

@@ -27,6 +27,7 @@ constexpr Command kCommands[] = {
     {"check", "check a case and predict its cost", check},
     {"calibrate", "contact parameters from recordings", calibrate_study},
     {"validate", "whether what was calibrated holds elsewhere", validate},
+    {"diagnose", "which physics a base case has left out", diagnose_study},
     {"campaign", "run many simulations, each once", run_campaign},
     {"campaign-task", nullptr, campaign_task},
     {"analyze", "measure a simulation or a recording", analyze},

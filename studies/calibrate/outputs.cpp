@@ -178,9 +178,9 @@ Json calibration_json(const Evaluator& evaluator, const Calibration& c) {
   return j;
 }
 
-std::string calibrated_yaml(const Study& study, const Eigen::VectorXd& best, const fs::path& folder) {
+std::string case_with(const std::string& comment, const fs::path& base, const std::vector<std::string>& settings, const fs::path& folder) {
   Tree tree;
-  for (const std::string& setting : settings_of(study, best)) {
+  for (const std::string& setting : settings) {
     const std::size_t equals = setting.find('=');
     Tree* at = &tree;
     for (std::size_t begin = 0, dot = 0; dot != std::string::npos; begin = dot + 1) {
@@ -189,12 +189,16 @@ std::string calibrated_yaml(const Study& study, const Eigen::VectorXd& best, con
     }
     at->value = setting.substr(equals + 1);
   }
-  const std::string base = fs::absolute(study.base).lexically_proximate(fs::absolute(folder)).string();
-  std::string out = fmt::format(
-      "# Found by 'millscope calibrate {}'. Run it, or include it after the case of another condition.\nschema_version: 1\ninclude: [{}]\n",
-      study.file.filename().string(), Json(base).dump());
+  const std::string included = fs::absolute(base).lexically_proximate(fs::absolute(folder)).string();
+  std::string out = fmt::format("# {}\nschema_version: 1\ninclude: [{}]\n", comment, Json(included).dump());
   print(tree, 0, out);
   return out;
+}
+
+std::string calibrated_yaml(const Study& study, const Eigen::VectorXd& best, const fs::path& folder) {
+  return case_with(fmt::format("Found by 'millscope calibrate {}'. Run it, or include it after the case of another condition.",
+                               study.file.filename().string()),
+                   study.base, settings_of(study, best), folder);
 }
 
 std::string runs_csv(const Evaluator& evaluator) {

@@ -12,7 +12,10 @@
 namespace millscope::calibrate {
 
 nlohmann::ordered_json calibration_json(const Evaluator& evaluator, const Calibration& calibration);
-/// A case that includes the base (named relative to `folder`) and sets what was found.
+/// A case below a line of comment that includes `base` (named relative to `folder`) and has the settings "path=value".
+std::string case_with(const std::string& comment, const std::filesystem::path& base, const std::vector<std::string>& settings,
+                      const std::filesystem::path& folder);
+/// The base with what was found.
 std::string calibrated_yaml(const Study& study, const Eigen::VectorXd& best, const std::filesystem::path& folder);
 /// One line for each trial: number, stage, replicate, state, parameters, objectives, observables, folders.
 std::string runs_csv(const Evaluator& evaluator);

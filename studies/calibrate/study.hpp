@@ -121,8 +121,9 @@ struct Study {
 /// "path=value" for every parameter and what is tied to it.
 std::vector<std::string> settings_of(const Study& study, const Eigen::VectorXd& point);
 
-/// Reads the file alone. Throws config::UserError with file:line.
-Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+/// Reads the file alone; `also`: sections that another room reads from `Study::root`. Throws config::UserError with file:line.
+Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
+                 std::initializer_list<std::string_view> also = {});
 
 /// Holds the study against the plugins, the base case and the recordings' conditions: unknown or idle parameters, values that a plugin
 /// refuses, recordings of another mill. Throws config::UserError.

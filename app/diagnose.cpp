@@ -1,0 +1,55 @@
+// diagnose: which physics a base case has left out; bank: the simulations that it is answered from.
+#include <fmt/core.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "app/commands.hpp"
+#include "app/study_options.hpp"
+#include "studies/diagnose/outputs.hpp"
+
+namespace millscope::app {
+namespace {
+
+namespace po = boost::program_options;
+namespace fs = std::filesystem;
+using config::UserError;
+
+void print_found(const diagnose::Diagnosis& d, const fs::path& output) {
+  fmt::print("\n{}\n{}\n", diagnose::name_of(d.verdict), d.sentence);
+  if (!d.next_experiment.empty()) fmt::print("next: {}\n", d.next_experiment);
+  fmt::print("\n{:<28} {:>8} {:>10} {:>16}\n", "candidate", "delta Q", "p", "visible (sigma)");
+  for (std::size_t j = 0; j < d.naming.judged.size(); ++j) {
+    const diagnose::Judged& g = d.naming.judged[j];
+    fmt::print("{:<28} {:>8.1f} {:>10.2g} {:>16.1f}\n", d.problem.rivals[j].name, g.delta_q, g.p_family, std::sqrt(g.lambda));
+  }
+  fmt::print("results in {}: diagnosis.md, diagnosis.json, pictures{}\n", output.string(), d.naming.best >= 0 ? ", corrected" : "");
+}
+
+}  // namespace
+
+int diagnose_study(const Arguments& arguments) {
+  Options options("diagnose STUDY.yaml -o OUT",
+                  "Locates where simulation and recordings differ, tests which physics was left out, and shows on held-out recordings what "
+                  "naming it gains. Started again, it goes on where it stopped and computes nothing twice.",
+                  "millscope diagnose configs/mill10/diagnose.yaml -o diagnosis --set conditions.speed75.recording=r75.yaml");
+  add_study_options(options);
+  options.add()("draws", po::value<int>()->value_name("N"), "pseudo-recordings behind every p-value (default: 2016)");
+  if (!options.parse(arguments)) return kDone;
+  const fs::path output = options.text("output");
+  const host::Registry registry = options.registry();
+  const diagnose::Question question = diagnose::read_question(options.text("STUDY.yaml"), options.list("set"), registry);
+  const calibrate::SessionOptions session_of = study_session(options, output);
+  calibrate::Session session(question.study, registry, session_of);
+  diagnose::NamingOptions naming;
+  naming.say = session_of.say;
+  if (options.has("draws")) naming.draws = options.integer("draws");
+  if (naming.draws < 100) throw UserError(fmt::format("--draws {}: give 100 or more", naming.draws));
+  const diagnose::Workshop workshop = diagnose::workshop_of(session, session_of.say);
+  const diagnose::Diagnosis found = diagnose::diagnose(question, workshop, naming);
+  diagnose::write_outputs({question, workshop, found}, output);
+  if (!options.has("quiet")) print_found(found, output);
+  return kDone;
+}
+
+}  // namespace millscope::app

@@ -1,0 +1,51 @@
+#include "app/study_options.hpp"
+
+#include <fmt/core.h>
+
+#include <sstream>
+
+namespace millscope::app {
+
+namespace po = boost::program_options;
+namespace fs = std::filesystem;
+using config::UserError;
+
+void add_study_options(Options& options) {
+  options.positional("STUDY.yaml", "base case, conditions with recordings, parameters, objective, method, budget");
+  options.add()("output,o", po::value<std::string>()->value_name("OUT"), "directory for the results");
+  options.add()("cache", po::value<std::string>()->value_name("DIR"), "where simulations are kept, each once (default: OUT/cache)");
+  options.add()("runner", po::value<std::string>()->value_name("local|slurm"), "where simulations run (default: the study's)");
+  options.add()("slots", po::value<int>()->value_name("N"), "simulations at once (default: as many as cores); no influence on results");
+  options.add()("slurm", po::value<std::vector<std::string>>()->value_name("OPTIONS"), "more options for sbatch");
+  options.add()("retry-failed", "run again what failed");
+  options.add()("quiet,q", "print nothing but errors");
+  options.with_overrides("replace a value of the study (may be repeated), e.g. --set budget.simulations=80");
+  options.with_plugins();
+}
+
+calibrate::SessionOptions study_session(const Options& options, const fs::path& output) {
+  calibrate::SessionOptions s;
+  s.output = output;
+  if (options.has("cache")) s.cache = options.text("cache");
+  if (options.has("runner")) s.runner = options.text("runner");
+  if (options.has("slots")) {
+    s.slots = options.integer("slots");
+    if (s.slots < 1) throw UserError(fmt::format("--slots {}: give 1 or more", s.slots));
+  }
+  for (const std::string& directory : options.list("plugin-dir")) s.plugin_directories.emplace_back(directory);
+  for (const std::string& text : options.list("slurm")) {
+    std::istringstream words(text);
+    for (std::string word; words >> word;) s.slurm_options.push_back(word);
+  }
+  s.quiet = options.has("quiet");
+  s.retry_failed = options.has("retry-failed");
+  if (!s.quiet) {
+    s.say = [](const std::string& line) {
+      fmt::print("{}\n", line);
+      std::fflush(stdout);
+    };
+  }
+  return s;
+}
+
+}  // namespace millscope::app

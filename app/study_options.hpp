@@ -1,0 +1,14 @@
+// Options of the commands that take a study.yaml and run simulations for it.
+#pragma once
+
+#include <filesystem>
+
+#include "app/commands.hpp"
+#include "studies/calibrate/session.hpp"
+
+namespace millscope::app {
+
+void add_study_options(Options& options);
+calibrate::SessionOptions study_session(const Options& options, const std::filesystem::path& output);
+
+}  // namespace millscope::app

@@ -1,0 +1,153 @@
+#include "studies/diagnose/bank.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "studies/calibrate/observe.hpp"
+#include "studies/doe/doe.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+constexpr double kLeastShare = 0.1;
+constexpr std::uint64_t kOffsets = 16;  // blocks of Sobol's sequence among which groups are spread, of as many points
+
+std::uint64_t hash(const std::string& text) {
+  std::uint64_t h = 0xcbf29ce484222325ULL;
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  return h;
+}
+
+/// Sobol' points in the unit cube.
+MatrixXd unit_points(Index points, Index dimensions) {
+  std::vector<doe::Factor> factors;
+  for (Index i = 0; i < dimensions; ++i) factors.push_back({fmt::format("u{}", i), 0.5, 0.5, ""});
+  return 0.5 * (doe::sobol(std::move(factors), static_cast<int>(points)).coded.array() + 1);
+}
+
+VectorXd theta_of(const Question& q, const VectorXd& unit) {
+  VectorXd theta(static_cast<Index>(q.dimensions()));
+  const std::vector<Coordinate> coordinates = q.coordinates();
+  for (Index i = 0; i < theta.size(); ++i) {
+    const Coordinate& c = coordinates[static_cast<std::size_t>(i)];
+    theta[i] = rounded(c.low + unit[i] * (c.high - c.low));
+  }
+  return theta;
+}
+
+campaign::Simulation simulation(const Question& q, const VectorXd& theta, const std::vector<Effect>& effects, std::size_t condition) {
+  campaign::Simulation s;
+  s.case_file = q.study.base;
+  s.settings = q.study.conditions[condition].settings;
+  for (std::string& setting : q.settings(theta, effects)) s.settings.push_back(std::move(setting));
+  for (std::string& setting : calibrate::observed_outputs()) s.settings.push_back(std::move(setting));
+  return s;
+}
+
+}  // namespace
+
+std::vector<BankPoint> plan_group(const Question& q, int candidate, int count) {
+  const auto d = static_cast<Index>(q.dimensions());
+  const bool base = candidate < 0;
+  const std::string group = base ? "base" : q.candidates[static_cast<std::size_t>(candidate)].name;
+  const auto offset = base ? 0 : static_cast<Index>(kOffsets * (hash(group) % kOffsets));
+  const MatrixXd unit = unit_points(offset + count, d + (base ? 0 : 1));
+  std::vector<BankPoint> points;
+  for (int i = 0; i < count; ++i) {
+    const VectorXd u = unit.row(offset + i).transpose();
+    BankPoint point{group, i, theta_of(q, u), {}};
+    if (!base) {
+      const Candidate& c = q.candidates[static_cast<std::size_t>(candidate)];
+      const double share = c.on_or_off()     ? 1
+                           : c.range.low < 0 ? c.range.low + (1 - c.range.low) * u[d]
+                                             : kLeastShare + (1 - kLeastShare) * u[d];
+      point.effects = {{candidate, rounded_share(c, share)}};
+    }
+    if (q.study.allowed(point.theta.head(static_cast<Index>(q.study.parameters.size())))) points.push_back(std::move(point));
+  }
+  return points;
+}
+
+std::vector<BankPoint> plan_bank(const Question& q) {
+  std::vector<BankPoint> all = plan_group(q, -1, q.bank.base);
+  for (std::size_t j = 0; j < q.candidates.size(); ++j) {
+    for (BankPoint& p : plan_group(q, static_cast<int>(j), q.bank.each)) all.push_back(std::move(p));
+  }
+  return all;
+}
+
+campaign::Simulation simulation_of(const Question& q, const BankPoint& point, std::size_t condition) {
+  const std::string& name = q.study.conditions[condition].name;
+  campaign::Simulation s = simulation(q, point.theta, point.effects, condition);
+  s.settings.push_back(fmt::format("seed={}", 1 + hash(point.group + "/" + name) % 1000000 + static_cast<std::uint64_t>(point.index)));
+  s.label = fmt::format("{}_{}_{}", point.group, point.index, name);
+  return s;
+}
+
+campaign::Simulation simulation_at(const Question& q, const VectorXd& theta, const std::vector<Effect>& effects, std::size_t condition,
+                                   int replicate, const std::string& label) {
+  campaign::Simulation s = simulation(q, theta, effects, condition);
+  s.settings.push_back(fmt::format("seed={}", 7919 * replicate + 17));
+  s.label = fmt::format("{}, seed {}, {}", label, replicate, q.study.conditions[condition].name);
+  return s;
+}
+
+Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoint> points, std::vector<std::size_t> conditions) {
+  std::vector<campaign::Simulation> simulations;
+  for (const BankPoint& p : points) {
+    for (const std::size_t c : conditions) simulations.push_back(simulation_of(q, p, c));
+  }
+  const std::vector<campaign::Outcome> outcomes = workshop.run(simulations);
+  if (workshop.say) workshop.say(fmt::format("looking at {} simulations through the recordings' cameras", outcomes.size()));
+  Bank bank{std::move(points), std::move(conditions), {}, {}};
+  std::size_t next = 0;
+  for (std::size_t p = 0; p < bank.points.size(); ++p) {
+    bank.seen.emplace_back();
+    for (const std::size_t c : bank.conditions) {
+      const campaign::Outcome& outcome = outcomes[next];
+      bank.seen.back().emplace_back();
+      try {
+        if (outcome.state == campaign::State::failed) throw config::UserError(outcome.message);
+        bank.seen.back().back() = workshop.observe(c, outcome);
+      } catch (const config::UserError& e) {
+        bank.failures.push_back(fmt::format("{}: {}", simulations[next].label, e.what()));
+      }
+      ++next;
+    }
+  }
+  return bank;
+}
+
+BankData data_of(const Question& q, const Bank& bank, const std::vector<std::size_t>& conditions) {
+  BankData data;
+  data.theta = q.coordinates();
+  data.candidates = static_cast<Index>(q.candidates.size());
+  std::vector<VectorXd> values;
+  for (std::size_t p = 0; p < bank.points.size(); ++p) {
+    std::vector<double> row;
+    bool whole = true;
+    for (const std::size_t c : conditions) {
+      const auto k = static_cast<std::size_t>(std::find(bank.conditions.begin(), bank.conditions.end(), c) - bank.conditions.begin());
+      const auto& seen = bank.seen[p].at(k);
+      if (!seen) {
+        whole = false;
+        break;
+      }
+      row.insert(row.end(), seen->value.data(), seen->value.data() + seen->value.size());
+      if (values.empty() && data.condition.size() < row.size()) data.condition.resize(row.size(), static_cast<int>(c));
+    }
+    if (!whole) continue;
+    data.rows.push_back({bank.points[p].theta, bank.points[p].effects});
+    values.push_back(Eigen::Map<const VectorXd>(row.data(), static_cast<Index>(row.size())));
+  }
+  if (values.empty()) {
+    throw config::UserError(fmt::format("no simulation of the bank has come to its end{}{}; correct the base case or the ranges",
+                                        bank.failures.empty() ? "" : "; the first: ", bank.failures.empty() ? "" : bank.failures.front()));
+  }
+  data.value.resize(static_cast<Index>(values.size()), values.front().size());
+  for (std::size_t r = 0; r < values.size(); ++r) data.value.row(static_cast<Index>(r)) = values[r].transpose();
+  return data;
+}
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,57 @@
+// The bank: simulations of the mill over θ, without and with each candidate, in every condition; computed once, kept by content.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studies/calibrate/observation.hpp"
+#include "studies/campaign/campaign.hpp"
+#include "studies/diagnose/question.hpp"
+
+namespace millscope::diagnose {
+
+/// One parameter set of the bank.
+struct BankPoint {
+  std::string group;  ///< "base" or a candidate's name
+  int index = 0;      ///< within the group
+  VectorXd theta;
+  std::vector<Effect> effects;
+};
+
+/// Sobol' points over the ranges; those of a group do not depend on the other groups nor on how many are asked for, so that a bank grows
+/// without losing a run. One-sided shares lie in 0.1 … 1.
+std::vector<BankPoint> plan_group(const Question& question, int candidate, int count);
+/// All groups in full.
+std::vector<BankPoint> plan_bank(const Question& question);
+
+campaign::Simulation simulation_of(const Question& question, const BankPoint& point, std::size_t condition);
+
+/// A simulation at a chosen parameter set; `replicate`: seed.
+campaign::Simulation simulation_at(const Question& question, const VectorXd& theta, const std::vector<Effect>& effects,
+                                   std::size_t condition, int replicate, const std::string& label);
+
+/// What runs and what looks; tests put their own in place.
+struct Workshop {
+  std::function<std::vector<campaign::Outcome>(std::span<const campaign::Simulation>)> run;
+  std::function<calibrate::Observation(std::size_t condition, const campaign::Outcome&)> observe;
+  std::vector<calibrate::Observation> recorded;  ///< of every condition
+  std::function<void(const std::string&)> say;
+};
+
+/// The points with what was seen of them in some conditions.
+struct Bank {
+  std::vector<BankPoint> points;
+  std::vector<std::size_t> conditions;
+  std::vector<std::vector<std::optional<calibrate::Observation>>> seen;  ///< [points][conditions]; nothing: it failed
+  std::vector<std::string> failures;                                     ///< one line each
+};
+
+/// Runs what is not in the cache.
+Bank fill_bank(const Question& question, const Workshop& workshop, std::vector<BankPoint> points, std::vector<std::size_t> conditions);
+
+/// The numbers of some of the bank's conditions; points of which one failed are left out.
+BankData data_of(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions);
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,51 @@
+// What the numbers of a diagnosis are made of: simulations at parameter sets, with and without an effect, and what was seen of them.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace millscope::diagnose {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// One coordinate of θ: a parameter of the study, or a nuisance with a prior.
+struct Coordinate {
+  std::string name;
+  double low = 0, high = 1;  ///< natural units; what the bank covers
+  double prior_mean = 0;     ///< of a nuisance
+  double prior_sigma = 0;    ///< 0: flat over the range
+  bool logarithmic = false;  ///< the surrogate is quadratic in its logarithm
+  bool nuisance() const { return prior_sigma > 0; }
+  double coded(double natural) const;  ///< low → −1, high → 1
+  double natural(double coded) const;
+};
+
+/// The effect of a candidate in a run: 0 is without, 1 the far end of its prior range, −1 the other end of a two-sided one.
+struct Effect {
+  int candidate = -1;
+  double share = 0;
+};
+
+/// One parameter set of the bank, simulated in all conditions.
+struct BankRow {
+  VectorXd theta;  ///< natural units
+  std::vector<Effect> effects;
+};
+
+struct BankData {
+  std::vector<Coordinate> theta;
+  Index candidates = 0;
+  std::vector<BankRow> rows;
+  MatrixXd value;              ///< rows × observables; those of all fit conditions side by side
+  std::vector<int> condition;  ///< of each observable
+
+  VectorXd coded(const VectorXd& natural) const;
+  VectorXd natural(const VectorXd& coded) const;
+};
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,60 @@
+// corrected/: the case with the physics that was found, and a study to go on with.
+#include <fmt/format.h>
+
+#include "kernel/output/file.hpp"
+#include "kernel/output/summary.hpp"
+#include "studies/calibrate/outputs.hpp"
+#include "studies/diagnose/outputs.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string study_text(const Told& t, const fs::path& folder) {
+  std::string out = fmt::format("# The study {} on the corrected case.\nschema_version: 1\nbase: case.yaml\n\nconditions:\n",
+                                t.question.study.file.filename().string());
+  for (const calibrate::Condition& c : t.question.study.conditions) {
+    fmt::format_to(std::back_inserter(out), "  {}:\n    recording: {}\n    role: {}\n    set:\n", c.name,
+                   nlohmann::json(fs::absolute(c.recording).lexically_proximate(fs::absolute(folder)).string()).dump(),
+                   c.role == calibrate::Role::fit ? "fit" : "held_out");
+    for (const std::string& s : c.settings)
+      fmt::format_to(std::back_inserter(out), "      {}: {}\n", s.substr(0, s.find('=')), s.substr(s.find('=') + 1));
+  }
+  out += "\nparameters:\n";
+  for (const calibrate::Parameter& p : t.question.study.parameters)
+    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}]}}\n", p.path, p.name, p.low, p.high);
+  if (!t.question.nuisances.empty()) out += "\nnuisances:\n";
+  for (const Nuisance& n : t.question.nuisances)
+    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], mean: {:.6g}, sigma: {:.6g}}}\n", n.path, n.name,
+                   n.low, n.high, n.mean, n.sigma);
+  return out;
+}
+
+}  // namespace
+
+void write_corrected(const Told& t, const fs::path& folder) {
+  const Naming& n = t.diagnosis.naming;
+  if (n.best < 0) return;
+  const Judged& best = n.judged[static_cast<std::size_t>(n.best)];
+  const Rival& rival = t.diagnosis.problem.rivals[static_cast<std::size_t>(n.best)];
+  const std::vector<Effect> effects =
+      rival.candidate < 0 ? std::vector<Effect>{} : std::vector<Effect>{{rival.candidate, best.fit.shares.front()}};
+  const std::vector<std::string> settings = t.question.settings(t.diagnosis.problem.data.natural(best.fit.coded), effects);
+  fs::create_directories(folder);
+  output::write_file(folder / "case.yaml", calibrate::case_with(fmt::format("With {}, as 'millscope diagnose' found it: {}.", rival.name,
+                                                                            name_of(t.diagnosis.verdict)),
+                                                                t.question.study.base, settings, folder));
+  output::write_file(folder / "study.yaml", study_text(t, folder));
+}
+
+void write_outputs(const Told& told, const fs::path& folder) {
+  fs::create_directories(folder);
+  fs::remove_all(folder / "corrected");
+  const std::vector<fs::path> pictures = draw(told, folder / "pictures");
+  write_corrected(told, folder / "corrected");
+  output::write_file(folder / "diagnosis.md", diagnosis_text(told, pictures));
+  output::write_json(folder / "diagnosis.json", diagnosis_json(told));
+}
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,116 @@
+#include "studies/diagnose/diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "studies/diagnose/visibility.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+constexpr double kSurelyBelow = 0.5;  // of the noise units: a candidate that is screened out with its first runs
+
+void say(const Workshop& workshop, const std::string& line) {
+  if (workshop.say) workshop.say(line);
+}
+
+Problem problem_of(const Question& question, const Workshop& workshop, const Bank& bank, const std::vector<std::size_t>& conditions) {
+  Problem p;
+  p.data = data_of(question, bank, conditions);
+  p.rivals = rivals_of(question);
+  add_recorded(question, workshop, conditions, p);
+  choose_scales(p.data);
+  return p;
+}
+
+/// The bank's first runs of each candidate tell which cannot matter; the others get all of theirs.
+std::vector<BankPoint> screened(const Question& question, const Workshop& workshop, const std::vector<std::size_t>& fit,
+                                double noise_units) {
+  std::vector<BankPoint> points = plan_group(question, -1, question.bank.base);
+  for (std::size_t j = 0; j < question.candidates.size(); ++j) {
+    for (BankPoint& p : plan_group(question, static_cast<int>(j), std::min(question.bank.first, question.bank.each)))
+      points.push_back(std::move(p));
+  }
+  const Problem problem = problem_of(question, workshop, fill_bank(question, workshop, points, fit), fit);
+  const Features features(problem.data);
+  const Surrogate surrogate(problem.data, features, std::vector<bool>(problem.data.rows.size(), true));
+  const MatrixXd whitening = whitener(problem.covariance + surrogate.residual_covariance());
+  const FitResult base = Model(problem.data, surrogate, whitening, {}, {}).fit(problem.observed);
+  for (std::size_t j = 0; j < question.candidates.size(); ++j) {
+    const double units = std::sqrt(Visibility(problem, surrogate, whitening, base.coded, static_cast<int>(j)).lambda());
+    const Candidate& c = question.candidates[j];
+    if (units < kSurelyBelow * noise_units) {
+      say(workshop,
+          fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate: it cannot matter here", c.name, units));
+      continue;
+    }
+    say(workshop,
+        fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate: looked at closely", c.name, units));
+    const std::vector<BankPoint> all = plan_group(question, static_cast<int>(j), question.bank.each);
+    for (std::size_t i = static_cast<std::size_t>(question.bank.first); i < all.size(); ++i) points.push_back(all[i]);
+  }
+  return points;
+}
+
+}  // namespace
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::no_mismatch:
+      return "no_mismatch";
+    case Verdict::named:
+      return "named";
+    case Verdict::ambiguous:
+      return "ambiguous";
+    case Verdict::outside_library:
+      return "outside_library";
+    case Verdict::undetectable:
+      return "undetectable";
+  }
+  return "";
+}
+
+std::vector<Rival> rivals_of(const Question& question) {
+  std::vector<Rival> rivals;
+  for (std::size_t j = 0; j < question.candidates.size(); ++j) {
+    const Candidate& c = question.candidates[j];
+    rivals.push_back({c.name, static_cast<int>(j), -1, c.range, c.excludes});
+  }
+  for (std::size_t i = 0; i < question.nuisances.size(); ++i) {
+    rivals.push_back({question.nuisances[i].name, -1, static_cast<Index>(question.study.parameters.size() + i), {}, {}});
+  }
+  return rivals;
+}
+
+Diagnosis diagnose(const Question& question, const Workshop& workshop, const NamingOptions& options) {
+  Diagnosis d;
+  d.fit = question.study.with_role(calibrate::Role::fit);
+  d.held = question.study.with_role(calibrate::Role::held_out);
+  const std::vector<BankPoint> points = screened(question, workshop, d.fit, options.noise_units);
+  std::vector<std::size_t> all = d.fit;
+  all.insert(all.end(), d.held.begin(), d.held.end());
+  d.bank = fill_bank(question, workshop, points, all);
+  d.problem = problem_of(question, workshop, d.bank, d.fit);
+  d.naming = name_physics(d.problem, options);
+  const HeldOutRequest request{question, workshop, d.bank, d.problem, d.naming, d.fit, 3, options.seed};
+  d.alone = fit_alone(request);
+  for (const std::size_t condition : d.held) {
+    say(workshop, fmt::format("held-out condition '{}'", question.study.conditions[condition].name));
+    d.held_out.push_back(hold_against(request, condition));
+  }
+  if (!d.bank.failures.empty())
+    d.notes.push_back(
+        fmt::format("{} simulations of the bank failed and are left out, the first: {}", d.bank.failures.size(), d.bank.failures.front()));
+  for (const std::string& line : question.left_out) d.notes.push_back("not tested: " + line);
+  conclude(question, workshop, options.level, options.noise_units, d);
+  return d;
+}
+
+Workshop workshop_of(calibrate::Session& session, std::function<void(const std::string&)> say) {
+  const calibrate::Machinery& m = session.evaluator().machinery();
+  return {m.run, m.observe, m.recorded, std::move(say)};
+}
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,174 @@
+#include "studies/diagnose/fit.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "kernel/config/error.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+constexpr int kIterations = 40;
+constexpr double kFinished = 1e-9;  // of Q, relative
+constexpr std::size_t kDescents = 3;
+constexpr int kLevels = 3;  // of the grid of starting points, for each flat coordinate
+
+}  // namespace
+
+MatrixXd whitener(const MatrixXd& covariance) {
+  const Eigen::LLT<MatrixXd> llt(covariance);
+  if (llt.info() != Eigen::Success) {
+    throw config::UserError(
+        "the covariance of the observables is not positive definite; lengthen the recording or leave groups out (objective.without)");
+  }
+  return llt.matrixL().solve(MatrixXd::Identity(covariance.rows(), covariance.cols()));
+}
+
+Model::Model(const BankData& data, const Surrogate& surrogate, const MatrixXd& whitener, std::vector<int> active,
+             const std::vector<ShareRange>& ranges, Index freed)
+    : features_(&surrogate.features()), whitener_(whitener), active_(std::move(active)), theta_(static_cast<Index>(data.theta.size())) {
+  Index columns = features_->base_size();
+  for (const int j : active_) columns += features_->count(j);
+  MatrixXd b(columns, data.value.cols());
+  b.topRows(features_->base_size()) = surrogate.coefficients().topRows(features_->base_size());
+  Index next = features_->base_size();
+  for (const int j : active_) {
+    b.middleRows(next, features_->count(j)) = surrogate.coefficients().middleRows(features_->first(j), features_->count(j));
+    next += features_->count(j);
+  }
+  const Index kept = std::min(columns, whitener.rows());
+  const Eigen::HouseholderQR<MatrixXd> qr(whitener * b.transpose());
+  r_ = qr.matrixQR().topRows(kept).triangularView<Eigen::Upper>();
+  qt_ = (qr.householderQ() * MatrixXd::Identity(whitener.rows(), kept)).transpose();
+  const Index all = theta_ + static_cast<Index>(active_.size());
+  low_ = VectorXd::Constant(all, -1), high_ = VectorXd::Constant(all, 1);
+  prior_ = VectorXd::Zero(all), weight_ = VectorXd::Zero(all);
+  for (Index i = 0; i < theta_; ++i) {
+    const Coordinate& c = data.theta[static_cast<std::size_t>(i)];
+    if (!c.nuisance()) continue;
+    prior_[i] = c.coded(c.prior_mean);
+    if (i != freed) weight_[i] = 0.5 * (c.high - c.low) / c.prior_sigma;
+  }
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    low_[theta_ + static_cast<Index>(k)] = ranges[static_cast<std::size_t>(active_[k])].low;
+    high_[theta_ + static_cast<Index>(k)] = ranges[static_cast<std::size_t>(active_[k])].high;
+  }
+}
+
+VectorXd Model::features(const VectorXd& t) const {
+  const VectorXd u = t.head(theta_);
+  VectorXd x(r_.cols());
+  x.head(features_->base_size()) = features_->base(u);
+  Index next = features_->base_size();
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const Index n = features_->count(active_[k]);
+    x.segment(next, n) = features_->block(active_[k], u, t[theta_ + static_cast<Index>(k)]);
+    next += n;
+  }
+  return x;
+}
+
+VectorXd Model::residual(const VectorXd& t, const Target& target) const {
+  VectorXd out(r_.rows() + theta_);
+  out.head(r_.rows()) = r_ * features(t) - target.z;
+  out.tail(theta_) = (weight_.array() * (t - prior_).array()).matrix().head(theta_);
+  return out;
+}
+
+/// Features are quadratic in every coordinate: central differences are exact but for rounding.
+MatrixXd Model::jacobian(const VectorXd& t) const {
+  constexpr double kStep = 0.5;
+  MatrixXd out = MatrixXd::Zero(r_.rows() + theta_, t.size());
+  for (Index i = 0; i < t.size(); ++i) {
+    VectorXd up = t, down = t;
+    up[i] += kStep, down[i] -= kStep;
+    out.col(i).head(r_.rows()) = r_ * (features(up) - features(down));
+    if (i < theta_) out(r_.rows() + i, i) = weight_[i];
+  }
+  return out;
+}
+
+/// Levenberg's and Marquardt's steps, coordinates at a limit held while the gradient pushes outward.
+double Model::descend(VectorXd& t, const Target& target) const {
+  VectorXd r = residual(t, target);
+  double q = r.squaredNorm(), damping = 1e-3;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const MatrixXd j = jacobian(t);
+    VectorXd gradient = j.transpose() * r;
+    MatrixXd normal = j.transpose() * j;
+    for (Index i = 0; i < t.size(); ++i) {
+      const bool held = (t[i] <= low_[i] && gradient[i] > 0) || (t[i] >= high_[i] && gradient[i] < 0);
+      if (held) normal.row(i).setZero(), normal.col(i).setZero(), normal(i, i) = 1, gradient[i] = 0;
+    }
+    bool better = false;
+    for (; damping < 1e8 && !better; damping *= 8) {
+      MatrixXd damped = normal;
+      damped.diagonal() += damping * (normal.diagonal().array() + 1e-9).matrix();
+      const VectorXd next = (t - damped.ldlt().solve(gradient)).cwiseMax(low_).cwiseMin(high_);
+      const VectorXd r_next = residual(next, target);
+      const double q_next = r_next.squaredNorm();
+      if (!(q_next < q)) continue;
+      better = true;
+      damping /= 64;
+      const bool finished = q - q_next < kFinished * (1 + q);
+      t = next, r = r_next, q = q_next;
+      if (finished) return q;
+    }
+    if (!better) return q;
+  }
+  return q;
+}
+
+std::vector<VectorXd> Model::starts() const {
+  std::vector<VectorXd> out{prior_};
+  for (Index i = 0; i < low_.size(); ++i) {
+    if (weight_[i] > 0) continue;
+    std::vector<VectorXd> more;
+    for (const VectorXd& t : out) {
+      for (int level = 0; level < kLevels; ++level) {
+        more.push_back(t);
+        more.back()[i] = low_[i] + (high_[i] - low_[i]) * (0.5 + level) / kLevels;
+      }
+    }
+    out = std::move(more);
+  }
+  return out;
+}
+
+FitResult Model::fit(const VectorXd& observed) const {
+  const VectorXd white = whitener_ * observed;
+  Target target{qt_ * white, 0};
+  target.beyond = std::max(0.0, white.squaredNorm() - target.z.squaredNorm());
+  std::vector<std::pair<double, VectorXd>> tried;
+  for (VectorXd& t : starts()) {
+    const double q = residual(t, target).squaredNorm();
+    tried.emplace_back(q, std::move(t));
+  }
+  const std::size_t descents = std::min(kDescents, tried.size());
+  std::partial_sort(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(descents), tried.end(),
+                    [](const auto& a, const auto& b) { return a.first < b.first; });
+  FitResult best;
+  best.q = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < descents; ++k) {
+    VectorXd t = tried[k].second;
+    const double q = descend(t, target) + target.beyond;
+    if (q >= best.q) continue;
+    best.q = q;
+    best.coded = t.head(theta_);
+    best.shares.assign(t.data() + theta_, t.data() + t.size());
+  }
+  return best;
+}
+
+std::vector<Effect> Model::effects(const FitResult& fit) const {
+  std::vector<Effect> out;
+  for (std::size_t k = 0; k < active_.size(); ++k) out.push_back({active_[k], fit.shares[k]});
+  return out;
+}
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,185 @@
+#include "studies/diagnose/held_out.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "studies/diagnose/rivals.hpp"
+#include "studies/emulate/random.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+constexpr int kDraws = 4000;
+constexpr double kNormal90 = 1.645;
+
+/// Mean of the simulations of one parameter set with several seeds.
+Prediction simulate(const HeldOutRequest& r, const VectorXd& coded, const std::vector<Effect>& effects, std::size_t condition,
+                    const std::string& name) {
+  const VectorXd theta = r.problem.data.natural(coded);
+  std::vector<campaign::Simulation> simulations;
+  for (int replicate = 1; replicate <= r.seeds; ++replicate)
+    simulations.push_back(simulation_at(r.question, theta, effects, condition, replicate, name));
+  Prediction p;
+  p.name = name;
+  int done = 0;
+  std::string message;
+  for (const campaign::Outcome& outcome : r.workshop.run(simulations)) {
+    if (outcome.state == campaign::State::failed) {
+      message = outcome.message;
+      continue;
+    }
+    const calibrate::Observation o = r.workshop.observe(condition, outcome);
+    if (done++ == 0)
+      p.value = o.value, p.covariance = o.covariance, p.power = o.power.value;
+    else
+      p.value += o.value, p.covariance += o.covariance, p.power += o.power.value;
+  }
+  if (done == 0) throw config::UserError(fmt::format("all simulations of '{}' failed: {}", name, message));
+  p.value /= done, p.covariance /= done * done, p.power /= done;
+  return p;
+}
+
+struct Judge {
+  VectorXd observed;
+  MatrixXd recording;  ///< covariance
+  double power = 0;
+
+  double misfit(const VectorXd& y, const VectorXd& value, const Eigen::LLT<MatrixXd>& c) const {
+    const VectorXd r = y - value;
+    return r.dot(c.solve(r)) / static_cast<double>(r.size());
+  }
+
+  /// Improvement of the first prediction over another, with what noise of recording and simulations leaves open.
+  void compare(const Score& corrected, Score& rival, std::uint64_t seed) const {
+    const MatrixXd sum = recording + 0.5 * (corrected.prediction.covariance + rival.prediction.covariance);
+    const Eigen::LLT<MatrixXd> c(sum);
+    rival.improvement = misfit(observed, rival.prediction.value, c) - misfit(observed, corrected.prediction.value, c);
+    const MatrixXd noise = Eigen::LLT<MatrixXd>(recording).matrixL();
+    const MatrixXd first = Eigen::LLT<MatrixXd>(corrected.prediction.covariance).matrixL(),
+                   second = Eigen::LLT<MatrixXd>(rival.prediction.covariance).matrixL();
+    emulate::Random random(seed, 9);
+    std::vector<double> draws;
+    for (int b = 0; b < kDraws; ++b) {
+      const VectorXd y = observed + noise * random.normals(observed.size());
+      draws.push_back(misfit(y, rival.prediction.value + second * random.normals(y.size()), c) -
+                      misfit(y, corrected.prediction.value + first * random.normals(y.size()), c));
+    }
+    std::sort(draws.begin(), draws.end());
+    rival.low90 = draws[kDraws / 20], rival.high90 = draws[kDraws - 1 - kDraws / 20];
+  }
+};
+
+Score score(const Judge& judge, Prediction prediction) {
+  Score s;
+  const MatrixXd sum = judge.recording + prediction.covariance;
+  s.misfit = judge.misfit(judge.observed, prediction.value, Eigen::LLT<MatrixXd>(sum));
+  s.power_percent = 100 * (prediction.power - judge.power) / judge.power;
+  s.prediction = std::move(prediction);
+  return s;
+}
+
+}  // namespace
+
+HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) {
+  Problem held;
+  add_recorded(r.question, r.workshop, {condition}, held);
+  const Judge judge{held.observed, held.covariance, r.workshop.recorded[condition].power.value};
+  const RivalModels rivals(r, condition);
+  HeldOut out;
+  out.condition = condition;
+  const auto add = [&](Prediction p, const std::string& sentence) {
+    p.sentence = sentence;
+    out.scores.push_back(score(judge, std::move(p)));
+  };
+  const bool named = r.naming.best >= 0;
+  if (named) {
+    const Judged& best = r.naming.judged[static_cast<std::size_t>(r.naming.best)];
+    const std::vector<Effect> effects = rivals.effects(r.naming.best, best.fit);
+    add(simulate(r, best.fit.coded, effects, condition, "corrected"), "with the named effect, all parameters fitted together");
+    if (!effects.empty())
+      add(simulate(r, best.fit.coded, {}, condition, "named effect removed"), "the corrected parameters without the named effect");
+  }
+  const Prediction base = simulate(r, r.naming.base.coded, {}, condition, "retuned to all observables");
+  add(simulate(r, rivals.power_only(), {}, condition, "retuned to power"),
+      "the base, friction retuned until the power matches: the practice");
+  add(base, "the base, parameters refitted to all observables");
+  if (named) {
+    add(rivals.placebo(base), "the base with a free parameter of no meaning");
+    add(rivals.discrepancy(base), "the base with the residuals of the fitted conditions carried over by a Gaussian process");
+    out.improves = true;
+    for (std::size_t k = 1; k < out.scores.size(); ++k) {
+      judge.compare(out.scores[0], out.scores[k], r.seed + k);
+      out.improves = out.improves && out.scores[k].low90 > 0;
+    }
+  }
+  return out;
+}
+
+std::vector<Alone> fit_alone(const HeldOutRequest& r) {
+  std::vector<Alone> out;
+  const bool named = r.naming.best >= 0;
+  for (const std::size_t condition : r.bank.conditions) {
+    Problem one;
+    add_recorded(r.question, r.workshop, {condition}, one);
+    one.data = data_of(r.question, r.bank, {condition});
+    for (std::size_t i = 0; i < one.data.theta.size(); ++i) one.data.theta[i].logarithmic = r.problem.data.theta[i].logarithmic;
+    const Features features(one.data);
+    const Surrogate surrogate(one.data, features, std::vector<bool>(one.data.rows.size(), true));
+    const MatrixXd w = whitener(one.covariance + surrogate.residual_covariance());
+    const auto fit = [&](const std::vector<Effect>& effects) {
+      std::vector<ShareRange> ranges(static_cast<std::size_t>(one.data.candidates));
+      std::vector<int> active;
+      for (const Effect& e : effects) active.push_back(e.candidate), ranges[static_cast<std::size_t>(e.candidate)] = {e.share, e.share};
+      const FitResult found = Model(one.data, surrogate, w, active, ranges).fit(one.observed);
+      const Index d = found.coded.size();
+      MatrixXd information = MatrixXd::Zero(d, d), tangent(w.rows(), d);
+      for (Index i = 0; i < d; ++i) {
+        VectorXd up = found.coded, down = found.coded;
+        up[i] += 0.5, down[i] -= 0.5;
+        tangent.col(i) = w * (surrogate.at(up, effects) - surrogate.at(down, effects));
+        const Coordinate& c = one.data.theta[static_cast<std::size_t>(i)];
+        if (c.nuisance()) information(i, i) = std::pow(0.5 * (c.high - c.low) / c.prior_sigma, 2);
+      }
+      information += tangent.transpose() * tangent;
+      const VectorXd sd = information.ldlt().solve(MatrixXd::Identity(d, d)).diagonal().cwiseMax(0).cwiseSqrt();
+      std::vector<Interval> theta;
+      for (Index i = 0; i < d; ++i) {
+        const Coordinate& c = one.data.theta[static_cast<std::size_t>(i)];
+        const auto at = [&](double u) { return c.natural(std::clamp(u, -1.0, 1.0)); };
+        theta.push_back({at(found.coded[i]), at(found.coded[i] - kNormal90 * sd[i]), at(found.coded[i] + kNormal90 * sd[i])});
+      }
+      return theta;
+    };
+    Alone alone{condition, fit({}), {}};
+    if (named && r.problem.rivals[static_cast<std::size_t>(r.naming.best)].candidate >= 0) {
+      const Judged& best = r.naming.judged[static_cast<std::size_t>(r.naming.best)];
+      alone.after = fit({{r.problem.rivals[static_cast<std::size_t>(r.naming.best)].candidate, best.fit.shares.front()}});
+    }
+    out.push_back(std::move(alone));
+  }
+  return out;
+}
+
+void add_recorded(const Question& question, const Workshop& workshop, const std::vector<std::size_t>& conditions, Problem& problem) {
+  Index n = 0;
+  for (const std::size_t c : conditions) n += workshop.recorded[c].value.size();
+  problem.observed.resize(n);
+  problem.covariance = MatrixXd::Zero(n, n);
+  Index at = 0;
+  for (const std::size_t c : conditions) {
+    const calibrate::Observation& o = workshop.recorded[c];
+    const Index size = o.value.size();
+    problem.observed.segment(at, size) = o.value;
+    problem.covariance.block(at, at, size, size) = o.covariance;
+    for (Index i = 0; i < size; ++i) {
+      if (o.observables[static_cast<std::size_t>(i)].group == "power")
+        problem.covariance(at + i, at + i) += std::pow(question.power_error * o.value[i], 2);
+    }
+    at += size;
+  }
+}
+
+}  // namespace millscope::diagnose

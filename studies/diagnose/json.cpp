@@ -1,0 +1,150 @@
+// diagnosis.json.
+#include <cmath>
+
+#include "studies/diagnose/outputs.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json interval(const Interval& i) { return {{"value", i.value}, {"low90", i.low90}, {"high90", i.high90}}; }
+
+Json parameters(const Told& t, const std::vector<Interval>& theta) {
+  Json out = Json::object();
+  for (std::size_t i = 0; i < theta.size(); ++i) out[t.diagnosis.problem.data.theta[i].name] = interval(theta[i]);
+  return out;
+}
+
+/// The fitted value of the candidate's own parameter.
+Json strength(const Told& t, std::size_t j) {
+  const Rival& rival = t.diagnosis.problem.rivals[j];
+  const Judged& judged = t.diagnosis.naming.judged[j];
+  if (rival.freed >= 0) {
+    const Coordinate& c = t.diagnosis.problem.data.theta[static_cast<std::size_t>(rival.freed)];
+    return {{c.name, interval(judged.theta[static_cast<std::size_t>(rival.freed)])}};
+  }
+  const Candidate& c = t.question.candidates[static_cast<std::size_t>(rival.candidate)];
+  if (c.on_or_off()) return {{"share", interval(judged.share)}};
+  Interval value{c.value(judged.share.value), c.value(judged.share.low90), c.value(judged.share.high90)};
+  if (value.low90 > value.high90) std::swap(value.low90, value.high90);
+  Json out = interval(value);
+  out["unit"] = c.unit;
+  out["vanishes_at"] = c.null_value;
+  return {{c.parameter, out}};
+}
+
+std::string class_of(const Diagnosis& d, std::size_t j) {
+  const int rival = static_cast<int>(j);
+  if (rival == d.naming.best) return "best";
+  for (const int k : d.naming.kept) {
+    if (k == rival) return "not rejected";
+  }
+  return d.naming.judged[j].undetectable ? "undetectable" : d.naming.best >= 0 ? "rejected" : "not needed";
+}
+
+Json hypotheses(const Told& t) {
+  Json out = Json::array();
+  const Diagnosis& d = t.diagnosis;
+  for (std::size_t j = 0; j < d.naming.judged.size(); ++j) {
+    const Judged& g = d.naming.judged[j];
+    const bool compared = d.naming.best >= 0 && static_cast<int>(j) != d.naming.best;
+    out.push_back({{"name", d.problem.rivals[j].name},
+                   {"kind", d.problem.rivals[j].freed >= 0 ? "nuisance" : "physics"},
+                   {"class", class_of(d, j)},
+                   {"p_value", g.p_family},
+                   {"p_value_alone", g.p},
+                   {"delta_q", g.delta_q},
+                   {"kappa", g.kappa},
+                   {"lambda", g.lambda},
+                   {"lambda_found", g.lambda_found},
+                   {"undetectable", g.undetectable},
+                   {"p_against_best", compared ? Json(g.against_best_p) : Json()},
+                   {"p_goodness", g.goodness_p},
+                   {"parameters", strength(t, j)},
+                   {"contact_parameters", parameters(t, g.theta)}});
+  }
+  return out;
+}
+
+Json held_out(const Told& t) {
+  Json out = Json::array();
+  for (const HeldOut& h : t.diagnosis.held_out) {
+    Json scores = Json::array();
+    for (const Score& s : h.scores) {
+      Json one = {{"model", s.prediction.name}, {"is", s.prediction.sentence},   {"simulated", s.prediction.simulated},
+                  {"misfit", s.misfit},         {"power_W", s.prediction.power}, {"power_percent", s.power_percent}};
+      if (t.diagnosis.naming.best >= 0 && s.prediction.name != "corrected")
+        one["improvement_of_corrected"] = {{"value", s.improvement}, {"low90", s.low90}, {"high90", s.high90}};
+      scores.push_back(std::move(one));
+    }
+    Json names = Json::array();
+    const calibrate::Observation& recorded = t.workshop.recorded[h.condition];
+    for (std::size_t i = 0; i < recorded.observables.size(); ++i) {
+      Json row = {{"observable", recorded.observables[i].name},
+                  {"unit", recorded.observables[i].unit},
+                  {"recorded", recorded.value[static_cast<Index>(i)]}};
+      for (const Score& s : h.scores) row[s.prediction.name] = s.prediction.value[static_cast<Index>(i)];
+      names.push_back(std::move(row));
+    }
+    out.push_back({{"condition", t.question.study.conditions[h.condition].name},
+                   {"recorded_power_W", recorded.power.value},
+                   {"improves_on_every_rival", h.improves},
+                   {"models", scores},
+                   {"observables", names}});
+  }
+  return out;
+}
+
+Json per_speed(const Told& t) {
+  Json out = Json::array();
+  for (const Alone& a : t.diagnosis.alone) {
+    out.push_back({{"condition", t.question.study.conditions[a.condition].name},
+                   {"speed_rad_per_s", t.question.speed[a.condition]},
+                   {"before", parameters(t, a.before)},
+                   {"after", parameters(t, a.after)}});
+  }
+  return out;
+}
+
+}  // namespace
+
+Json diagnosis_json(const Told& t) {
+  const Diagnosis& d = t.diagnosis;
+  Json mismatch = Json::array();
+  for (const Mismatch& m : d.naming.mismatch) {
+    const auto c = static_cast<std::size_t>(d.problem.data.condition[static_cast<std::size_t>(m.observable)]);
+    mismatch.push_back({{"observable", observable_name(t, m.observable)},
+                        {"condition", t.question.study.conditions[c].name},
+                        {"z", m.z},
+                        {"p_value", m.p},
+                        {"sentence", mismatch_sentence(t, m)}});
+  }
+  Json contact = {{"retuned", parameters(t, d.naming.base_theta)}};
+  if (d.naming.best >= 0) contact["unmasked"] = parameters(t, d.naming.judged[static_cast<std::size_t>(d.naming.best)].theta);
+  Json pairs = Json::array();
+  for (const Pair& p : d.naming.pairs) {
+    pairs.push_back({{"first", d.problem.rivals[static_cast<std::size_t>(p.first)].name},
+                     {"second", d.problem.rivals[static_cast<std::size_t>(p.second)].name},
+                     {"p_second", p.p},
+                     {"p_first", p.p_first},
+                     {"p_goodness", p.goodness_p}});
+  }
+  return {{"schema_version", 1},
+          {"verdict", name_of(d.verdict)},
+          {"sentence", d.sentence},
+          {"named", d.named},
+          {"next_experiment", d.next_experiment},
+          {"base", {{"p_value", d.naming.base_p}, {"q", d.naming.base.q}, {"observables", d.problem.observed.size()}}},
+          {"hypotheses", hypotheses(t)},
+          {"two_effects", pairs},
+          {"mismatch", mismatch},
+          {"contact_parameters", contact},
+          {"per_speed_friction", per_speed(t)},
+          {"held_out", held_out(t)},
+          {"bank", {{"parameter_sets", d.bank.points.size()}, {"used", d.problem.data.rows.size()}, {"failures", d.bank.failures}}},
+          {"notes", d.notes},
+          {"study", t.question.study.file.string()}};
+}
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,224 @@
+#include "studies/diagnose/naming.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "studies/diagnose/pseudo_data.hpp"
+#include "studies/diagnose/visibility.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+/// Share of draws that are at least `value`, the value itself counted among them.
+double tail(const std::vector<double>& draws, double value) {
+  const auto above = std::count_if(draws.begin(), draws.end(), [&](double d) { return d >= value; });
+  return static_cast<double>(1 + above) / static_cast<double>(1 + draws.size());
+}
+
+Interval interval(std::vector<double> draws, double value) {
+  std::sort(draws.begin(), draws.end());
+  const auto at = [&](double part) { return draws[static_cast<std::size_t>(part * static_cast<double>(draws.size() - 1))]; };
+  return {value, at(0.05), at(0.95)};
+}
+
+template <class Of>
+std::vector<double> collect(const std::vector<PseudoData::Drawn>& drawn, Of of) {
+  std::vector<double> out;
+  for (const PseudoData::Drawn& d : drawn) out.push_back(of(d));
+  return out;
+}
+
+/// Natural parameters of fit number `k` in every draw, as intervals about `fit`.
+std::vector<Interval> theta_intervals(const BankData& data, const FitResult& fit, const std::vector<PseudoData::Drawn>& drawn,
+                                      std::size_t k) {
+  std::vector<Interval> out;
+  for (Index i = 0; i < fit.coded.size(); ++i) {
+    const Coordinate& c = data.theta[static_cast<std::size_t>(i)];
+    out.push_back(interval(collect(drawn, [&](const auto& d) { return c.natural(d.fit[k].coded[i]); }), c.natural(fit.coded[i])));
+  }
+  return out;
+}
+
+class Namer {
+ public:
+  Namer(const Problem& problem, const NamingOptions& options) : p_(problem), o_(options), pseudo_(problem, options) {}
+
+  Naming run() {
+    out_.covariance = pseudo_.covariance();
+    against_base();
+    choose_best();
+    if (out_.best >= 0) {
+      look_closer(out_.best);
+      compare_rivals();
+      look_for_second();
+    }
+    return std::move(out_);
+  }
+
+ private:
+  std::size_t count() const { return p_.rivals.size(); }
+  void say(const std::string& line) const {
+    if (o_.say) o_.say(line);
+  }
+
+  void against_base() {
+    say(fmt::format("null distribution: {} pseudo-recordings, {} candidates", o_.draws, count()));
+    out_.base = pseudo_.fit({});
+    std::vector<Choice> choices{{}};
+    for (std::size_t j = 0; j < count(); ++j) choices.push_back({static_cast<int>(j)});
+    const auto drawn = pseudo_.draw(pseudo_.truth({}, out_.base), choices, o_.draws, 1);
+    out_.base_p = tail(collect(drawn, [](const auto& d) { return d.fit[0].q; }), out_.base.q);
+    out_.base_theta = theta_intervals(p_.data, out_.base, drawn, 0);
+    std::vector<std::vector<double>> delta(count());
+    for (std::size_t j = 0; j < count(); ++j) {
+      delta[j] = collect(drawn, [j](const auto& d) { return std::max(0.0, d.fit[0].q - d.fit[j + 1].q); });
+      Judged judged;
+      judged.fit = pseudo_.fit({static_cast<int>(j)});
+      judged.delta_q = std::max(0.0, out_.base.q - judged.fit.q);
+      judged.p = tail(delta[j], judged.delta_q);
+      out_.judged.push_back(judged);
+      visibility(static_cast<int>(j));
+    }
+    correct_family(delta);
+    mismatch(drawn);
+  }
+
+  /// min-p (Westfall and Young 1993): how often the smallest p of a draw is as small.
+  void correct_family(const std::vector<std::vector<double>>& delta) {
+    const auto draws = static_cast<std::size_t>(o_.draws);
+    std::vector<double> least(draws, 1);
+    for (const std::vector<double>& d : delta) {
+      std::vector<double> sorted = d;
+      std::sort(sorted.begin(), sorted.end());
+      for (std::size_t b = 0; b < draws; ++b) {
+        const auto above = sorted.end() - std::lower_bound(sorted.begin(), sorted.end(), d[b]);
+        least[b] = std::min(least[b], static_cast<double>(1 + above) / static_cast<double>(1 + draws));
+      }
+    }
+    for (Judged& j : out_.judged) {
+      const auto smaller = std::count_if(least.begin(), least.end(), [&](double p) { return p <= j.p; });
+      j.p_family = static_cast<double>(1 + smaller) / static_cast<double>(1 + draws);
+    }
+  }
+
+  void visibility(int j) {
+    Judged& judged = out_.judged[static_cast<std::size_t>(j)];
+    const Visibility seen(p_, pseudo_.surrogate(), pseudo_.whitening(), out_.base.coded, j);
+    const double found =
+        judged.fit.shares.empty() ? judged.fit.coded[p_.rivals[static_cast<std::size_t>(j)].freed] : judged.fit.shares.front();
+    judged.lambda = seen.lambda(), judged.kappa = seen.kappa(), judged.lambda_found = seen.orthogonal(found);
+    judged.undetectable = std::sqrt(judged.lambda) < o_.noise_units;
+    judged.share = {found, found, found};
+    for (Index i = 0; i < judged.fit.coded.size(); ++i) {
+      const double value = p_.data.theta[static_cast<std::size_t>(i)].natural(judged.fit.coded[i]);
+      judged.theta.push_back({value, value, value});
+    }
+  }
+
+  /// Residuals of the retuned base, the largest of a draw as the measure (Westfall and Young's max-T).
+  void mismatch(const std::vector<PseudoData::Drawn>& drawn) {
+    const Index n = p_.observed.size();
+    VectorXd mean = VectorXd::Zero(n), square = VectorXd::Zero(n);
+    for (const auto& d : drawn) mean += d.residual, square += d.residual.cwiseAbs2();
+    const auto draws = static_cast<double>(drawn.size());
+    const VectorXd sd = (square / draws - (mean / draws).cwiseAbs2()).cwiseMax(1e-300).cwiseSqrt();
+    const auto largest = collect(drawn, [&](const auto& d) { return d.residual.cwiseQuotient(sd).cwiseAbs().maxCoeff(); });
+    const VectorXd z = (p_.observed - pseudo_.surrogate().at(out_.base.coded)).cwiseQuotient(sd);
+    for (Index i = 0; i < n; ++i) out_.mismatch.push_back({i, z[i], tail(largest, std::fabs(z[i]))});
+    std::stable_sort(out_.mismatch.begin(), out_.mismatch.end(),
+                     [](const Mismatch& a, const Mismatch& b) { return std::fabs(a.z) > std::fabs(b.z); });
+  }
+
+  void choose_best() {
+    for (std::size_t j = 0; j < count(); ++j) {
+      const Judged& judged = out_.judged[j];
+      if (judged.p_family > o_.level) continue;
+      if (out_.best < 0 || judged.fit.q < out_.judged[static_cast<std::size_t>(out_.best)].fit.q) out_.best = static_cast<int>(j);
+    }
+  }
+
+  /// Intervals and goodness from draws under candidate j.
+  void look_closer(int j) {
+    Judged& judged = out_.judged[static_cast<std::size_t>(j)];
+    const auto drawn = pseudo_.draw(pseudo_.truth({j}, judged.fit), {{j}}, o_.rival_draws, 100 + static_cast<std::uint64_t>(j));
+    judged.goodness_p = tail(collect(drawn, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
+    judged.theta = theta_intervals(p_.data, judged.fit, drawn, 0);
+    if (!judged.fit.shares.empty())
+      judged.share = interval(collect(drawn, [](const auto& d) { return d.fit[0].shares[0]; }), judged.fit.shares[0]);
+  }
+
+  void compare_rivals() {
+    const int best = out_.best;
+    out_.kept = {best};
+    for (std::size_t k = 0; k < count(); ++k) {
+      if (static_cast<int>(k) == best) continue;
+      Judged& judged = out_.judged[k];
+      const double excess = judged.fit.q - out_.judged[static_cast<std::size_t>(best)].fit.q;
+      const Choice own{static_cast<int>(k)};
+      const auto drawn = pseudo_.draw(pseudo_.truth(own, judged.fit), {own, {best}}, o_.rival_draws, 300 + k);
+      judged.against_best_p = tail(collect(drawn, [](const auto& d) { return d.fit[0].q - d.fit[1].q; }), excess);
+      judged.goodness_p = tail(collect(drawn, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
+      judged.theta = theta_intervals(p_.data, judged.fit, drawn, 0);
+      if (!judged.fit.shares.empty())
+        judged.share = interval(collect(drawn, [](const auto& d) { return d.fit[0].shares[0]; }), judged.fit.shares[0]);
+      if (judged.against_best_p > o_.level) out_.kept.push_back(static_cast<int>(k));
+    }
+  }
+
+  bool together(int a, int b) const {
+    const Rival &one = p_.rivals[static_cast<std::size_t>(a)], &other = p_.rivals[static_cast<std::size_t>(b)];
+    const auto has = [](const std::vector<std::string>& list, const std::string& name) {
+      return std::find(list.begin(), list.end(), name) != list.end();
+    };
+    return a != b && !has(one.excludes, other.name) && !has(other.excludes, one.name) && !(one.freed >= 0 && other.freed >= 0);
+  }
+
+  /// Forward selection: a second candidate beside the best, and the best tested again beside it.
+  void look_for_second() {
+    const int first = out_.best;
+    std::vector<int> others;
+    std::vector<Choice> choices{{first}};
+    for (std::size_t k = 0; k < count(); ++k) {
+      if (!together(first, static_cast<int>(k))) continue;
+      others.push_back(static_cast<int>(k));
+      choices.push_back({first, static_cast<int>(k)});
+    }
+    if (others.empty()) return;
+    const FitResult& alone = out_.judged[static_cast<std::size_t>(first)].fit;
+    const auto drawn = pseudo_.draw(pseudo_.truth({first}, alone), choices, o_.rival_draws, 500);
+    const auto gain = collect(drawn, [](const auto& d) {
+      double most = 0;
+      for (std::size_t k = 1; k < d.fit.size(); ++k) most = std::max(most, d.fit[0].q - d.fit[k].q);
+      return most;
+    });
+    Pair pair;
+    pair.first = first;
+    double most = -1;
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      const FitResult fit = pseudo_.fit(choices[k + 1]);
+      if (alone.q - fit.q > most) most = alone.q - fit.q, pair.second = others[k], pair.fit = fit;
+    }
+    pair.p = tail(gain, most);
+    const FitResult& second = out_.judged[static_cast<std::size_t>(pair.second)].fit;
+    const Choice own{pair.second}, both{first, pair.second};
+    const auto reverse = pseudo_.draw(pseudo_.truth(own, second), {own, both}, o_.rival_draws, 600);
+    pair.p_first = tail(collect(reverse, [](const auto& d) { return d.fit[0].q - d.fit[1].q; }), second.q - pair.fit.q);
+    const auto under = pseudo_.draw(pseudo_.truth(both, pair.fit), {both}, o_.rival_draws, 700);
+    pair.goodness_p = tail(collect(under, [](const auto& d) { return d.fit[0].q; }), pair.fit.q);
+    out_.pairs.push_back(pair);
+  }
+
+  const Problem& p_;
+  const NamingOptions& o_;
+  PseudoData pseudo_;
+  Naming out_;
+};
+
+}  // namespace
+
+Naming name_physics(const Problem& problem, const NamingOptions& options) { return Namer(problem, options).run(); }
+
+}  // namespace millscope::diagnose

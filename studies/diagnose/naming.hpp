@@ -1,0 +1,94 @@
+// Which physics the observations ask for: every candidate against the base, all refitted together with θ, judged by pseudo-data that are
+// made of left-out runs of the bank. shared terms: Q and the surrogate of fit.hpp and surrogate.hpp.
+//
+// A pseudo-recording under a model with fitted θ̂ (and shares) is
+//
+//   y* = m₋r(θ̂*) + c (y_r − m₋r(θ_r)) + ε,   ε ~ recording's covariance,  c² = (1 + h(θ̂))/(1 + h(θ_r))
+//
+// r is a run of the bank without an effect, taken out of the surrogate that made and that fits y*; h are leverages; nuisances in θ̂* are
+// drawn from their priors. So the emulator's error is part of every p-value.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "studies/diagnose/fit.hpp"
+
+namespace millscope::diagnose {
+
+/// What may be named: a candidate of the bank, or a nuisance that leaves its prior.
+struct Rival {
+  std::string name;
+  int candidate = -1;  ///< of the bank
+  Index freed = -1;    ///< else: the coordinate whose prior does not count
+  ShareRange range;    ///< of the candidate's share
+  std::vector<std::string> excludes;
+};
+
+struct Problem {
+  BankData data;
+  std::vector<Rival> rivals;
+  VectorXd observed;
+  MatrixXd covariance;  ///< of the recording, block by condition
+};
+
+struct NamingOptions {
+  int draws = 2016;        ///< behind the null
+  int rival_draws = 500;   ///< behind every comparison of two candidates
+  double level = 0.05;     ///< for all candidates together
+  double noise_units = 3;  ///< an effect below them, orthogonal to θ, cannot be seen
+  std::uint64_t seed = 1;
+  int threads = 0;
+  std::function<void(const std::string&)> say;
+};
+
+struct Interval {
+  double value = 0, low90 = 0, high90 = 0;
+};
+
+/// One candidate against the base.
+struct Judged {
+  FitResult fit;
+  double delta_q = 0, p = 1, p_family = 1;
+  double kappa = 0;         ///< ‖s⊥‖/‖s‖ at full strength: 0 is fully concealed by θ
+  double lambda = 0;        ///< s⊥ᵀ Σ⁻¹ s⊥ at full strength
+  double lambda_found = 0;  ///< at the fitted share
+  bool undetectable = false;
+  Interval share;               ///< interval where it was worked out, else equal ends
+  std::vector<Interval> theta;  ///< natural units; the same
+  double goodness_p = 1;        ///< whether the data look like a draw of this model
+  double against_best_p = 1;    ///< under this candidate: how often the best would be better by so much
+};
+
+/// One observable beside what the retuned base makes of it.
+struct Mismatch {
+  Index observable = 0;
+  double z = 0;  ///< in standard deviations of the fitted base's residual
+  double p = 1;  ///< for all observables together
+};
+
+struct Pair {
+  int first = -1, second = -1;
+  FitResult fit;
+  double p = 1;        ///< of the second beside the first
+  double p_first = 1;  ///< of the first beside the second
+  double goodness_p = 1;
+};
+
+struct Naming {
+  FitResult base;
+  double base_p = 1;                 ///< whether the data look like a draw of the base
+  std::vector<Interval> base_theta;  ///< the retuned parameters
+  std::vector<Judged> judged;        ///< one for each rival of the problem
+  int best = -1;                     ///< −1: none is significant
+  std::vector<int> kept;             ///< the best and all that are not rejected against it
+  std::vector<Pair> pairs;           ///< at most one: two effects together
+  std::vector<Mismatch> mismatch;    ///< the largest |z| first
+  MatrixXd covariance;               ///< Σ: recording and surrogate
+};
+
+Naming name_physics(const Problem& problem, const NamingOptions& options);
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,109 @@
+// Pictures of a diagnosis.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "studies/diagnose/outputs.hpp"
+#include "studies/picture/picture.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+namespace fs = std::filesystem;
+using studies::Curve;
+using studies::CurvePicture;
+
+struct Drawer {
+  fs::path folder;
+  std::vector<fs::path> files;
+
+  void curves(const CurvePicture& picture, const std::string& name) {
+    studies::draw_curves(picture, folder / name);
+    files.push_back(folder / (name + ".svg"));
+  }
+};
+
+/// Standardised differences of every observable, the retuned base and the best candidate.
+void mismatch(const Told& t, Drawer& drawer) {
+  const Diagnosis& d = t.diagnosis;
+  const Features features(d.problem.data);
+  const Surrogate s(d.problem.data, features, std::vector<bool>(d.problem.data.rows.size(), true));
+  const auto curve = [&](const char* label, const VectorXd& model) {
+    Curve c{label, {}, {}, {}, {}};
+    for (Index i = 0; i < model.size(); ++i) {
+      c.x.push_back(static_cast<double>(i + 1));
+      c.value.push_back((d.problem.observed[i] - model[i]) / std::sqrt(d.naming.covariance(i, i)));
+    }
+    return c;
+  };
+  CurvePicture p;
+  p.title = "Recording against model", p.x_label = "observable", p.value_label = "difference over its standard deviation";
+  p.zero_line = true, p.points = true;
+  p.note = "in the order of 'observables' of diagnosis.json; beyond 3 is rare by chance";
+  p.curves.push_back(curve("retuned base", s.at(d.naming.base.coded)));
+  if (d.naming.best >= 0) {
+    const Judged& best = d.naming.judged[static_cast<std::size_t>(d.naming.best)];
+    const Rival& rival = d.problem.rivals[static_cast<std::size_t>(d.naming.best)];
+    const std::vector<Effect> effects =
+        rival.candidate < 0 ? std::vector<Effect>{} : std::vector<Effect>{{rival.candidate, best.fit.shares.front()}};
+    p.curves.push_back(curve(("with " + rival.name).c_str(), s.at(best.fit.coded, effects)));
+  }
+  drawer.curves(p, "mismatch");
+}
+
+/// A fitted parameter over the conditions' speeds, before and after.
+void drift(const Told& t, Drawer& drawer) {
+  for (std::size_t i = 0; i < t.question.study.parameters.size(); ++i) {
+    CurvePicture p;
+    p.title = t.question.study.parameters[i].name + " fitted to each condition alone";
+    p.x_label = "speed of the mill", p.x_unit = "rad/s", p.value_label = t.question.study.parameters[i].name;
+    p.points = true;
+    Curve before{"base", {}, {}, {}, {}}, after{"with the named effect", {}, {}, {}, {}};
+    const auto add = [](Curve& c, double x, const Interval& v) {
+      c.x.push_back(x), c.value.push_back(v.value), c.low.push_back(v.low90), c.high.push_back(v.high90);
+    };
+    for (const Alone& a : t.diagnosis.alone) {
+      add(before, t.question.speed[a.condition], a.before[i]);
+      if (!a.after.empty()) add(after, t.question.speed[a.condition], a.after[i]);
+    }
+    p.curves.push_back(before);
+    if (!after.x.empty()) p.curves.push_back(after);
+    drawer.curves(p, "alone_" + std::to_string(i + 1));
+  }
+}
+
+/// Observables of a held-out condition before and after.
+void held_out(const Told& t, Drawer& drawer) {
+  for (const HeldOut& h : t.diagnosis.held_out) {
+    const calibrate::Observation& recorded = t.workshop.recorded[h.condition];
+    CurvePicture p;
+    p.title = "Held out: " + t.question.study.conditions[h.condition].name;
+    p.x_label = "observable", p.value_label = "difference over its standard deviation";
+    p.zero_line = true, p.points = true;
+    for (const Score& s : h.scores) {
+      if (s.prediction.name != "corrected" && s.prediction.name != "retuned to power" && s.prediction.name != "retuned to all observables")
+        continue;
+      Curve c{s.prediction.name, {}, {}, {}, {}};
+      for (Index i = 0; i < recorded.value.size(); ++i) {
+        c.x.push_back(static_cast<double>(i + 1));
+        c.value.push_back((recorded.value[i] - s.prediction.value[i]) /
+                          std::sqrt(recorded.covariance(i, i) + s.prediction.covariance(i, i)));
+      }
+      p.curves.push_back(std::move(c));
+    }
+    drawer.curves(p, "held_out_" + std::to_string(h.condition + 1));
+  }
+}
+
+}  // namespace
+
+std::vector<fs::path> draw(const Told& told, const fs::path& folder) {
+  fs::create_directories(folder);
+  Drawer drawer{folder, {}};
+  mismatch(told, drawer);
+  drift(told, drawer);
+  held_out(told, drawer);
+  return drawer.files;
+}
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,151 @@
+#include "studies/diagnose/question.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/config/units.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+using config::Node;
+
+double number(const Node& node) {
+  const config::Quantity q = config::read_quantity(node);
+  return q.has_unit ? q.unit.to_si(q.number) : q.number;
+}
+
+std::pair<double, double> range(const Node& node) {
+  const std::vector<Node> ends = node.items();
+  if (ends.size() != 2) node.fail(fmt::format("has {} values; give the lower and the upper end, e.g. [0, 0.2]", ends.size()));
+  const double low = number(ends[0]), high = number(ends[1]);
+  if (!(low < high)) node.fail("has its lower end not below the upper one; turn them round");
+  return {low, high};
+}
+
+void collect_nuisances(const Node& node, std::size_t prefix, std::vector<Nuisance>& out) {
+  if (!node.is_map()) node.fail("is no nuisance; write e.g. {range: [30 %, 32 %], sigma: 0.3 %}");
+  if (!node.has("range")) {
+    for (const std::string& key : node.keys()) collect_nuisances(node.at(key), prefix, out);
+    return;
+  }
+  node.expect({"range", "sigma", "mean", "name"});
+  Nuisance n;
+  n.path = node.path().substr(prefix);
+  n.where = node.where();
+  std::tie(n.low, n.high) = range(node.at("range"));
+  n.mean = node.has("mean") ? number(node.at("mean")) : 0.5 * (n.low + n.high);
+  n.sigma = number(node.at("sigma", "standard deviation of what is known of it"));
+  n.name = node.has("name") ? node.at("name").text() : n.path.substr(n.path.rfind('.') + 1);
+  if (!(n.mean > n.low && n.mean < n.high))
+    node.fail(fmt::format("has its mean {:.6g} outside the range {:.6g} … {:.6g}", n.mean, n.low, n.high));
+  if (!(n.sigma > 0)) node.at("sigma").fail("is not above 0; leave out what is known exactly");
+  out.push_back(std::move(n));
+}
+
+void collect_settings(const Node& node, std::size_t prefix, std::vector<std::string>& out) {
+  if (!node.is_map()) {
+    out.push_back(node.path().substr(prefix) + "=" + (node.is_null() ? "~" : node.text()));
+    return;
+  }
+  for (const std::string& key : node.keys()) collect_settings(node.at(key), prefix, out);
+}
+
+/// A hypothesis of the study: one of the library with changes, or one of its own.
+Candidate read_candidate(const Node& node, const Library& library) {
+  node.expect({"sentence", "equation", "citation", "path", "paths", "without", "range", "set", "excludes"});
+  const auto known =
+      std::find_if(library.candidates.begin(), library.candidates.end(), [&](const Candidate& c) { return c.name == node.name(); });
+  const bool own = node.has("path") || node.has("set");
+  if (known == library.candidates.end() && !own) {
+    for (const std::string& line : library.left_out) {
+      if (line.starts_with(node.name() + ":")) node.fail("does not apply: " + line.substr(node.name().size() + 2));
+    }
+    std::vector<std::string> names;
+    for (const Candidate& c : library.candidates) names.push_back(c.name);
+    node.fail(fmt::format("is no hypothesis of a loaded plugin; known: {}; or give it a 'path' with 'without' and 'range', or a 'set'",
+                          fmt::join(names, ", ")));
+  }
+  Candidate c = known == library.candidates.end() ? Candidate{} : *known;
+  c.name = node.name();
+  if (node.has("sentence")) c.sentence = node.at("sentence").text();
+  if (c.sentence.empty()) node.fail("has no 'sentence' that says what it means, e.g. The lifters are worn.");
+  if (node.has("equation")) c.equation = node.at("equation").text();
+  if (node.has("citation")) c.citation = node.at("citation").text();
+  if (node.has("set")) collect_settings(node.at("set"), node.at("set").path().size() + 1, c.set);
+  if (node.has("path")) {
+    c.paths = {node.at("path").text()};
+    c.parameter = c.paths[0].substr(c.paths[0].rfind('.') + 1);
+    c.null_value = number(node.at("without", "the value at which it vanishes"));
+  }
+  if (node.has("range")) {
+    const auto [low, high] = range(node.at("range"));
+    const bool downwards = std::fabs(low - c.null_value) > std::fabs(high - c.null_value);
+    c.far = downwards ? low : high;
+    const double near = ((downwards ? high : low) - c.null_value) / (c.far - c.null_value);
+    if (near > 0) node.at("range").fail(fmt::format("does not hold {:.6g}, where the effect vanishes", c.null_value));
+    c.range = {near, 1};
+  } else if (node.has("path")) {
+    node.fail("has a 'path' but no 'range'; give both ends, e.g. [3 mm, 5 mm]");
+  }
+  return c;
+}
+
+}  // namespace
+
+std::vector<Coordinate> Question::coordinates() const {
+  std::vector<Coordinate> out;
+  for (const calibrate::Parameter& p : study.parameters) out.push_back({p.name, p.low, p.high, 0, 0, false});
+  for (const Nuisance& n : nuisances) out.push_back({n.name, n.low, n.high, n.mean, n.sigma, false});
+  return out;
+}
+
+std::vector<std::string> Question::settings(const VectorXd& theta, const std::vector<Effect>& effects) const {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < study.parameters.size(); ++i) {
+    const std::string value = fmt::format("{:.4g}", theta[static_cast<Index>(i)]);
+    out.push_back(study.parameters[i].path + "=" + value);
+    for (const std::string& path : study.parameters[i].tied) out.push_back(path + "=" + value);
+  }
+  for (std::size_t i = 0; i < nuisances.size(); ++i) {
+    out.push_back(fmt::format("{}={:.4g}", nuisances[i].path, theta[static_cast<Index>(study.parameters.size() + i)]));
+  }
+  for (const Effect& e : effects) {
+    for (std::string& s : settings_of(candidates[static_cast<std::size_t>(e.candidate)], e.share)) out.push_back(std::move(s));
+  }
+  return out;
+}
+
+Question read_question(const std::filesystem::path& file, const std::vector<std::string>& overrides, const host::Registry& registry) {
+  Question q;
+  q.study = calibrate::read_study(file, overrides, {"nuisances", "hypotheses", "bank", "power_error"});
+  const Node& root = q.study.root;
+  if (const auto node = root.find("nuisances")) collect_nuisances(*node, node->path().size() + 1, q.nuisances);
+  const config::Case base = config::read_case(q.study.base.string(), q.study.conditions.front().settings);
+  for (const calibrate::Condition& c : q.study.conditions) {
+    const config::Case at = config::read_case(q.study.base.string(), c.settings);
+    q.speed.push_back(at.mill ? std::fabs(at.mill->speed) : 0.0);
+  }
+  Library library = library_of(base, registry);
+  q.left_out = library.left_out;
+  if (const auto node = root.find("hypotheses")) {
+    for (const std::string& key : node->keys()) q.candidates.push_back(read_candidate(node->at(key), library));
+  } else {
+    q.candidates = std::move(library.candidates);
+  }
+  if (const auto node = root.find("bank")) {
+    node->expect({"base", "each", "first"});
+    const auto whole = [&](const char* key, int standard, double least) {
+      const auto value = node->find(key);
+      return value ? static_cast<int>(config::read_integer(*value, config::between(least, 1e5))) : standard;
+    };
+    q.bank = {whole("base", 24, 8), whole("each", 10, 1), whole("first", 4, 1)};
+  }
+  if (const auto node = root.find("power_error")) q.power_error = number(*node);
+  return q;
+}
+
+}  // namespace millscope::diagnose

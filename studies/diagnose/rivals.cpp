@@ -1,0 +1,157 @@
+#include "studies/diagnose/rivals.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "studies/doe/doe.hpp"
+#include "studies/emulate/random.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+constexpr int kPlacebos = 20;
+constexpr int kTries = 4096;
+constexpr double kPull = 0.05;  // towards the middle of the ranges, where powers leave θ open
+
+}  // namespace
+
+VectorXd retuned_to_power(const BankData& data, const Surrogate& surrogate, const VectorXd& observed, const MatrixXd& covariance,
+                          const std::vector<Index>& powers) {
+  std::vector<doe::Factor> factors;
+  for (const Coordinate& c : data.theta) factors.push_back({c.name, 0, 1, ""});
+  const MatrixXd tries = doe::sobol(std::move(factors), kTries).coded;
+  VectorXd best;
+  double least = std::numeric_limits<double>::infinity();
+  for (Index k = 0; k < tries.rows(); ++k) {
+    VectorXd u = tries.row(k).transpose();
+    double q = 0;
+    for (Index i = 0; i < u.size(); ++i) {
+      const Coordinate& c = data.theta[static_cast<std::size_t>(i)];
+      if (c.nuisance())
+        u[i] = c.coded(c.prior_mean);
+      else
+        q += kPull * u[i] * u[i];
+    }
+    const VectorXd y = surrogate.at(u);
+    for (const Index i : powers) q += std::pow(y[i] - observed[i], 2) / covariance(i, i);
+    if (q < least) least = q, best = u;
+  }
+  return best;
+}
+
+RivalModels::RivalModels(const HeldOutRequest& request, std::size_t held)
+    : r_(request), held_(held), held_data_(data_of(request.question, request.bank, {held})) {
+  for (std::size_t i = 0; i < held_data_.theta.size(); ++i) held_data_.theta[i].logarithmic = r_.problem.data.theta[i].logarithmic;
+  const auto all = [](const BankData& d) { return std::vector<bool>(d.rows.size(), true); };
+  features_ = std::make_unique<Features>(r_.problem.data);
+  held_features_ = std::make_unique<Features>(held_data_);
+  surrogate_ = std::make_unique<Surrogate>(r_.problem.data, *features_, all(r_.problem.data));
+  held_surrogate_ = std::make_unique<Surrogate>(held_data_, *held_features_, all(held_data_));
+}
+
+VectorXd RivalModels::power_only() const {
+  std::vector<Index> powers;
+  Index at = 0;
+  for (const std::size_t c : r_.fit) {
+    for (const calibrate::Observable& o : r_.workshop.recorded[c].observables) {
+      if (o.group == "power") powers.push_back(at);
+      ++at;
+    }
+  }
+  return retuned_to_power(r_.problem.data, *surrogate_, r_.problem.observed, r_.naming.covariance, powers);
+}
+
+std::vector<Effect> RivalModels::effects(int rival, const FitResult& fit) const {
+  const int candidate = r_.problem.rivals[static_cast<std::size_t>(rival)].candidate;
+  if (candidate < 0) return {};
+  return {{candidate, fit.shares.front()}};
+}
+
+Index RivalModels::partner(Index i, std::size_t fitted) const {
+  const auto& own = r_.workshop.recorded[held_].observables;
+  const auto& other = r_.workshop.recorded[fitted].observables;
+  const std::string& group = own[static_cast<std::size_t>(i)].group;
+  Index place = 0;
+  for (Index k = 0; k < i; ++k) place += own[static_cast<std::size_t>(k)].group == group ? 1 : 0;
+  for (std::size_t k = 0; k < other.size(); ++k) {
+    if (other[k].group == group && place-- == 0) return static_cast<Index>(k);
+  }
+  return -1;
+}
+
+Prediction RivalModels::placebo(const Prediction& base) const {
+  const Index n = base.value.size(), m = r_.problem.observed.size();
+  const MatrixXd whitening = whitener(r_.naming.covariance);
+  VectorXd sum = VectorXd::Zero(n);
+  for (int k = 0; k < kPlacebos; ++k) {
+    emulate::Random random(r_.seed, static_cast<std::uint64_t>(1000 + k));
+    const VectorXd chance = random.normals(n);
+    VectorXd held(n), fitted = VectorXd::Zero(m);
+    for (Index i = 0; i < n; ++i) held[i] = chance[i] * std::sqrt(r_.workshop.recorded[held_].covariance(i, i));
+    Index at = 0;
+    for (const std::size_t c : r_.fit) {
+      for (Index i = 0; i < n; ++i) {
+        if (const Index p = partner(i, c); p >= 0) fitted[at + p] = chance[i] * std::sqrt(r_.naming.covariance(at + p, at + p));
+      }
+      at += r_.workshop.recorded[c].value.size();
+    }
+    // θ and the placebo's size in turn: the problem is nearly linear.
+    const Model model(r_.problem.data, *surrogate_, whitening, {}, {});
+    const VectorXd v = whitening * fitted;
+    double size = 0;
+    FitResult fit = r_.naming.base;
+    for (int turn = 0; turn < 6; ++turn) {
+      const VectorXd residual = whitening * (r_.problem.observed - surrogate_->at(fit.coded));
+      size = v.squaredNorm() > 0 ? v.dot(residual) / v.squaredNorm() : 0;
+      fit = model.fit(r_.problem.observed - size * fitted);
+    }
+    sum += held_surrogate_->at(fit.coded) - held_surrogate_->at(r_.naming.base.coded) + size * held;
+  }
+  Prediction p = base;
+  p.name = "placebo", p.simulated = false;
+  p.value += sum / kPlacebos;
+  for (Index i = 0; i < n; ++i) {
+    if (r_.workshop.recorded[held_].observables[static_cast<std::size_t>(i)].group == "power") p.power = p.value[i];
+  }
+  return p;
+}
+
+Prediction RivalModels::discrepancy(const Prediction& base) const {
+  const std::size_t conditions = r_.fit.size();
+  VectorXd speed(static_cast<Index>(conditions));
+  for (std::size_t k = 0; k < conditions; ++k) speed[static_cast<Index>(k)] = r_.question.speed[r_.fit[k]];
+  const double here = r_.question.speed[held_];
+  const double range = std::max(1e-9, std::max(speed.maxCoeff(), here) - std::min(speed.minCoeff(), here));
+  const auto kernel = [range](double a, double b) { return std::exp(-0.5 * std::pow((a - b) / range, 2)); };
+  const VectorXd residual = r_.problem.observed - surrogate_->at(r_.naming.base.coded);
+  Prediction p = base;
+  p.name = "Gaussian-process discrepancy", p.simulated = false;
+  for (Index i = 0; i < p.value.size(); ++i) {
+    VectorXd d(speed.size()), noise(speed.size());
+    Index at = 0;
+    bool all = true;
+    for (std::size_t k = 0; k < conditions; ++k) {
+      const Index partner_here = partner(i, r_.fit[k]);
+      all = all && partner_here >= 0;
+      if (!all) break;
+      d[static_cast<Index>(k)] = residual[at + partner_here];
+      noise[static_cast<Index>(k)] = r_.naming.covariance(at + partner_here, at + partner_here);
+      at += r_.workshop.recorded[r_.fit[k]].value.size();
+    }
+    if (!all) continue;
+    const double signal = std::max(0.0, (d.cwiseAbs2() - noise).mean());  // what the residuals have beyond their noise
+    if (signal == 0) continue;
+    MatrixXd k = MatrixXd(noise.asDiagonal());
+    VectorXd to(speed.size());
+    for (Index a = 0; a < speed.size(); ++a) {
+      to[a] = signal * kernel(here, speed[a]);
+      for (Index b = 0; b < speed.size(); ++b) k(a, b) += signal * kernel(speed[a], speed[b]);
+    }
+    p.value[i] += to.dot(k.ldlt().solve(d));
+    if (r_.workshop.recorded[held_].observables[static_cast<std::size_t>(i)].group == "power") p.power = p.value[i];
+  }
+  return p;
+}
+
+}  // namespace millscope::diagnose

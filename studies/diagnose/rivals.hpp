@@ -1,0 +1,34 @@
+// What the practice would do instead of naming physics; for the files of this room.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "studies/diagnose/held_out.hpp"
+
+namespace millscope::diagnose {
+
+class RivalModels {
+ public:
+  RivalModels(const HeldOutRequest& request, std::size_t held);
+
+  VectorXd power_only() const;
+  /// The base's prediction moved by a parameter of no meaning: each observable by a chance number times its error, the same number in all
+  /// conditions, its size fitted together with θ; the mean of several such parameters.
+  Prediction placebo(const Prediction& base) const;
+  /// The base's prediction with the residuals of the fitted conditions, carried over by kriging in the speed of the mill.
+  Prediction discrepancy(const Prediction& base) const;
+  std::vector<Effect> effects(int rival, const FitResult& fit) const;
+
+ private:
+  /// Observable of the fitted condition that stands for number i of the held-out one: the same group, the same place in it; −1: none.
+  Index partner(Index i, std::size_t fitted) const;
+
+  const HeldOutRequest& r_;
+  std::size_t held_;
+  BankData held_data_;
+  std::unique_ptr<Features> features_, held_features_;
+  std::unique_ptr<Surrogate> surrogate_, held_surrogate_;
+};
+
+}  // namespace millscope::diagnose

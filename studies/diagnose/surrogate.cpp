@@ -1,0 +1,162 @@
+#include "studies/diagnose/surrogate.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "kernel/config/error.hpp"
+#include "studies/calibrate/observation.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+constexpr double kWideRange = 2;       // high over low, from which on a logarithm may serve better
+constexpr std::size_t kForSquare = 3;  // different shares
+constexpr std::size_t kSpare = 2;      // runs beyond the coefficients of a candidate's block
+constexpr double kMostLeverage = 0.95;
+
+}  // namespace
+
+double Coordinate::coded(double value) const {
+  if (logarithmic) return 2 * std::log(value / low) / std::log(high / low) - 1;
+  return 2 * (value - low) / (high - low) - 1;
+}
+
+double Coordinate::natural(double value) const {
+  if (logarithmic) return low * std::pow(high / low, 0.5 * (value + 1));
+  return low + 0.5 * (value + 1) * (high - low);
+}
+
+VectorXd BankData::coded(const VectorXd& values) const {
+  VectorXd out(values.size());
+  for (Index i = 0; i < values.size(); ++i) out[i] = theta[static_cast<std::size_t>(i)].coded(values[i]);
+  return out;
+}
+
+VectorXd BankData::natural(const VectorXd& values) const {
+  VectorXd out(values.size());
+  for (Index i = 0; i < values.size(); ++i) out[i] = theta[static_cast<std::size_t>(i)].natural(values[i]);
+  return out;
+}
+
+Features::Features(const BankData& data) {
+  const auto d = static_cast<Index>(data.theta.size());
+  base_size_ = 1 + d + d * (d + 1) / 2;
+  size_ = base_size_;
+  for (Index i = 0; i < d; ++i) {
+    if (!data.theta[static_cast<std::size_t>(i)].nuisance()) interacting_.push_back(i);
+  }
+  for (int j = 0; j < data.candidates; ++j) {
+    std::set<double> shares;
+    std::size_t runs = 0;
+    for (const BankRow& row : data.rows) {
+      for (const Effect& e : row.effects) {
+        if (e.candidate == j) shares.insert(e.share), ++runs;
+      }
+    }
+    const bool square = shares.size() >= kForSquare && runs >= 2 + kSpare;
+    const bool product = runs >= 1 + static_cast<std::size_t>(square) + interacting_.size() + kSpare;
+    square_.push_back(square);
+    product_.push_back(product);
+    first_.push_back(size_);
+    count_.push_back(runs == 0 ? 0 : 1 + (square ? 1 : 0) + (product ? static_cast<Index>(interacting_.size()) : 0));
+    size_ += count_.back();
+  }
+}
+
+VectorXd Features::base(const VectorXd& u) const {
+  VectorXd x(base_size_);
+  Index k = 0;
+  x[k++] = 1;
+  for (Index i = 0; i < u.size(); ++i) x[k++] = u[i];
+  for (Index i = 0; i < u.size(); ++i) {
+    for (Index j = i; j < u.size(); ++j) x[k++] = u[i] * u[j];
+  }
+  return x;
+}
+
+VectorXd Features::block(int candidate, const VectorXd& u, double share) const {
+  const auto j = static_cast<std::size_t>(candidate);
+  VectorXd x(count_[j]);
+  if (x.size() == 0) return x;
+  Index k = 0;
+  x[k++] = share;
+  if (square_[j]) x[k++] = share * share;
+  if (product_[j]) {
+    for (const Index i : interacting_) x[k++] = share * u[i];
+  }
+  return x;
+}
+
+VectorXd Features::all(const VectorXd& u, const std::vector<Effect>& effects) const {
+  VectorXd x = VectorXd::Zero(size_);
+  x.head(base_size_) = base(u);
+  for (const Effect& e : effects) x.segment(first(e.candidate), count(e.candidate)) = block(e.candidate, u, e.share);
+  return x;
+}
+
+Surrogate::Surrogate(const BankData& data, const Features& features, const std::vector<bool>& used) : features_(&features) {
+  const auto rows = static_cast<Index>(std::count(used.begin(), used.end(), true));
+  if (rows <= features.size()) {
+    throw config::UserError(fmt::format("the bank has {} finished runs, its model {} coefficients; extend the bank (bank.base, bank.each)",
+                                        rows, features.size()));
+  }
+  MatrixXd x(rows, features.size()), y(rows, data.value.cols());
+  Index k = 0;
+  for (std::size_t r = 0; r < data.rows.size(); ++r) {
+    if (!used[r]) continue;
+    x.row(k) = features.all(data.coded(data.rows[r].theta), data.rows[r].effects).transpose();
+    y.row(k++) = data.value.row(static_cast<Index>(r));
+  }
+  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr(x);
+  coefficients_ = qr.solve(y);
+  const MatrixXd pseudo = qr.pseudoInverse();
+  inverse_ = pseudo * pseudo.transpose();
+  residual_ = y - x * coefficients_;
+  degrees_ = rows - qr.rank();
+  left_out_ = residual_;
+  for (Index r = 0; r < rows; ++r) left_out_.row(r) /= 1 - std::min(kMostLeverage, x.row(r).dot(inverse_ * x.row(r).transpose()));
+}
+
+VectorXd Surrogate::at(const VectorXd& coded, const std::vector<Effect>& effects) const {
+  VectorXd y = coefficients_.topRows(features_->base_size()).transpose() * features_->base(coded);
+  for (const Effect& e : effects) {
+    const Index n = features_->count(e.candidate);
+    if (n > 0) y += coefficients_.middleRows(features_->first(e.candidate), n).transpose() * features_->block(e.candidate, coded, e.share);
+  }
+  return y;
+}
+
+double Surrogate::leverage(const VectorXd& coded, const std::vector<Effect>& effects) const {
+  const VectorXd x = features_->all(coded, effects);
+  return x.dot(inverse_ * x);
+}
+
+MatrixXd Surrogate::residual_covariance() const {
+  const auto degrees = static_cast<double>(std::max<Index>(1, degrees_));
+  // Rows scaled so that their mean square is the unbiased variance of one run.
+  const MatrixXd scaled = residual_ * std::sqrt(static_cast<double>(residual_.rows()) / degrees);
+  return calibrate::shrunk_covariance(scaled, degrees);
+}
+
+void choose_scales(BankData& data) {
+  const auto press = [&] {
+    const Features features(data);
+    const Surrogate s(data, features, std::vector<bool>(data.rows.size(), true));
+    const MatrixXd centred = data.value.rowwise() - data.value.colwise().mean();
+    double sum = 0;
+    for (Index i = 0; i < centred.cols(); ++i) sum += s.left_out().col(i).squaredNorm() / std::max(1e-300, centred.col(i).squaredNorm());
+    return sum;
+  };
+  for (Coordinate& c : data.theta) {
+    if (c.nuisance() || !(c.low > 0) || c.high < kWideRange * c.low) continue;
+    const double plain = press();
+    c.logarithmic = true;
+    if (press() > plain) c.logarithmic = false;
+  }
+}
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,58 @@
+// One emulator for the whole bank: quadratic in θ; for each candidate linear and square in its share, and its product with the fitted
+// parameters. All observables share the runs, so that one factorisation serves them all.
+//
+//   m(u, s) = b₀ + Σ b_i u_i + Σ b_ij u_i u_j + Σ_j (c_j s_j + d_j s_j² + Σ_i e_ji s_j u_i),  u: coded θ, s: shares
+#pragma once
+
+#include "studies/diagnose/bank_data.hpp"
+
+namespace millscope::diagnose {
+
+/// Which columns the model has.
+class Features {
+ public:
+  explicit Features(const BankData& data);
+
+  Index size() const { return size_; }
+  Index base_size() const { return base_size_; }
+  VectorXd base(const VectorXd& coded) const;
+  /// First column of a candidate's block and its length; 0: the bank has no run with it.
+  Index first(int candidate) const { return first_[static_cast<std::size_t>(candidate)]; }
+  Index count(int candidate) const { return count_[static_cast<std::size_t>(candidate)]; }
+  VectorXd block(int candidate, const VectorXd& coded, double share) const;
+  VectorXd all(const VectorXd& coded, const std::vector<Effect>& effects) const;
+
+ private:
+  Index size_ = 0, base_size_ = 0;
+  std::vector<Index> interacting_;  ///< coordinates that multiply shares: those without a prior
+  std::vector<Index> first_, count_;
+  std::vector<bool> square_, product_;  ///< enough different shares, enough runs
+};
+
+class Surrogate {
+ public:
+  /// Least squares on the rows where `used` is true. Throws config::UserError when they are fewer than the coefficients.
+  Surrogate(const BankData& data, const Features& features, const std::vector<bool>& used);
+
+  VectorXd at(const VectorXd& coded, const std::vector<Effect>& effects = {}) const;
+  /// Variance of the prediction over that of one run's residual.
+  double leverage(const VectorXd& coded, const std::vector<Effect>& effects = {}) const;
+  const MatrixXd& coefficients() const { return coefficients_; }  ///< features × observables
+  const Features& features() const { return *features_; }
+  Index degrees() const { return degrees_; }  ///< rows − coefficients
+  /// Row residuals, each from a fit without that row: (y − m)/(1 − h).
+  const MatrixXd& left_out() const { return left_out_; }
+  /// Covariance of one run about the surface: the runs' noise and what a quadratic surface cannot follow, correlations shrunk.
+  MatrixXd residual_covariance() const;
+
+ private:
+  const Features* features_;
+  MatrixXd coefficients_, inverse_, residual_, left_out_;
+  Index degrees_ = 0;
+};
+
+/// Chooses for every positive coordinate with a range of a factor of 2 or more whether its logarithm serves better: the smaller sum of
+/// squared left-out residuals over their spread.
+void choose_scales(BankData& data);
+
+}  // namespace millscope::diagnose

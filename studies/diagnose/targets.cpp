@@ -1,0 +1,90 @@
+// Values of the case that may be other than they are said to be.
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "kernel/config/units.hpp"
+#include "studies/diagnose/candidates.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+constexpr double kWorn = 0.6;  // of the height that is left of a lifter at the far end of its wear
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kAngle = 15 * kDegree;  // by which a lifter's face may be off
+constexpr double kSteepest = 89 * kDegree;
+
+double number(const config::Node& node) {
+  const config::Quantity q = config::read_quantity(node);
+  return q.has_unit ? q.unit.to_si(q.number) : q.number;
+}
+
+void lifters(const config::GeometryCase& g, std::vector<Candidate>& out) {
+  const config::Node& node = g.plugin.node;
+  if (!node.has("lifters") || !node.has("lifter_height")) return;
+  const std::string at = "geometry." + g.plugin.name + ".";
+  const double height = number(node.at("lifter_height"));
+  out.push_back({"lifter_wear",
+                 "The lifters are worn: lower than the drawing says.",
+                 "h < h_0",
+                 "",
+                 "lifter_height",
+                 "m",
+                 {},
+                 {at + "lifter_height"},
+                 height,
+                 kWorn * height,
+                 {},
+                 {}});
+  const double angle = node.has("lifter_face_angle") ? number(node.at("lifter_face_angle")) : 60 * kDegree;
+  out.push_back({"lifter_face_angle",
+                 "The faces of the lifters stand at another angle than the drawing says.",
+                 "",
+                 "",
+                 "lifter_face_angle",
+                 "rad",
+                 {},
+                 {at + "lifter_face_angle"},
+                 angle,
+                 std::min(angle + kAngle, kSteepest),
+                 {-kAngle / (std::min(angle + kAngle, kSteepest) - angle), 1},
+                 {}});
+}
+
+/// Faces that turn with the shell are exchanged for planes at rest.
+void resting_ends(const config::GeometryCase& g, std::vector<Candidate>& out) {
+  const config::Node& node = g.plugin.node;
+  if (!node.has("end_faces") || node.at("end_faces").text() != "true" || !g.motion.rotation || !node.has("length")) return;
+  const std::string& material = g.material.empty() ? g.materials.front().second : g.material;
+  const double length = number(node.at("length"));
+  Candidate c{"end_faces_at_rest",
+              "The end faces stand still while the shell turns.",
+              "Omega_end = 0",
+              "Alizadeh et al. 2013",
+              "on",
+              "",
+              {},
+              {},
+              0,
+              1,
+              {},
+              {}};
+  c.set = {"geometry." + g.plugin.name + ".end_faces=false",
+           fmt::format("geometry.end_low={{kind: plane, point: [0, 0, 0], normal: [0, 0, 1], material: {}}}", material),
+           fmt::format("geometry.end_high={{kind: plane, point: [0, 0, {:.6g}], normal: [0, 0, -1], material: {}}}", length, material)};
+  out.push_back(std::move(c));
+}
+
+}  // namespace
+
+std::vector<Candidate> targets_of(const config::Case& base) {
+  std::vector<Candidate> out;
+  for (const config::GeometryCase& g : base.geometry) {
+    if (g.plugin.kind != "mill") continue;
+    lifters(g, out);
+    resting_ends(g, out);
+  }
+  return out;
+}
+
+}  // namespace millscope::diagnose

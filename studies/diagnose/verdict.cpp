@@ -1,0 +1,159 @@
+// From figures to a verdict and what would tell more.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "studies/diagnose/diagnosis.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+std::string rival_name(const Diagnosis& d, int rival) { return d.problem.rivals[static_cast<std::size_t>(rival)].name; }
+
+std::string meaning(const Question& q, const Diagnosis& d, int rival) {
+  const Rival& r = d.problem.rivals[static_cast<std::size_t>(rival)];
+  if (r.candidate >= 0) return q.candidates[static_cast<std::size_t>(r.candidate)].sentence;
+  const Coordinate& c = d.problem.data.theta[static_cast<std::size_t>(r.freed)];
+  const double value = d.naming.judged[static_cast<std::size_t>(rival)].theta[static_cast<std::size_t>(r.freed)].value;
+  return fmt::format("'{}' is {:.4g} and not {:.4g} ± {:.2g}.", c.name, value, c.prior_mean, c.prior_sigma);
+}
+
+double seconds(const Workshop& workshop, const std::vector<std::size_t>& conditions) {
+  double sum = 0;
+  for (const std::size_t c : conditions) sum += workshop.recorded[c].bead_seconds;
+  return sum;
+}
+
+/// Squared distance, in noise units, between the predictions of two fitted candidates in one condition.
+double separation(const Question& q, const Workshop& workshop, const Diagnosis& d, std::size_t condition, int a, int b) {
+  Problem one;
+  add_recorded(q, workshop, {condition}, one);
+  one.data = data_of(q, d.bank, {condition});
+  for (std::size_t i = 0; i < one.data.theta.size(); ++i) one.data.theta[i].logarithmic = d.problem.data.theta[i].logarithmic;
+  const Features features(one.data);
+  const Surrogate s(one.data, features, std::vector<bool>(one.data.rows.size(), true));
+  const MatrixXd w = whitener(one.covariance + s.residual_covariance());
+  const auto at = [&](int rival) {
+    const FitResult& fit = d.naming.judged[static_cast<std::size_t>(rival)].fit;
+    const int candidate = d.problem.rivals[static_cast<std::size_t>(rival)].candidate;
+    return candidate < 0 ? s.at(fit.coded) : s.at(fit.coded, {{candidate, fit.shares.front()}});
+  };
+  return (w * (at(a) - at(b))).squaredNorm();
+}
+
+std::string to_separate(const Question& q, const Workshop& workshop, const Diagnosis& d, double noise_units) {
+  const int best = d.naming.best;
+  const int other = *std::max_element(d.naming.kept.begin() + 1, d.naming.kept.end(), [&](int a, int b) {
+    return d.naming.judged[static_cast<std::size_t>(a)].against_best_p < d.naming.judged[static_cast<std::size_t>(b)].against_best_p;
+  });
+  std::size_t where = d.bank.conditions.front();
+  double most = -1;
+  for (const std::size_t c : d.bank.conditions) {
+    const double distance = separation(q, workshop, d, c, best, other);
+    if (distance > most) most = distance, where = c;
+  }
+  const double factor = noise_units * noise_units / std::max(most, 1e-12);
+  return fmt::format(
+      "Of the conditions that were simulated, '{}' separates {} from {} best: {:.1f} noise units with the {:.0f} s recorded there{}.",
+      q.study.conditions[where].name, rival_name(d, best), rival_name(d, other), std::sqrt(most), workshop.recorded[where].bead_seconds,
+      factor > 1 ? fmt::format("; {:.2g} times as long a recording would give {:.0f}", factor, noise_units) : "");
+}
+
+std::string to_see(const Workshop& workshop, const Diagnosis& d, double noise_units) {
+  double most = 0;
+  std::size_t which = 0;
+  for (std::size_t j = 0; j < d.naming.judged.size(); ++j) {
+    if (d.problem.rivals[j].candidate >= 0 && d.naming.judged[j].lambda > most) most = d.naming.judged[j].lambda, which = j;
+  }
+  if (most <= 0) return "";
+  return fmt::format(
+      "The most visible candidate, {}, stands {:.1f} noise units out at its strongest; about {:.2g} times the {:.0f} s recorded would "
+      "bring it to {:.0f}.",
+      d.problem.rivals[which].name, std::sqrt(most), noise_units * noise_units / most, seconds(workshop, d.fit), noise_units);
+}
+
+bool held_out_improves(const Diagnosis& d) {
+  return !d.held_out.empty() && std::all_of(d.held_out.begin(), d.held_out.end(), [](const HeldOut& h) { return h.improves; });
+}
+
+void nothing_named(const Workshop& workshop, double level, double noise_units, Diagnosis& d) {
+  const bool blind = std::all_of(d.naming.judged.begin(), d.naming.judged.end(), [](const Judged& j) { return j.undetectable; });
+  if (d.naming.base_p <= level) {
+    d.verdict = Verdict::outside_library;
+    d.sentence = fmt::format(
+        "The base does not describe the recordings (p = {:.2g}) and no candidate helps significantly: something is missing that is not in "
+        "the library.",
+        d.naming.base_p);
+    return;
+  }
+  d.verdict = blind ? Verdict::undetectable : Verdict::no_mismatch;
+  if (blind) {
+    d.sentence = fmt::format(
+        "The recordings look like the retuned base (p = {:.2g}), but no candidate could be seen in them even at its strongest: these data "
+        "cannot tell.",
+        d.naming.base_p);
+    d.next_experiment = to_see(workshop, d, noise_units);
+    return;
+  }
+  const double least = std::min_element(d.naming.judged.begin(), d.naming.judged.end(), [](const Judged& a, const Judged& b) {
+                         return a.p_family < b.p_family;
+                       })->p_family;
+  d.sentence = fmt::format(
+      "The recordings look like the base with its parameters retuned (p = {:.2g}); no candidate improves on it (smallest family-wise p = "
+      "{:.2g}).",
+      d.naming.base_p, least);
+}
+
+}  // namespace
+
+void conclude(const Question& q, const Workshop& workshop, double level, double noise_units, Diagnosis& d) {
+  if (d.naming.best < 0) return nothing_named(workshop, level, noise_units, d);
+  const Judged& best = d.naming.judged[static_cast<std::size_t>(d.naming.best)];
+  const std::string name = rival_name(d, d.naming.best);
+  for (const int k : d.naming.kept) d.named.push_back(rival_name(d, k));
+  if (!d.naming.pairs.empty()) {
+    const Pair& pair = d.naming.pairs.front();
+    if (pair.p <= level && pair.p_first <= level && pair.goodness_p > level) {
+      d.named = {name, rival_name(d, pair.second)};
+      d.verdict = Verdict::ambiguous;
+      d.sentence = fmt::format(
+          "Two effects together are asked for: {} and {} (p of the second beside the first {:.2g}, of the first beside the second {:.2g}).",
+          name, d.named[1], pair.p, pair.p_first);
+      d.next_experiment = "Hold both against a condition that was not fitted: put them into the base case and diagnose again.";
+      return;
+    }
+  }
+  if (best.goodness_p <= level) {
+    d.verdict = Verdict::outside_library;
+    d.sentence = fmt::format(
+        "{} helps most (family-wise p = {:.2g}) but does not suffice: with it the recordings still do not look like the model (p = "
+        "{:.2g}).",
+        name, best.p_family, best.goodness_p);
+    d.named.clear();
+    return;
+  }
+  if (d.naming.kept.size() > 1) {
+    d.verdict = Verdict::ambiguous;
+    d.sentence = fmt::format("Something is missing (family-wise p = {:.2g}); these data cannot choose between {}.", best.p_family,
+                             fmt::join(d.named, ", "));
+    d.next_experiment = to_separate(q, workshop, d, noise_units);
+    return;
+  }
+  if (!held_out_improves(d)) {
+    d.verdict = Verdict::ambiguous;
+    d.sentence =
+        fmt::format("{} explains the fitted conditions (family-wise p = {:.2g}), but {}: it is not counted as found.", name, best.p_family,
+                    d.held_out.empty() ? "no condition was held out to confirm it"
+                                       : "does not predict the held-out condition surely better than every rival");
+    d.next_experiment = d.held_out.empty() ? "Record the mill at another speed or filling and give it the role held_out."
+                                           : "Record the held-out condition longer, or one farther from those that were fitted.";
+    return;
+  }
+  d.verdict = Verdict::named;
+  d.sentence = fmt::format("{} ({}; family-wise p = {:.2g}; every rival is rejected and the held-out conditions are predicted better.)",
+                           meaning(q, d, d.naming.best), name, best.p_family);
+}
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,54 @@
+#include "studies/diagnose/visibility.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace millscope::diagnose {
+namespace {
+
+constexpr double kFlat = 1e-6;  // weight of coordinates without a prior, so that what the data leave open does not run away
+
+}  // namespace
+
+Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const MatrixXd& whitening, const VectorXd& coded, int rival)
+    : problem_(problem),
+      surrogate_(surrogate),
+      whitening_(whitening),
+      coded_(coded),
+      rival_(problem.rivals[static_cast<std::size_t>(rival)]) {
+  const Index d = coded.size(), n = whitening.rows();
+  tangent_ = MatrixXd::Zero(n + d, d);
+  for (Index i = 0; i < d; ++i) {
+    if (i == rival_.freed) continue;
+    VectorXd up = coded, down = coded;
+    up[i] += 0.5, down[i] -= 0.5;
+    tangent_.col(i).head(n) = whitening * (surrogate.at(up) - surrogate.at(down));
+    const Coordinate& c = problem.data.theta[static_cast<std::size_t>(i)];
+    tangent_(n + i, i) = c.nuisance() ? 0.5 * (c.high - c.low) / c.prior_sigma : kFlat;
+  }
+  const double full = rival_.freed >= 0 ? 1 : rival_.range.high;
+  const VectorXd s = effect(full);
+  lambda_ = rest(s).squaredNorm();
+  kappa_ = s.squaredNorm() > 0 ? std::sqrt(lambda_ / s.squaredNorm()) : 0;
+  if (rival_.freed >= 0 || rival_.range.low < 0) lambda_ = std::max(lambda_, orthogonal(rival_.freed >= 0 ? -1 : rival_.range.low));
+}
+
+VectorXd Visibility::effect(double share) const {
+  VectorXd s = VectorXd::Zero(whitening_.rows() + coded_.size());
+  if (rival_.freed >= 0) {
+    const Coordinate& c = problem_.data.theta[static_cast<std::size_t>(rival_.freed)];
+    VectorXd moved = coded_, still = coded_;
+    moved[rival_.freed] = share, still[rival_.freed] = c.coded(c.prior_mean);
+    s.head(whitening_.rows()) = whitening_ * (surrogate_.at(moved) - surrogate_.at(still));
+  } else {
+    s.head(whitening_.rows()) = whitening_ * (surrogate_.at(coded_, {{rival_.candidate, share}}) - surrogate_.at(coded_));
+  }
+  return s;
+}
+
+VectorXd Visibility::rest(const VectorXd& s) const { return s - tangent_ * tangent_.completeOrthogonalDecomposition().solve(s); }
+
+double Visibility::orthogonal(double share) const { return rest(effect(share)).squaredNorm(); }
+
+}  // namespace millscope::diagnose
