@@ -1,51 +1,25 @@
 // What the tests of analyses share: a scratch directory, a made-up simulation, analyzers that live in the test.
 #pragma once
 
-#include <stdlib.h>
-
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "kernel/config/error.hpp"
 #include "kernel/host/registry.hpp"
 #include "millscope/analyzer_adapter.hpp"
 #include "millscope/observation_adapter.hpp"
 #include "studies/analysis/instances.hpp"
+#include "tests/scratch.hpp"
 
 namespace analysis_test {
 
 namespace fs = std::filesystem;
 using namespace millscope;
-
-class Scratch {
- public:
-  Scratch() {
-    std::string name = (fs::temp_directory_path() / "millscope_analysis_XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no scratch directory");
-    path = name;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  fs::path operator/(const std::string& name) const { return path / name; }
-  fs::path path;
-};
+using testing::refusal;
+using testing::Scratch;
 
 inline void spill(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
-
-/// The message of the UserError that `body` throws; "" when it throws none.
-inline std::string refusal(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const config::UserError& e) {
-    return e.what();
-  }
-  return "";
-}
 
 /// Beads on circles about the axis of a drum of 0.1 m radius and 0.05 m length, turning with it at 2 rad/s (clockwise), each at a radius
 /// of its own; the walls do work at 0.3 W. Frames every 10 ms from 1 s on; tracks at 2 kHz of beads 0 and 3, which move along z through

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "studies/campaign/campaign.hpp"
+#include "tests/scratch.hpp"
 
 namespace millscope::campaign::test {
 
@@ -47,29 +48,21 @@ output:
 
 class Folder {
  public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "millscope-campaign-XXXXXX").string();
-    REQUIRE(::mkdtemp(name.data()) != nullptr);
-    path_ = name;
-    write(case_file(), kCase);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const fs::path& path() const { return path_; }
-  fs::path case_file() const { return path_ / "case.yaml"; }
+  Folder() { write(case_file(), kCase); }
+  const fs::path& path() const { return scratch_.path; }
+  fs::path case_file() const { return scratch_ / "case.yaml"; }
 
   Simulation simulation(std::vector<std::string> settings = {}) const { return {case_file(), std::move(settings), "tiny"}; }
   Options options() const {
     Options o;
-    o.cache = path_ / "cache";
+    o.cache = scratch_ / "cache";
     o.program = fs::path(MILLSCOPE_BINARY_DIR) / "bin" / "millscope";
     o.quiet = true;
     return o;
   }
 
  private:
-  fs::path path_;
+  testing::Scratch scratch_;
 };
 
 }  // namespace millscope::campaign::test

@@ -1,7 +1,6 @@
 // Meshes to test with, and the way from a bead to its contacts.
 #pragma once
 
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "geometry/mesh/mesh.hpp"
+#include "tests/scratch.hpp"
 
 namespace geometry_test {
 
@@ -118,22 +118,14 @@ class Given {
 /// A folder that goes away again.
 class Folder {
  public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "millscope-test-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
   std::string write(const std::string& name, const std::string& content) const {
-    std::ofstream(path_ / name, std::ios::binary) << content;
-    return (path_ / name).string();
+    std::ofstream(scratch_ / name, std::ios::binary) << content;
+    return path(name);
   }
-  std::string path(const std::string& name) const { return (path_ / name).string(); }
+  std::string path(const std::string& name) const { return (scratch_ / name).string(); }
 
  private:
-  std::filesystem::path path_;
+  testing::Scratch scratch_;
 };
 
 }  // namespace geometry_test

@@ -1,28 +1,15 @@
 #include "output/support.hpp"
 
 #include <hdf5.h>
-#include <stdlib.h>
 #include <sys/mount.h>
 
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
 
-#include "kernel/config/error.hpp"
-
 namespace output_test {
 
 namespace fs = std::filesystem;
-
-Scratch::Scratch() {
-  std::string name = (fs::temp_directory_path() / "millscope_output_XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no scratch directory");
-  path = name;
-}
-Scratch::~Scratch() {
-  std::error_code ignored;
-  fs::remove_all(path, ignored);
-}
 
 SmallDisk::SmallDisk(std::size_t bytes)
     : mounted(::mount("tmpfs", scratch.path.c_str(), "tmpfs", 0, ("size=" + std::to_string(bytes)).c_str()) == 0) {}
@@ -36,15 +23,6 @@ std::string slurp(const fs::path& path) {
 }
 
 void spill(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
-
-std::string refusal(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const millscope::config::UserError& e) {
-    return e.what();
-  }
-  return "";
-}
 
 Story::Story(std::size_t beads, std::size_t walls) : work_(walls), position_(3 * beads), velocity_(3 * beads), spin_(3 * beads) {
   for (std::size_t k = 0; k < beads; ++k) {

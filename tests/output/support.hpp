@@ -2,22 +2,16 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "kernel/output/frames.hpp"
+#include "tests/scratch.hpp"
 
 namespace output_test {
 
-/// A directory of its own that vanishes with the object.
-class Scratch {
- public:
-  Scratch();
-  ~Scratch();
-  std::filesystem::path operator/(const std::string& name) const { return path / name; }
-  std::filesystem::path path;
-};
+using testing::refusal;
+using testing::Scratch;
 
 /// A file system of `bytes` on a scratch directory; `mounted` is false where that is not permitted.
 class SmallDisk {
@@ -30,9 +24,6 @@ class SmallDisk {
 
 std::string slurp(const std::filesystem::path& path);
 void spill(const std::filesystem::path& path, const std::string& text);
-
-/// The message of the UserError that `body` throws; "" when it throws none.
-std::string refusal(const std::function<void()>& body);
 
 /// Beads that move with the frame's number: what a resumed file must repeat.
 class Story {

@@ -1,7 +1,6 @@
 #include "recording/support.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 #include <zlib.h>
 
 #include <cmath>
@@ -10,21 +9,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "kernel/config/error.hpp"
-
 namespace recording_test {
 
 namespace fs = std::filesystem;
-
-Scratch::Scratch() {
-  std::string name = (fs::temp_directory_path() / "millscope_recording_XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no scratch directory");
-  path = name;
-}
-Scratch::~Scratch() {
-  std::error_code ignored;
-  fs::remove_all(path, ignored);
-}
 
 fs::path Scratch::file(const std::string& name, const std::string& text) const {
   std::ofstream(path / name, std::ios::binary) << text;
@@ -38,15 +25,6 @@ fs::path Scratch::packed(const std::string& name, const std::string& text) const
   }
   gzclose(out);
   return path / name;
-}
-
-std::string refusal(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const millscope::config::UserError& e) {
-    return e.what();
-  }
-  return "";
 }
 
 namespace {

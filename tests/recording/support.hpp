@@ -9,22 +9,18 @@
 #include <vector>
 
 #include "studies/recording/recording.hpp"
+#include "tests/scratch.hpp"
 
 namespace recording_test {
 
-/// A folder of its own, gone afterwards.
-struct Scratch {
-  Scratch();
-  ~Scratch();
-  std::filesystem::path operator/(const std::string& name) const { return path / name; }
+using testing::refusal;
+
+/// A folder of its own with files in it.
+struct Scratch : testing::Scratch {
   /// Writes a file and returns its path.
   std::filesystem::path file(const std::string& name, const std::string& text) const;
   std::filesystem::path packed(const std::string& name, const std::string& text) const;  ///< gzipped
-  std::filesystem::path path;
 };
-
-/// The message of the UserError that `body` throws, or "".
-std::string refusal(const std::function<void()>& body);
 
 /// A bead in a mill of 0.3 m that turns with Ω = 6 rad/s: it rides on a circle of 0.12 m, leaves at 60° above the horizontal, flies a
 /// parabola, strikes the circle and rides again. Along z it drifts, and each impact changes the drift.
