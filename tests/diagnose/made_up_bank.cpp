@@ -1,0 +1,61 @@
+#include "made_up_bank.hpp"
+
+#include <cmath>
+
+#include "studies/doe/doe.hpp"
+#include "studies/emulate/random.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+/// A fixed direction in the space of observables.
+VectorXd direction(const MadeUp& mill, std::uint64_t number) {
+  emulate::Random random(4711, number);
+  return random.normals(mill.conditions * mill.observables);
+}
+
+MatrixXd spread(int runs, int dimensions) {
+  std::vector<doe::Factor> factors;
+  for (int i = 0; i < dimensions; ++i) factors.push_back({"u" + std::to_string(i), 0, 1, ""});
+  return doe::sobol(std::move(factors), runs).coded;
+}
+
+}  // namespace
+
+VectorXd truth_of(const MadeUp& mill, const VectorXd& u, const std::vector<double>& s) {
+  VectorXd y = 3 * direction(mill, 1) * u[0] + 2 * direction(mill, 2) * u[1] + 1.5 * direction(mill, 3) * u[2];
+  y += 0.8 * direction(mill, 4) * u[0] * u[0] + 0.5 * direction(mill, 5) * u[0] * u[1];
+  y += s[0] * (2.5 * direction(mill, 6) + 2 * direction(mill, 1)) + 0.5 * s[0] * u[0] * direction(mill, 7);
+  y += s[1] * 3 * direction(mill, 1);
+  y += s[2] * 0.02 * direction(mill, 8);
+  return y;
+}
+
+Problem made_up_problem(const MadeUp& mill, const VectorXd& coded, const std::vector<double>& shares, std::uint64_t seed) {
+  Problem p;
+  p.data.theta = {{"bead_friction", -1, 1, 0, 0, false}, {"wall_friction", -1, 1, 0, 0, false}, {"filling", -1, 1, 0, 0.35, false}};
+  p.data.candidates = 3;
+  const char* names[] = {"visible", "concealed", "faint"};
+  for (int j = 0; j < 3; ++j) p.rivals.push_back({names[j], j, -1, {}, {}});
+  p.rivals.push_back({"filling", -1, 2, {}, {}});
+  const MatrixXd base = spread(mill.runs, 3), with = spread(3 * mill.each, 4);
+  emulate::Random random(seed, 0);
+  const Index n = mill.conditions * mill.observables;
+  std::vector<VectorXd> values;
+  const auto add = [&](const VectorXd& u, int candidate, double share) {
+    std::vector<double> s(3, 0.0);
+    if (candidate >= 0) s[static_cast<std::size_t>(candidate)] = share;
+    p.data.rows.push_back({u, candidate < 0 ? std::vector<Effect>{} : std::vector<Effect>{{candidate, share}}});
+    values.push_back(truth_of(mill, u, s) + mill.run_noise * random.normals(n));
+  };
+  for (Index r = 0; r < base.rows(); ++r) add(base.row(r).transpose(), -1, 0);
+  for (Index r = 0; r < with.rows(); ++r) add(with.row(r).head(3).transpose(), static_cast<int>(r) % 3, 0.55 + 0.45 * with(r, 3));
+  p.data.value.resize(static_cast<Index>(values.size()), n);
+  for (std::size_t r = 0; r < values.size(); ++r) p.data.value.row(static_cast<Index>(r)) = values[r].transpose();
+  for (Index i = 0; i < n; ++i) p.data.condition.push_back(static_cast<int>(i) / mill.observables);
+  p.observed = truth_of(mill, coded, shares) + mill.recording_noise * random.normals(n);
+  p.covariance = MatrixXd::Identity(n, n) * mill.recording_noise * mill.recording_noise;
+  return p;
+}
+
+}  // namespace millscope::diagnose

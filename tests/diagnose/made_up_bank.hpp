@@ -1,0 +1,21 @@
+// A mill that is a formula: observables that are quadratic in two frictions and a filling, and the effects of candidates, with noise.
+#pragma once
+
+#include "studies/diagnose/naming.hpp"
+
+namespace millscope::diagnose {
+
+struct MadeUp {
+  int runs = 24, each = 10;
+  double run_noise = 0.3, recording_noise = 1.0;
+  int conditions = 2, observables = 18;  ///< of each
+};
+
+/// What the formula says at coded θ with shares of three candidates: "visible" changes what friction cannot, "concealed" does what
+/// bead friction does, "faint" nearly nothing.
+VectorXd truth_of(const MadeUp& mill, const VectorXd& coded, const std::vector<double>& shares);
+
+/// Bank and recording of the formula with the truth given.
+Problem made_up_problem(const MadeUp& mill, const VectorXd& coded, const std::vector<double>& shares, std::uint64_t seed);
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,116 @@
+// Naming on a mill that is a formula: what is there is named, what is not there is not, what friction imitates is said to be concealed.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "kernel/config/error.hpp"
+#include "made_up_bank.hpp"
+#include "studies/diagnose/surrogate.hpp"
+#include "studies/emulate/random.hpp"
+
+using namespace millscope;
+using namespace millscope::diagnose;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+
+namespace {
+
+VectorXd point(double a, double b, double c) { return (VectorXd(3) << a, b, c).finished(); }
+
+NamingOptions quick(int draws = 480) {
+  NamingOptions o;
+  o.draws = draws, o.rival_draws = 240;
+  return o;
+}
+
+}  // namespace
+
+TEST_CASE("the surrogate follows a quadratic mill, and its left-out residuals have the runs' noise") {
+  const MadeUp mill;
+  const Problem p = made_up_problem(mill, point(0.2, -0.3, 0), {0, 0, 0}, 1);
+  const Features features(p.data);
+  const Surrogate s(p.data, features, std::vector<bool>(p.data.rows.size(), true));
+  const VectorXd error = s.at(point(0.3, 0.1, 0.2), {{0, 0.5}}) - truth_of(mill, point(0.3, 0.1, 0.2), {0.5, 0, 0});
+  CHECK(std::sqrt(error.squaredNorm() / static_cast<double>(error.size())) < mill.run_noise);
+  CHECK_THAT(std::sqrt(s.residual_covariance().diagonal().mean()), WithinRel(mill.run_noise, 0.15));
+}
+
+TEST_CASE("a fit finds its truth without noise, at limits too") {
+  MadeUp mill;
+  mill.run_noise = 1e-6;
+  const Problem p = made_up_problem(mill, point(0, 0, 0), {0, 0, 0}, 2);
+  const Features features(p.data);
+  const Surrogate s(p.data, features, std::vector<bool>(p.data.rows.size(), true));
+  const Model model(p.data, s, whitener(p.covariance), {0}, std::vector<ShareRange>(3));
+  for (const double share : {0.0, 0.4, 1.0}) {
+    const FitResult f = model.fit(truth_of(mill, point(0.4, -0.6, 0), {share, 0, 0}));
+    CHECK_THAT(f.coded[0], WithinAbs(0.4, 1e-3));
+    CHECK_THAT(f.coded[1], WithinAbs(-0.6, 1e-3));
+    CHECK_THAT(f.shares[0], WithinAbs(share, 1e-3));
+    CHECK(f.q < 1e-3);
+  }
+}
+
+TEST_CASE("an effect that is there is named, with its strength and the friction that it concealed") {
+  const Problem p = made_up_problem({}, point(-0.3, 0.2, 0), {0.6, 0, 0}, 3);
+  const Naming n = name_physics(p, quick());
+  REQUIRE(n.best == 0);
+  CHECK(n.kept == std::vector<int>{0});
+  CHECK(n.judged[0].p_family < 0.01);
+  CHECK(n.base_p < 0.01);
+  CHECK(n.judged[0].goodness_p > 0.05);
+  CHECK(n.judged[0].share.low90 < 0.6);
+  CHECK(n.judged[0].share.high90 > 0.6);
+  CHECK(n.judged[0].theta[0].low90 < -0.3);
+  CHECK(n.judged[0].theta[0].high90 > -0.3);
+  CHECK(std::fabs(n.base_theta[0].value + 0.3) > std::fabs(n.judged[0].theta[0].value + 0.3));
+  CHECK(std::fabs(n.mismatch.front().z) > 3);
+}
+
+TEST_CASE("what friction imitates is concealed, what does nothing is undetectable") {
+  const Problem p = made_up_problem({}, point(0, 0, 0), {0, 0, 0}, 4);
+  const Naming n = name_physics(p, quick());
+  CHECK(n.judged[0].kappa > 0.5);
+  CHECK_FALSE(n.judged[0].undetectable);
+  CHECK(n.judged[1].kappa < 0.2);
+  CHECK(n.judged[1].undetectable);
+  CHECK(n.judged[2].undetectable);
+  CHECK(n.best == -1);
+}
+
+TEST_CASE("a filling beyond its prior is a nuisance, not physics") {
+  const Problem p = made_up_problem({}, point(0.1, 0.1, 0.95), {0, 0, 0}, 5);
+  const Naming n = name_physics(p, quick());
+  REQUIRE(n.best == 3);
+  CHECK_THAT(n.judged[3].theta[2].value, WithinAbs(0.95, 0.25));
+}
+
+TEST_CASE("false alarms stay at the level, and p-values are spread evenly where nothing is missing") {
+  int alarms = 0, below_half = 0;
+  const int sets = 60;
+  for (int k = 0; k < sets; ++k) {
+    emulate::Random random(77, static_cast<std::uint64_t>(k));
+    const Problem p = made_up_problem({}, point(1.2 * random.uniform() - 0.6, 1.2 * random.uniform() - 0.6, 0.3 * random.normal()),
+                                      {0, 0, 0}, 100 + static_cast<std::uint64_t>(k));
+    const Naming n = name_physics(p, quick(240));
+    alarms += n.best >= 0 ? 1 : 0;
+    below_half += n.base_p < 0.5 ? 1 : 0;
+  }
+  CHECK(alarms <= 8);  // of 60 at 5 %: 3 expected, more than 8 by chance once in 250
+  CHECK(below_half >= 15);
+  CHECK(below_half <= 48);
+}
+
+TEST_CASE("draws do not depend on the number of threads") {
+  const Problem p = made_up_problem({}, point(0.1, 0.1, 0), {0.5, 0, 0}, 6);
+  NamingOptions one = quick(120), two = quick(120);
+  one.threads = 1, two.threads = 3;
+  const Naming a = name_physics(p, one), b = name_physics(p, two);
+  for (std::size_t j = 0; j < a.judged.size(); ++j) CHECK(a.judged[j].p_family == b.judged[j].p_family);
+}
+
+TEST_CASE("a bank that is too small is refused with the remedy") {
+  MadeUp mill;
+  mill.runs = 6, mill.each = 2;
+  const Problem p = made_up_problem(mill, point(0, 0, 0), {0, 0, 0}, 7);
+  CHECK_THROWS_AS(name_physics(p, quick()), config::UserError);
+}
