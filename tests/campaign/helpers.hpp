@@ -48,7 +48,10 @@ output:
 
 class Folder {
  public:
-  Folder() { write(case_file(), kCase); }
+  Folder() {
+    write(case_file(), kCase);
+    REQUIRE(fs::is_regular_file(case_file()));
+  }
   const fs::path& path() const { return scratch_.path; }
   fs::path case_file() const { return scratch_ / "case.yaml"; }
 
