@@ -60,6 +60,7 @@ class CapillaryBridge {
         length_(pair.with_wall ? 1.0 : 2.0),
         stretch_(std::sqrt(2.0 / (values.number("volume_ratio") * length_ * length_ * length_))),
         rupture_((1.0 + 0.5 * values.number("contact_angle")) * std::cbrt(values.number("volume_ratio")) * length_),
+        whole_(integral(0.0) / stretch_),
         net_(values.text("friction") == "net") {}
 
   double reach(double radius) const { return force_ > 0.0 ? rupture_ * radius : 0.0; }
@@ -73,13 +74,16 @@ class CapillaryBridge {
     const R held = select(bridged, one, zero);
 
     const R stretch = minimum(gap, R(rupture_)) * R(stretch_);
-    const R contact = R(force_) * pair.radius, reach = pair.radius * R(1.0 / stretch_);
+    const R contact = R(force_) * pair.radius;
     const R force = held * contact / (one + stretch * (R(kLinear) + R(kSquare) * stretch));
     out.added_force = -force;
     if (net_) out.added_cap = -force;
-    out.elastic_energy = -(held * contact * (reach * integral(stretch) + overlap));
+    R left(whole_);  // of the integral, in R*
+    const auto stretched = bridged && (gap > zero);
+    if (any(stretched)) left = select(stretched, integral(stretch) * R(1.0 / stretch_), left);
+    out.elastic_energy = -(held * contact * (pair.radius * left + overlap));
     const R rate = select(pair.time_step > zero, one, zero) / maximum(pair.time_step, R(1e-300));
-    out.power[0] = select(bridged && !before, one, zero) * contact * reach * integral(zero) * rate;
+    out.power[0] = select(bridged && !before, one, zero) * contact * pair.radius * R(whole_) * rate;
     history[0] = held;
   }
 
@@ -96,6 +100,7 @@ class CapillaryBridge {
   double length_;   ///< L/R*
   double stretch_;  ///< √(R/V) R*
   double rupture_;  ///< s_c/R*
+  double whole_;    ///< |U(0)|/(|F(0)| R*)
   bool net_;
 };
 

@@ -9,7 +9,8 @@
 //
 //   F = −6π μ R*² (1/max(h, h_min) − 1/H) v_n along n for 0 < h < H,  0 in contact: there the law damps
 //
-// A bead crosses the last micrometres in less than a step, so 1/h is averaged over the way h ∓ ½ v_n Δt of the step, with
+// A bead crosses the last micrometres in less than a step, so 1/h is averaged over the way h ∓ ½ v_n Δt of the step, where that is long
+// with
 //   G(h) = ∫₀^h = h (1/h_min − 1/H) up to h_min,  1 + ln(h/h_min) − h/H above.
 // A bead without contact damping that comes at v then leaves with e = 1 − 2 ln(H/h_min)/St, St = m* v/(6π μ R*²), and does not touch at all
 // below St = ln(H/h_min). No step takes more than half of v_n, however stiff the film.
@@ -19,7 +20,8 @@ namespace millscope::interactions {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kShort = 1e-4;  // of the gap: way in a step below which 1/h need not be averaged
+constexpr double kShort = 0.25;           // way in a step over the gap up to which Gauss's two points serve: 1/h to 1e-4
+constexpr double kGauss = 0.28867513459;  // ½/√3: where they lie
 
 constexpr Parameter kParameters[] = {
     number_parameter("viscosity", "Pa s", 1e-3, 0.0, 100.0, "Of the liquid between the surfaces; water: 1e-3. At 0 there is no film."),
@@ -49,9 +51,11 @@ class Lubrication {
     const R speed = dot(pair.velocity, pair.normal);
     const R gap = -pair.overlap / pair.radius, way = speed * pair.time_step / pair.radius;  // over R*
     const auto brief = absolute(way) < R(kShort) * maximum(gap, R(cut_));
-    const R mean = (integral(gap + half * way) - integral(gap - half * way)) / select(brief, R(1.0), way);
+    R mean = half * (slope(gap + R(kGauss) * way) + slope(gap - R(kGauss) * way));
+    const auto close = !brief && (gap + half * absolute(way) > zero);
+    if (any(close)) mean = select(close, (integral(gap + half * way) - integral(gap - half * way)) / select(close, way, R(1.0)), mean);
     const auto inside = gap < R(range_);
-    const R factor = select(inside, select(brief, slope(gap), mean), zero);
+    const R factor = select(inside && (brief || close), mean, zero);
     const R gentle = half * pair.mass / maximum(pair.time_step, R(1e-300));
     const R coefficient = minimum(R(resistance_) * pair.radius * factor, gentle);
     out.added_force = -(coefficient * speed);
