@@ -10,19 +10,11 @@
 namespace millscope::diagnose {
 namespace {
 
+constexpr int kSeeds = 6;             // of every model in a held-out condition
 constexpr double kSurelyBelow = 0.5;  // of the noise units: a candidate that is screened out with its first runs
 
 void say(const Workshop& workshop, const std::string& line) {
   if (workshop.say) workshop.say(line);
-}
-
-Problem problem_of(const Question& question, const Workshop& workshop, const Bank& bank, const std::vector<std::size_t>& conditions) {
-  Problem p;
-  p.data = data_of(question, bank, conditions);
-  p.rivals = rivals_of(question);
-  add_recorded(question, workshop, conditions, p);
-  choose_scales(p.data);
-  return p;
 }
 
 /// The bank's first runs of each candidate tell which cannot matter; the others get all of theirs.
@@ -72,18 +64,6 @@ const char* name_of(Verdict verdict) {
   return "";
 }
 
-std::vector<Rival> rivals_of(const Question& question) {
-  std::vector<Rival> rivals;
-  for (std::size_t j = 0; j < question.candidates.size(); ++j) {
-    const Candidate& c = question.candidates[j];
-    rivals.push_back({c.name, static_cast<int>(j), -1, c.range, c.excludes});
-  }
-  for (std::size_t i = 0; i < question.nuisances.size(); ++i) {
-    rivals.push_back({question.nuisances[i].name, -1, static_cast<Index>(question.study.parameters.size() + i), {}, {}});
-  }
-  return rivals;
-}
-
 Diagnosis diagnose(const Question& question, const Workshop& workshop, const NamingOptions& options) {
   Diagnosis d;
   d.fit = question.study.with_role(calibrate::Role::fit);
@@ -94,7 +74,7 @@ Diagnosis diagnose(const Question& question, const Workshop& workshop, const Nam
   d.bank = fill_bank(question, workshop, points, all);
   d.problem = problem_of(question, workshop, d.bank, d.fit);
   d.naming = name_physics(d.problem, options);
-  const HeldOutRequest request{question, workshop, d.bank, d.problem, d.naming, d.fit, 3, options.seed};
+  const HeldOutRequest request{question, workshop, d.bank, d.problem, d.naming, d.fit, kSeeds, options.seed};
   d.alone = fit_alone(request);
   for (const std::size_t condition : d.held) {
     say(workshop, fmt::format("held-out condition '{}'", question.study.conditions[condition].name));

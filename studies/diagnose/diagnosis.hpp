@@ -27,9 +27,6 @@ struct Diagnosis {
   std::vector<Alone> alone;
 };
 
-/// Candidates of the question and nuisances that may leave their prior.
-std::vector<Rival> rivals_of(const Question& question);
-
 /// Everything from the bank on.
 Diagnosis diagnose(const Question& question, const Workshop& workshop, const NamingOptions& options);
 

@@ -85,7 +85,7 @@ Score score(const Judge& judge, Prediction prediction) {
 
 HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) {
   Problem held;
-  add_recorded(r.question, r.workshop, {condition}, held);
+  add_recorded(r.question, r.workshop, r.bank, {condition}, held);
   const Judge judge{held.observed, held.covariance, r.workshop.recorded[condition].power.value};
   const RivalModels rivals(r, condition);
   HeldOut out;
@@ -123,7 +123,7 @@ std::vector<Alone> fit_alone(const HeldOutRequest& r) {
   const bool named = r.naming.best >= 0;
   for (const std::size_t condition : r.bank.conditions) {
     Problem one;
-    add_recorded(r.question, r.workshop, {condition}, one);
+    add_recorded(r.question, r.workshop, r.bank, {condition}, one);
     one.data = data_of(r.question, r.bank, {condition});
     for (std::size_t i = 0; i < one.data.theta.size(); ++i) one.data.theta[i].logarithmic = r.problem.data.theta[i].logarithmic;
     const Features features(one.data);
@@ -161,25 +161,6 @@ std::vector<Alone> fit_alone(const HeldOutRequest& r) {
     out.push_back(std::move(alone));
   }
   return out;
-}
-
-void add_recorded(const Question& question, const Workshop& workshop, const std::vector<std::size_t>& conditions, Problem& problem) {
-  Index n = 0;
-  for (const std::size_t c : conditions) n += workshop.recorded[c].value.size();
-  problem.observed.resize(n);
-  problem.covariance = MatrixXd::Zero(n, n);
-  Index at = 0;
-  for (const std::size_t c : conditions) {
-    const calibrate::Observation& o = workshop.recorded[c];
-    const Index size = o.value.size();
-    problem.observed.segment(at, size) = o.value;
-    problem.covariance.block(at, at, size, size) = o.covariance;
-    for (Index i = 0; i < size; ++i) {
-      if (o.observables[static_cast<std::size_t>(i)].group == "power")
-        problem.covariance(at + i, at + i) += std::pow(question.power_error * o.value[i], 2);
-    }
-    at += size;
-  }
 }
 
 }  // namespace millscope::diagnose

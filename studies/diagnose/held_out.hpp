@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "studies/diagnose/bank.hpp"
-#include "studies/diagnose/naming.hpp"
+#include "studies/diagnose/recorded_problem.hpp"
 
 namespace millscope::diagnose {
 
@@ -58,8 +58,5 @@ struct Alone {
   std::vector<Interval> before, after;  ///< θ of the base, and with the named effect held at its value; natural units
 };
 std::vector<Alone> fit_alone(const HeldOutRequest& request);
-
-/// Recording of some conditions side by side; the power's error widened by that of speed and meter.
-void add_recorded(const Question& question, const Workshop& workshop, const std::vector<std::size_t>& conditions, Problem& problem);
 
 }  // namespace millscope::diagnose

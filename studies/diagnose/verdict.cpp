@@ -29,7 +29,7 @@ double seconds(const Workshop& workshop, const std::vector<std::size_t>& conditi
 /// Squared distance, in noise units, between the predictions of two fitted candidates in one condition.
 double separation(const Question& q, const Workshop& workshop, const Diagnosis& d, std::size_t condition, int a, int b) {
   Problem one;
-  add_recorded(q, workshop, {condition}, one);
+  add_recorded(q, workshop, d.bank, {condition}, one);
   one.data = data_of(q, d.bank, {condition});
   for (std::size_t i = 0; i < one.data.theta.size(); ++i) one.data.theta[i].logarithmic = d.problem.data.theta[i].logarithmic;
   const Features features(one.data);
