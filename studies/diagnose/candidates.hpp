@@ -41,7 +41,7 @@ struct Library {
 /// All that apply to the case: the plugins' hypotheses and the targets of targets.cpp.
 Library library_of(const config::Case& base, const host::Registry& registry);
 
-/// Targets: lifter height and face angle, friction of beads that slide, end faces at rest. For the files of this room.
+/// Targets: height and face angle of lifters, end faces at rest, ripple of the speed. For the files of this room.
 std::vector<Candidate> targets_of(const config::Case& base);
 
 }  // namespace millscope::diagnose

@@ -1,6 +1,7 @@
 // Values of the case that may be other than they are said to be.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "kernel/config/units.hpp"
@@ -12,6 +13,7 @@ namespace {
 constexpr double kWorn = 0.6;  // of the height that is left of a lifter at the far end of its wear
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kAngle = 15 * kDegree;  // by which a lifter's face may be off
+constexpr double kRipple = 0.1;          // of the speed
 constexpr double kSteepest = 89 * kDegree;
 
 double number(const config::Node& node) {
@@ -75,6 +77,30 @@ void resting_ends(const config::GeometryCase& g, std::vector<Candidate>& out) {
   out.push_back(std::move(c));
 }
 
+/// The shell turns unevenly, once per turn.
+void ripple(const config::Case& base, const config::GeometryCase& g, std::vector<Candidate>& out) {
+  if (!base.mill || base.mill->speed == 0 || !g.motion.rotation || !g.motion.rotation->follows_mill || g.motion.rotation->ripple ||
+      g.motion.translation)
+    return;
+  const std::string at = "geometry." + g.plugin.name + ".motion";
+  Candidate c{"speed_ripple",
+              "The shell turns unevenly, once in a turn.",
+              "Omega (1 + a sin(Omega t))",
+              "",
+              "amplitude",
+              "1",
+              {},
+              {},
+              0,
+              kRipple,
+              {},
+              {}};
+  c.set = {fmt::format("{}={{rotation: {{speed: mill, ripple: {{amplitude: 0, frequency: {:.6g}}}}}}}", at,
+                       std::abs(base.mill->speed) / (2 * std::numbers::pi))};
+  c.paths = {at + ".rotation.ripple.amplitude"};
+  out.push_back(std::move(c));
+}
+
 }  // namespace
 
 std::vector<Candidate> targets_of(const config::Case& base) {
@@ -83,6 +109,7 @@ std::vector<Candidate> targets_of(const config::Case& base) {
     if (g.plugin.kind != "mill") continue;
     lifters(g, out);
     resting_ends(g, out);
+    ripple(base, g, out);
   }
   return out;
 }
