@@ -55,7 +55,7 @@ TEST_CASE("an empty mill draws nothing, and Morrell's power ends where it must")
   CHECK(filling(mass(0.4, 2500, 0.02, 0.37), 2500, 0.02, 0.37) == Approx(0.4));
 }
 
-TEST_CASE("options stand for what a recording does not know; the rest is left out") {
+TEST_CASE("options stand for what a recording does not know, the rest is left out") {
   AnalyzerContext bare{};
   bare.mill_radius = 0.15;
   bare.bead_radius = 2.5e-3;

@@ -43,7 +43,7 @@ TEST_CASE("a camera file is read strictly, with the place of what is wrong") {
   refused(head + "  a: {kind: gravity}\n", "camera.yaml:3");
 }
 
-TEST_CASE("the same seed gives the same track, also from many threads; another seed another") {
+TEST_CASE("the same seed gives the same track, also from many threads, and another seed another") {
   const Camera camera = parse(kWhole);
   const output::TrackSamples track = circling(10, 2000, 0.12, -6);
   const Run first = observe(track, camera, context_of(1));
@@ -71,7 +71,7 @@ TEST_CASE("taking one link away leaves the random numbers of the others") {
   CHECK(with.spread == without.spread);
 }
 
-TEST_CASE("an empty track stays empty; one sample passes") {
+TEST_CASE("an empty track stays empty, one sample passes") {
   CHECK(observe({}, parse(kWhole), context_of(1)).size() == 0);
   CHECK(observe(resting(0.01, 100), Camera(), context_of(1)).size() == 1);
 }

@@ -103,7 +103,7 @@ TEST_CASE("where one file is in the way none is written") {
         std::vector<fs::path>{run.path() / "seen_1.a", run.path() / "seen_2.a", run.path() / "seen.yaml"});
 }
 
-TEST_CASE("one bead gives one file; the same seed the same bytes; nothing is overwritten unasked") {
+TEST_CASE("one bead gives one file, the same seed the same bytes, and nothing is overwritten unasked") {
   const RunDirectory run;
   const SimulatedBeads beads(run.path(), registry());
   const Camera camera = chain_of("{kind: noise, white: [1, 1, 1, mm]}");

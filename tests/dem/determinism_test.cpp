@@ -92,7 +92,7 @@ TEST_CASE("the hash sees the state: another time, another seed, another speed") 
   CHECK(b.system->state_hash() != first);
 }
 
-TEST_CASE("partitions other than 1 and more than beads work; the physics stays") {
+TEST_CASE("partitions other than 1 and more than beads work, the physics stays") {
   Setup s = mixed_drum(1);
   Assembly one = ready(s);
   advance(one, 1500);

@@ -69,7 +69,7 @@ TEST_CASE("a submerged bead is dragged as a single sphere is, and more among nei
   CHECK(di_felice > 5 * schiller);
 }
 
-TEST_CASE("a bead that dives in hands momentum to the liquid; what it leaves behind is lost") {
+TEST_CASE("a bead that dives in hands momentum to the liquid. What it leaves behind is lost") {
   const Force pool(pool_values());
   const double growth = 0.5 * 1000 * kPi * kRadius * kRadius * 1.0;  // dm_a/dt at the waterline of a great circle, kg/s
   const auto down = pool.on({0, kLevel, 0}, {0, -1, 0}, kRadius), up = pool.on({0, kLevel, 0}, {0, 1, 0}, kRadius);

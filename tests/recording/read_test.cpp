@@ -112,7 +112,7 @@ TEST_CASE("a gzipped file is read whatever its name, and a cut or damaged one is
   CHECK_THAT(refusal([&] { read_recording(damaged); }), Contains("damaged.gz") && Contains("damaged"));
 }
 
-TEST_CASE("zeros behind a gzip file fill a block; a small file that unpacks to very much is refused") {
+TEST_CASE("zeros behind a gzip file fill a block, a small file that unpacks to very much is refused") {
   const Scratch scratch;
   const auto file = scratch.packed("padded.gz", ctrack_circle(500));
   std::ofstream(file, std::ios::app | std::ios::binary) << std::string(3000, '\0');

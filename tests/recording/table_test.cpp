@@ -127,7 +127,7 @@ TEST_CASE("heads that do not say where t, x, y and z are are refused, never pass
   CHECK_THAT(why("t x y z\n" + table("ttxyz", " ")), Contains("bare.csv:1:") && Contains("the first row has 5 columns"));  // row names
 }
 
-TEST_CASE("four or five columns without heads are t, x, y, z, error in ms and mm; with more the user has to say") {
+TEST_CASE("four or five columns without heads are t, x, y, z, error in ms and mm. With more the user has to say") {
   const Scratch scratch;
   check_circle(read_recording(scratch.file("four.txt", table("txyz", " "))).runs[0]);
   const Run five = read_recording(scratch.file("five.txt", table("txyze", "  "))).runs[0];

@@ -172,7 +172,7 @@ TEST_CASE("size classes appear in the proportions asked for") {
   }
 }
 
-TEST_CASE("the seed decides: same seed, same beads; another seed, other beads of the same sizes") {
+TEST_CASE("the seed decides: the same seed gives the same beads, another seed other beads of the same sizes") {
   Setup s = drum("{count: 300}");
   s.beads = "{all: {material: glass, sizes: [{diameter: 4 mm, fraction: 50 %}, {diameter: 5 mm, fraction: 50 %}]}}";
   const auto with_seed = [&s](int seed) {
