@@ -38,6 +38,8 @@ TEXT = CODE | {".md", ".yaml", ".yml", ".txt", ".cmake", ".json", ""}
 MACHINE_PATH = re.compile(r"(?<![\w.$}>)])/(home|root|work|Users|mnt)/\w")
 MARKER = re.compile(r"\b(" + "TO" + "DO|FIX" + r"ME|XX" + r"X)\b")
 INCLUDE = re.compile(r'^\s*#\s*include\s+(["<])([^">]+)[">]', re.M)
+TEST_CASE = re.compile(r'\bTEST_CASE\s*\(\s*((?:"(?:[^"\\\n]|\\.)*"\s*)+)')  # the name may be several literals
+LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 
 
 def files_of(root):
@@ -93,6 +95,27 @@ def check_text(relative, path, text):
         yield "%s: %d lines, more than %d: split it, or give the reason in LONG_FILES" % (relative, lines, LONGEST)
 
 
+def check_names(relative, text):
+    """Names that Catch2's discovery (CatchAddTests.cmake) hands to ctest broken. ctest then asks for a test that is not there, and Catch2
+    reports that as passed. The names stand in one CMake list, where only ; [ ] and a backslash mean something; commas are safe."""
+    if not relative.endswith((".cpp", ".hpp", ".in")):
+        return
+    for found in TEST_CASE.finditer(text):
+        name = "".join(LITERAL.findall(found.group(1))).replace('\\"', '"')
+        if ";" in name:
+            why = "a ; splits it into two tests that are not there"
+        elif name.count("[") != name.count("]"):
+            why = "an unbalanced [ or ] joins it with the names after it"
+        elif "\\\\" in name:
+            why = "a backslash is an escape to Catch2"
+        elif name.startswith("~"):
+            why = "~ means every other test"
+        else:
+            continue
+        line = text.count("\n", 0, found.start()) + 1
+        yield "%s:%d: the test '%s' would never run: %s; write it otherwise" % (relative, line, name, why)
+
+
 def check_tree(root):
     root = root.resolve()
     for path in files_of(root):
@@ -103,6 +126,7 @@ def check_tree(root):
             continue
         yield from check_includes(root, relative, text)
         yield from check_links(relative, text)
+        yield from check_names(relative, text)
         yield from check_text(relative, path, text)
 
 

@@ -18,6 +18,7 @@ SOUND = {
     "geometry/mesh.cpp": "#include <fcl/fcl.h>\n#include <unistd.h>\n#include \"geometry/soup.hpp\"\n",
     "kernel/dem/step.cpp": "#include <vector>\n#include \"kernel/config/error.hpp\"\n#include \"millscope/geometry.hpp\"\n",
     "studies/compare.cpp": "#include \"kernel/run/simulation.hpp\"\n",
+    "tests/mine_test.cpp": 'TEST_CASE("one, a \\"two\\" (three: [4, 5]),") { f("a; b ["); }\nTEST_CASE("long: "\n          "two lines", "[.slow]") {}\n',
     "app/main.cpp": "#include <boost/program_options.hpp>\n#include \"studies/compare.hpp\"\n",
 }
 
@@ -37,6 +38,12 @@ WRONG = [
     ("studies/a.cpp", "#include \"app/commands.hpp\"\n", "studies may not include"),
     ("plugins/deep/CMakeLists.txt", "target_link_libraries(mine_plugin PRIVATE millscope_dem)\n", "no plugin links the kernel"),
     ("docs/a.md", "Look at /" + "home/someone/mill.yaml\n", "a path of one machine"),
+    ("tests/a_test.cpp", 'TEST_CASE("one; two") {}\n', "a ; splits it"),
+    ("tests/b_test.cpp", 'TEST_CASE("one "\n          "more; two") {}\n', "'one more; two' would never run"),
+    ("tests/c_test.cpp", 'TEST_CASE("from [0, 1) on") {}\n', "an unbalanced [ or ]"),
+    ("tests/d_test.cpp", 'TEST_CASE("from 0, 1] on") {}\n', "an unbalanced [ or ]"),
+    ("tests/e_test.cpp", 'TEST_CASE("a \\\\ b", "[.slow]") {}\n', "a backslash"),
+    ("tests/f_test.cpp", 'TEST_CASE("~ about") {}\n', "~ means every other"),
     ("app/a.cpp", "// TO" + "DO later\n", "a marker"),
     ("app/long.cpp", "int x;\n" * 401, "401 lines"),
 ]
