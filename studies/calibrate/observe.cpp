@@ -120,9 +120,9 @@ struct Observer::Impl {
   int threads;
   std::vector<RecordedCondition> recorded;
 
-  Observation simulated(std::size_t condition, const fs::path& run, const fs::path& scratch) const {
+  /// The run's beads through the recording's camera and the same processing, turned to the recording's sense.
+  studies::ResultSet seen(std::size_t condition, const BeadPaths& paths, const fs::path& scratch, const Processing& how) const {
     const RecordedCondition& r = recorded[condition];
-    const BeadPaths paths(run, study.observing.beads, r.place, registry);
     const studies::Camera camera =
         without_frame(studies::parse_camera(r.camera, "camera of condition '" + study.conditions[condition].name + "'", registry));
     const Scratch folder(scratch);
@@ -134,9 +134,15 @@ struct Observer::Impl {
       options.noise = r.noise;
       options.noise_correlation = r.noise_correlation;
     }
-    studies::ResultSet results = process(recording, options, {study, registry, threads});
+    const studies::ResultSet results = process(recording, options, how);
     std::vector<std::string> done;
-    if (results.meta.context.omega * r.omega < 0) results = studies::mirrored(results, done);
+    return results.meta.context.omega * r.omega < 0 ? studies::mirrored(results, done) : results;
+  }
+
+  Observation simulated(std::size_t condition, const fs::path& run, const fs::path& scratch) const {
+    const RecordedCondition& r = recorded[condition];
+    const BeadPaths paths(run, study.observing.beads, r.place, registry);
+    const studies::ResultSet results = seen(condition, paths, scratch, {study, registry, threads});
     Observation o = summarise(results, r.summaries);
     o.bead_seconds = paths.seconds() * static_cast<double>(paths.size());
     const double mass = paths.mill().context.charge_mass;
@@ -147,7 +153,7 @@ struct Observer::Impl {
       o.power = {r.mass * specific->value.at(0), r.mass * specific->sem.at(0),
                  fmt::format("M g <x> Omega of the beads seen, M = {:.4g} kg as recorded", r.mass)};
     }
-    if (!done.empty()) o.notes.push_back("the simulation turns the other way and was mirrored");
+    if (paths.mill().context.omega * r.omega < 0) o.notes.push_back("the simulation turns the other way and was mirrored");
     return o;
   }
 };
@@ -175,6 +181,14 @@ Observation Observer::simulated(std::size_t condition, const fs::path& run, cons
   const Observation o = impl_->simulated(condition, run, impl_->cache / fmt::format("film-{}-{}", id, ::getpid()));
   output::write_json(file, to_json(o));
   return o;
+}
+
+studies::ResultSet Observer::results(std::size_t condition, const fs::path& run, const std::string& analyzers) const {
+  const Processing how{impl_->study, impl_->registry, impl_->threads, analyzers};
+  const RecordedCondition& r = impl_->recorded[condition];
+  if (run.empty()) return results_of_recording(condition, r, how);
+  const BeadPaths paths(run, impl_->study.observing.beads, r.place, impl_->registry);
+  return impl_->seen(condition, paths, impl_->cache / fmt::format("film-{}-{}", hash_of({run.string()}), ::getpid()), how);
 }
 
 std::vector<std::string> observed_outputs() {

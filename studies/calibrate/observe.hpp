@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "studies/analysis/results.hpp"
 #include "studies/calibrate/observation.hpp"
 #include "studies/calibrate/study.hpp"
 
@@ -27,6 +28,8 @@ class Observer {
   const Observation& recorded(std::size_t condition) const;
   /// What a finished run shows, with exactly the same observables. `key`: of the run's cache entry. Throws config::UserError.
   Observation simulated(std::size_t condition, const std::filesystem::path& run, const std::string& key) const;
+  /// Results of other analyzers (as in analysis.yaml): of the recording where `run` is empty, else of a finished run seen in the same way.
+  studies::ResultSet results(std::size_t condition, const std::filesystem::path& run, const std::string& analyzers) const;
 
  private:
   struct Impl;

@@ -19,8 +19,9 @@ using studies::AnalyzerInstance;
 
 /// The analyzers of this room, and those of the study's own section `analyzers`.
 std::vector<AnalyzerInstance> instances(const Processing& how, const AnalyzerContext& context) {
-  const config::Node own = config::parse_document(kAnalyzers, "calibrate");
+  const config::Node own = config::parse_document(how.analyzers.empty() ? kAnalyzers : how.analyzers, "calibrate");
   std::vector<AnalyzerInstance> all = studies::choose_analyzers(own, true, {}, how.registry, context).instances;
+  if (!how.analyzers.empty()) return all;
   const auto section = how.study.root.valid() ? how.study.root.find("analyzers") : std::nullopt;
   if (!section) return all;
   for (AnalyzerInstance& more : studies::choose_analyzers(how.study.root, true, {}, how.registry, context).instances) {

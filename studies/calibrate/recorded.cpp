@@ -152,6 +152,16 @@ AxialPlace place_of(const studies::Recording& recording, const Observing& observ
   return {at(0.05), at(0.95), ends ? 0.5 * (recording.frame->low + recording.frame->high) : at(0.5)};
 }
 
+studies::TrajectoryOptions options_of(const RecordedCondition& r, const Observing& observing) {
+  studies::TrajectoryOptions options;
+  options.step = kEvenStep;
+  options.gap_limit = r.gap_limit;
+  options.noise = r.noise;
+  options.noise_correlation = r.noise_correlation;
+  if (observing.z_low) options.low = *observing.z_low, options.high = *observing.z_high;
+  return options;
+}
+
 RecordedCondition look(const studies::Recording& recording, std::size_t condition, const Processing& how) {
   RecordedCondition r;
   const Observing& observing = how.study.observing;
@@ -160,13 +170,7 @@ RecordedCondition look(const studies::Recording& recording, std::size_t conditio
   r.noise = noise.standard_deviation;
   r.noise_correlation = noise.correlation;
   r.gap_limit = recording.gap_limit;
-  studies::TrajectoryOptions options;
-  options.step = kEvenStep;
-  options.gap_limit = r.gap_limit;
-  options.noise = r.noise;
-  options.noise_correlation = r.noise_correlation;
-  if (observing.z_low) options.low = *observing.z_low, options.high = *observing.z_high;
-  const studies::ResultSet results = process(recording, options, how);
+  const studies::ResultSet results = process(recording, options_of(r, observing), how);
   r.place = place_of(recording, observing);
   r.omega = results.meta.context.omega;
   r.measured_power = recording.condition.power.has_value();
@@ -203,6 +207,10 @@ std::string dump(const config::Node& node) {
   }
   for (const std::string& key : node.keys()) out += key + ":" + dump(node.at(key)) + ",";
   return out + "}";
+}
+
+studies::ResultSet results_of_recording(std::size_t condition, const RecordedCondition& recorded, const Processing& how) {
+  return process(studies::read_recording(how.study.conditions[condition].recording), options_of(recorded, how.study.observing), how);
 }
 
 RecordedCondition look_at_recording(std::size_t condition, const Processing& how, const std::filesystem::path& cache) {

@@ -35,6 +35,7 @@ struct Processing {
   const Study& study;
   const host::Registry& registry;
   int threads = 0;
+  std::string analyzers = {};  ///< as in analysis.yaml; empty: those of the observables and the study's own
 };
 
 /// Tracks through spline and analyzers; runs of which nothing is left after cleaning are left out and noted. `z_range` cuts the samples.
@@ -42,6 +43,9 @@ studies::ResultSet process(const studies::Recording& recording, const studies::T
 
 /// Reads, estimates the camera, analyses; `cache`: a folder for the outcome.
 RecordedCondition look_at_recording(std::size_t condition, const Processing& how, const std::filesystem::path& cache);
+
+/// The recording again, through other analyzers.
+studies::ResultSet results_of_recording(std::size_t condition, const RecordedCondition& recorded, const Processing& how);
 
 /// FNV-1a over texts.
 std::string hash_of(const std::vector<std::string>& texts);

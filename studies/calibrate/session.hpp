@@ -30,6 +30,7 @@ class Session {
   /// Checks the study and looks at its recordings. Throws config::UserError.
   Session(const Study& study, const host::Registry& registry, SessionOptions options);
   Evaluator& evaluator() { return *evaluator_; }
+  const Observer& observer() const { return *observer_; }
 
  private:
   const Study& study_;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "studies/analysis/results.hpp"
 #include "studies/calibrate/observation.hpp"
 #include "studies/campaign/campaign.hpp"
 #include "studies/diagnose/question.hpp"
@@ -38,6 +39,8 @@ struct Workshop {
   std::function<calibrate::Observation(std::size_t condition, const campaign::Outcome&)> observe;
   std::vector<calibrate::Observation> recorded;  ///< of every condition
   std::function<void(const std::string&)> say;
+  /// Results of other analyzers, of the recording where `run` is empty; not set: nothing is looked at again.
+  std::function<studies::ResultSet(std::size_t condition, const std::filesystem::path& run, const std::string& analyzers)> results = {};
 };
 
 /// The points with what was seen of them in some conditions.

@@ -40,8 +40,9 @@ std::vector<BankPoint> screened(const Question& question, const Workshop& worksh
     }
     say(workshop,
         fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate: looked at closely", c.name, units));
-    const std::vector<BankPoint> all = plan_group(question, static_cast<int>(j), question.bank.each);
-    for (std::size_t i = static_cast<std::size_t>(question.bank.first); i < all.size(); ++i) points.push_back(all[i]);
+    for (BankPoint& p : plan_group(question, static_cast<int>(j), question.bank.each)) {
+      if (p.index >= question.bank.first) points.push_back(std::move(p));
+    }
   }
   return points;
 }
@@ -80,6 +81,10 @@ Diagnosis diagnose(const Question& question, const Workshop& workshop, const Nam
     say(workshop, fmt::format("held-out condition '{}'", question.study.conditions[condition].name));
     d.held_out.push_back(hold_against(request, condition));
   }
+  if (d.naming.best >= 0 || d.naming.base_p <= options.level) {
+    say(workshop, "missing mean acceleration, by place and speed");
+    d.missing = missing_force(request);
+  }
   if (!d.bank.failures.empty())
     d.notes.push_back(
         fmt::format("{} simulations of the bank failed and are left out, the first: {}", d.bank.failures.size(), d.bank.failures.front()));
@@ -90,7 +95,10 @@ Diagnosis diagnose(const Question& question, const Workshop& workshop, const Nam
 
 Workshop workshop_of(calibrate::Session& session, std::function<void(const std::string&)> say) {
   const calibrate::Machinery& m = session.evaluator().machinery();
-  return {m.run, m.observe, m.recorded, std::move(say)};
+  const auto again = [&session](std::size_t condition, const std::filesystem::path& run, const std::string& analyzers) {
+    return session.observer().results(condition, run, analyzers);
+  };
+  return {m.run, m.observe, m.recorded, std::move(say), again};
 }
 
 }  // namespace millscope::diagnose

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "studies/calibrate/session.hpp"
-#include "studies/diagnose/held_out.hpp"
+#include "studies/diagnose/missing_force.hpp"
 
 namespace millscope::diagnose {
 
@@ -25,6 +25,7 @@ struct Diagnosis {
   Naming naming;
   std::vector<HeldOut> held_out;
   std::vector<Alone> alone;
+  std::vector<MissingForce> missing;  ///< where the base does not describe the recordings
 };
 
 /// Everything from the bank on.

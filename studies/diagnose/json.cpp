@@ -107,6 +107,24 @@ Json per_speed(const Told& t) {
   return out;
 }
 
+Json missing(const Told& t) {
+  Json out = Json::array();
+  for (const MissingForce& m : t.diagnosis.missing) {
+    Json cells = Json::array(), speeds = Json::array();
+    for (const ForceCell& c : m.cells) {
+      cells.push_back({{"r_m", {c.r_low, c.r_high}},
+                       {"angle_deg", {c.angle_low, c.angle_high}},
+                       {"x_m_per_s2", interval(c.x)},
+                       {"y_m_per_s2", interval(c.y)},
+                       {"p_value", c.p}});
+    }
+    for (const ForceBySpeed& s : m.by_speed)
+      speeds.push_back({{"speed_over_shell", {s.low, s.high}}, {"along_motion_m_per_s2", interval(s.along)}});
+    out.push_back({{"condition", t.question.study.conditions[m.condition].name}, {"cells", cells}, {"by_speed", speeds}});
+  }
+  return out;
+}
+
 }  // namespace
 
 Json diagnosis_json(const Told& t) {
@@ -115,6 +133,7 @@ Json diagnosis_json(const Told& t) {
   for (const Mismatch& m : d.naming.mismatch) {
     const auto c = static_cast<std::size_t>(d.problem.data.condition[static_cast<std::size_t>(m.observable)]);
     mismatch.push_back({{"observable", observable_name(t, m.observable)},
+                        {"number", m.observable + 1},
                         {"condition", t.question.study.conditions[c].name},
                         {"z", m.z},
                         {"p_value", m.p},
@@ -142,6 +161,7 @@ Json diagnosis_json(const Told& t) {
           {"contact_parameters", contact},
           {"per_speed_friction", per_speed(t)},
           {"held_out", held_out(t)},
+          {"missing_acceleration", missing(t)},
           {"bank", {{"parameter_sets", d.bank.points.size()}, {"used", d.problem.data.rows.size()}, {"failures", d.bank.failures}}},
           {"notes", d.notes},
           {"study", t.question.study.file.string()}};

@@ -39,7 +39,7 @@ void mismatch(const Told& t, Drawer& drawer) {
   CurvePicture p;
   p.title = "Recording against model", p.x_label = "observable", p.value_label = "difference over its standard deviation";
   p.zero_line = true, p.points = true;
-  p.note = "in the order of 'observables' of diagnosis.json; beyond 3 is rare by chance";
+  p.note = "'number' of a mismatch in diagnosis.json; beyond 3 is rare by chance";
   p.curves.push_back(curve("retuned base", s.at(d.naming.base.coded)));
   if (d.naming.best >= 0) {
     const Judged& best = d.naming.judged[static_cast<std::size_t>(d.naming.best)];
@@ -95,6 +95,22 @@ void held_out(const Told& t, Drawer& drawer) {
   }
 }
 
+/// Missing acceleration along the motion by speed.
+void missing(const Told& t, Drawer& drawer) {
+  CurvePicture p;
+  p.title = "Missing mean acceleration along the motion", p.x_label = "speed over the shell's", p.x_unit = "1";
+  p.value_label = "recording less retuned base", p.value_unit = "m/s²", p.zero_line = true;
+  for (const MissingForce& m : t.diagnosis.missing) {
+    Curve c{t.question.study.conditions[m.condition].name, {}, {}, {}, {}};
+    for (const ForceBySpeed& s : m.by_speed) {
+      c.x.push_back(0.5 * (s.low + s.high)), c.value.push_back(s.along.value);
+      c.low.push_back(s.along.low90), c.high.push_back(s.along.high90);
+    }
+    if (c.x.size() > 1) p.curves.push_back(std::move(c));
+  }
+  if (!p.curves.empty()) drawer.curves(p, "missing_acceleration");
+}
+
 }  // namespace
 
 std::vector<fs::path> draw(const Told& told, const fs::path& folder) {
@@ -103,6 +119,7 @@ std::vector<fs::path> draw(const Told& told, const fs::path& folder) {
   mismatch(told, drawer);
   drift(told, drawer);
   held_out(told, drawer);
+  missing(told, drawer);
   return drawer.files;
 }
 

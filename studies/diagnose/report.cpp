@@ -11,6 +11,7 @@ namespace millscope::diagnose {
 namespace {
 
 constexpr std::size_t kShown = 8;  // rows of the mismatch
+constexpr std::size_t kCells = 4;  // of the missing force, in each condition
 
 template <class... Values>
 void add(std::string& out, fmt::format_string<Values...> text, Values&&... values) {
@@ -103,6 +104,18 @@ void held_out(const Told& t, std::string& out) {
   }
 }
 
+void missing(const Told& t, std::string& out) {
+  if (t.diagnosis.missing.empty()) return;
+  out +=
+      "## The missing force, without a form\n\nMean acceleration of the recorded beads less that of the retuned base, seen through the "
+      "same camera.\n\n";
+  for (const MissingForce& m : t.diagnosis.missing) {
+    for (std::size_t i = 0; i < std::min(kCells, m.cells.size()); ++i)
+      add(out, "- {}\n", force_sentence(t.question, m.condition, m.cells[i]));
+  }
+  out += "\n";
+}
+
 }  // namespace
 
 std::string observable_name(const Told& t, Index observable) {
@@ -144,6 +157,7 @@ std::string diagnosis_text(const Told& t, const std::vector<std::filesystem::pat
   what_was_tried(t, out);
   parameters(t, out);
   held_out(t, out);
+  missing(t, out);
   if (!pictures.empty()) out += "## Pictures\n\n";
   for (const auto& p : pictures) add(out, "![{}](pictures/{})\n\n", p.stem().string(), p.filename().string());
   out += "## How sure\n\n";
