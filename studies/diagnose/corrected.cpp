@@ -1,5 +1,6 @@
 // corrected/: the case with the physics that was found, and a study to go on with.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
@@ -23,7 +24,8 @@ std::string study_text(const Told& t, const fs::path& folder) {
   }
   out += "\nparameters:\n";
   for (const calibrate::Parameter& p : t.question.study.parameters)
-    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}]}}\n", p.path, p.name, p.low, p.high);
+    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], tied: [{}]}}\n", p.path, p.name, p.low, p.high,
+                   fmt::join(p.tied, ", "));
   if (!t.question.nuisances.empty()) out += "\nnuisances:\n";
   for (const Nuisance& n : t.question.nuisances)
     fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], mean: {:.6g}, sigma: {:.6g}}}\n", n.path, n.name,
@@ -35,16 +37,20 @@ std::string study_text(const Told& t, const fs::path& folder) {
 
 void write_corrected(const Told& t, const fs::path& folder) {
   const Naming& n = t.diagnosis.naming;
-  if (n.best < 0) return;
-  const Judged& best = n.judged[static_cast<std::size_t>(n.best)];
-  const Rival& rival = t.diagnosis.problem.rivals[static_cast<std::size_t>(n.best)];
-  const std::vector<Effect> effects =
-      rival.candidate < 0 ? std::vector<Effect>{} : std::vector<Effect>{{rival.candidate, best.fit.shares.front()}};
-  const std::vector<std::string> settings = t.question.settings(t.diagnosis.problem.data.natural(best.fit.coded), effects);
+  if (n.best < 0 || t.diagnosis.verdict == Verdict::outside_library) return;
+  const bool two = t.diagnosis.two_effects;
+  const FitResult& fit = two ? n.pairs.front().fit : n.judged[static_cast<std::size_t>(n.best)].fit;
+  std::vector<Effect> effects;
+  for (const int r : two ? std::vector<int>{n.best, n.pairs.front().second} : std::vector<int>{n.best}) {
+    const int candidate = t.diagnosis.problem.rivals[static_cast<std::size_t>(r)].candidate;
+    if (candidate >= 0) effects.push_back({candidate, fit.shares.at(effects.size())});
+  }
+  const std::vector<std::string> settings = t.question.settings(t.diagnosis.problem.data.natural(fit.coded), effects);
   fs::create_directories(folder);
-  output::write_file(folder / "case.yaml", calibrate::case_with(fmt::format("With {}, as 'millscope diagnose' found it: {}.", rival.name,
-                                                                            name_of(t.diagnosis.verdict)),
-                                                                t.question.study.base, settings, folder));
+  output::write_file(folder / "case.yaml",
+                     calibrate::case_with(fmt::format("With {}, as 'millscope diagnose' found it: {}.", fmt::join(t.diagnosis.named, ", "),
+                                                      name_of(t.diagnosis.verdict)),
+                                          t.question.study.base, settings, folder));
   output::write_file(folder / "study.yaml", study_text(t, folder));
 }
 

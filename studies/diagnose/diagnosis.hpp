@@ -16,6 +16,7 @@ struct Diagnosis {
   Verdict verdict = Verdict::undetectable;
   std::string sentence;            ///< the verdict in words
   std::vector<std::string> named;  ///< hypotheses; several: two effects, or a class that these data cannot split
+  bool two_effects = false;        ///< `named` are two that are asked for together
   std::string next_experiment;     ///< what would tell more; "" when nothing is needed
   std::vector<std::string> notes;
 

@@ -20,13 +20,17 @@ constexpr int kLevels = 3;  // of the grid of starting points, for each flat coo
 
 }  // namespace
 
-MatrixXd whitener(const MatrixXd& covariance) {
+MatrixXd factor(const MatrixXd& covariance) {
   const Eigen::LLT<MatrixXd> llt(covariance);
   if (llt.info() != Eigen::Success) {
     throw config::UserError(
         "the covariance of the observables is not positive definite; lengthen the recording or leave groups out (objective.without)");
   }
-  return llt.matrixL().solve(MatrixXd::Identity(covariance.rows(), covariance.cols()));
+  return llt.matrixL();
+}
+
+MatrixXd whitener(const MatrixXd& covariance) {
+  return factor(covariance).triangularView<Eigen::Lower>().solve(MatrixXd::Identity(covariance.rows(), covariance.cols()));
 }
 
 Model::Model(const BankData& data, const Surrogate& surrogate, const MatrixXd& whitener, std::vector<int> active,

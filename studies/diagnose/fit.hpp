@@ -15,6 +15,8 @@ namespace millscope::diagnose {
 
 /// Lower triangular L⁻¹ with Σ = L Lᵀ. Throws config::UserError when Σ is not positive definite.
 MatrixXd whitener(const MatrixXd& covariance);
+/// L itself.
+MatrixXd factor(const MatrixXd& covariance);
 
 struct FitResult {
   VectorXd coded;              ///< θ

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "studies/diagnose/rivals.hpp"
 #include "studies/emulate/random.hpp"
@@ -27,55 +28,77 @@ Prediction simulate(const HeldOutRequest& r, const VectorXd& coded, const std::v
   int done = 0;
   std::string message;
   for (const campaign::Outcome& outcome : r.workshop.run(simulations)) {
-    if (outcome.state == campaign::State::failed) {
-      message = outcome.message;
+    calibrate::Observation o;
+    try {
+      if (outcome.state == campaign::State::failed) throw config::UserError(outcome.message);
+      o = r.workshop.observe(condition, outcome);
+    } catch (const config::UserError& e) {
+      message = e.what();
       continue;
     }
-    const calibrate::Observation o = r.workshop.observe(condition, outcome);
     if (done++ == 0)
       p.value = o.value, p.covariance = o.covariance, p.power = o.power.value;
     else
       p.value += o.value, p.covariance += o.covariance, p.power += o.power.value;
   }
-  if (done == 0) throw config::UserError(fmt::format("all simulations of '{}' failed: {}", name, message));
+  if (done == 0) {
+    p.failure = message;
+    return p;
+  }
   p.value /= done, p.covariance /= done * done, p.power /= done;
   return p;
 }
 
 struct Judge {
   VectorXd observed;
-  MatrixXd recording;  ///< covariance
+  MatrixXd recording;           ///< covariance: the weight
+  std::vector<MatrixXd> noise;  ///< factors of the laws of the recording's noise
   double power = 0;
 
-  double misfit(const VectorXd& y, const VectorXd& value, const Eigen::LLT<MatrixXd>& c) const {
-    const VectorXd r = y - value;
-    return r.dot(c.solve(r)) / static_cast<double>(r.size());
+  static double misfit(const VectorXd& r, const Eigen::LLT<MatrixXd>& c) { return r.dot(c.solve(r)) / static_cast<double>(r.size()); }
+
+  /// Improvement of the first prediction over another, with what noise of recording and simulations leaves open; the widest interval over
+  /// the laws of noise.
+  void compare(const Score& corrected, Score& rival, std::uint64_t seed) const {
+    const Prediction &one = corrected.prediction, &other = rival.prediction;
+    const Eigen::LLT<MatrixXd> c(recording + 0.5 * (one.covariance + other.covariance));
+    rival.improvement = misfit(observed - other.value, c) - misfit(observed - one.value, c);
+    const MatrixXd first = factor(one.covariance), second = factor(other.covariance);
+    rival.low90 = std::numeric_limits<double>::infinity(), rival.high90 = -rival.low90;
+    emulate::Random random(seed, 9);
+    for (const MatrixXd& law : noise) {
+      std::vector<double> draws;
+      for (int b = 0; b < kDraws; ++b) {
+        const VectorXd y = observed + law * random.normals(observed.size());
+        draws.push_back(misfit(y - other.value - second * random.normals(y.size()), c) -
+                        misfit(y - one.value - first * random.normals(y.size()), c));
+      }
+      std::sort(draws.begin(), draws.end());
+      rival.low90 = std::min(rival.low90, draws[kDraws / 20]), rival.high90 = std::max(rival.high90, draws[kDraws - 1 - kDraws / 20]);
+    }
   }
 
-  /// Improvement of the first prediction over another, with what noise of recording and simulations leaves open.
-  void compare(const Score& corrected, Score& rival, std::uint64_t seed) const {
-    const MatrixXd sum = recording + 0.5 * (corrected.prediction.covariance + rival.prediction.covariance);
-    const Eigen::LLT<MatrixXd> c(sum);
-    rival.improvement = misfit(observed, rival.prediction.value, c) - misfit(observed, corrected.prediction.value, c);
-    const MatrixXd noise = Eigen::LLT<MatrixXd>(recording).matrixL();
-    const MatrixXd first = Eigen::LLT<MatrixXd>(corrected.prediction.covariance).matrixL(),
-                   second = Eigen::LLT<MatrixXd>(rival.prediction.covariance).matrixL();
-    emulate::Random random(seed, 9);
-    std::vector<double> draws;
-    for (int b = 0; b < kDraws; ++b) {
-      const VectorXd y = observed + noise * random.normals(observed.size());
-      draws.push_back(misfit(y, rival.prediction.value + second * random.normals(y.size()), c) -
-                      misfit(y, corrected.prediction.value + first * random.normals(y.size()), c));
+  /// How often a recording of this very prediction would look as bad; the largest over the laws of noise.
+  double goodness(const Prediction& p, std::uint64_t seed) const {
+    const Eigen::LLT<MatrixXd> c(recording + p.covariance);
+    const double seen = misfit(observed - p.value, c);
+    const MatrixXd own = factor(p.covariance);
+    emulate::Random random(seed, 10);
+    double largest = 0;
+    for (const MatrixXd& law : noise) {
+      int above = 0;
+      for (int b = 0; b < kDraws; ++b)
+        above += misfit(law * random.normals(observed.size()) + own * random.normals(observed.size()), c) >= seen ? 1 : 0;
+      largest = std::max(largest, (1.0 + above) / (1.0 + kDraws));
     }
-    std::sort(draws.begin(), draws.end());
-    rival.low90 = draws[kDraws / 20], rival.high90 = draws[kDraws - 1 - kDraws / 20];
+    return largest;
   }
 };
 
 Score score(const Judge& judge, Prediction prediction) {
   Score s;
   const MatrixXd sum = judge.recording + prediction.covariance;
-  s.misfit = judge.misfit(judge.observed, prediction.value, Eigen::LLT<MatrixXd>(sum));
+  s.misfit = Judge::misfit(judge.observed - prediction.value, Eigen::LLT<MatrixXd>(sum));
   s.power_percent = 100 * (prediction.power - judge.power) / judge.power;
   s.prediction = std::move(prediction);
   return s;
@@ -86,34 +109,43 @@ Score score(const Judge& judge, Prediction prediction) {
 HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) {
   Problem held;
   add_recorded(r.question, r.workshop, r.bank, {condition}, held);
-  const Judge judge{held.observed, held.covariance, r.workshop.recorded[condition].power.value};
+  Judge judge{held.observed, held.covariance, {}, r.workshop.recorded[condition].power.value};
+  for (const MatrixXd& law : held.noise) judge.noise.push_back(factor(law));
   const RivalModels rivals(r, condition);
   HeldOut out;
   out.condition = condition;
   const auto add = [&](Prediction p, const std::string& sentence) {
     p.sentence = sentence;
-    out.scores.push_back(score(judge, std::move(p)));
+    if (!p.failure.empty())
+      out.failures.push_back(fmt::format("{}: {}", p.name, p.failure));
+    else
+      out.scores.push_back(score(judge, std::move(p)));
   };
   const bool named = r.naming.best >= 0;
   if (named) {
     const Judged& best = r.naming.judged[static_cast<std::size_t>(r.naming.best)];
     const std::vector<Effect> effects = rivals.effects(r.naming.best, best.fit);
-    add(simulate(r, best.fit.coded, effects, condition, "corrected"), "with the named effect, all parameters fitted together");
-    if (!effects.empty())
-      add(simulate(r, best.fit.coded, {}, condition, "named effect removed"), "the corrected parameters without the named effect");
+    add(simulate(r, best.fit.coded, effects, condition, "corrected"), "with the best candidate, all parameters fitted together");
+    if (!effects.empty()) add(simulate(r, best.fit.coded, {}, condition, "effect removed"), "the corrected parameters without the effect");
   }
+  const bool compared = named && !out.scores.empty();
   const Prediction base = simulate(r, r.naming.base.coded, {}, condition, "retuned to all observables");
-  add(simulate(r, rivals.power_only(), {}, condition, "retuned to power"),
-      "the base, friction retuned until the power matches: the practice");
+  if (base.failure.empty()) out.base_p = judge.goodness(base, r.seed);
+  if (const VectorXd tuned = rivals.power_only(); tuned.size() > 0) {
+    add(simulate(r, tuned, {}, condition, "retuned to power"),
+        fmt::format("the base, friction retuned until the power at '{}' matches: the practice",
+                    r.question.study.conditions[r.fit.front()].name));
+  }
   add(base, "the base, parameters refitted to all observables");
-  if (named) {
-    add(rivals.placebo(base), "the base with a free parameter of no meaning");
+  if (!compared) return out;
+  if (base.failure.empty()) {
+    add(rivals.placebo(base), "the base with a free parameter of no meaning, the best of twenty such");
     add(rivals.discrepancy(base), "the base with the residuals of the fitted conditions carried over by a Gaussian process");
-    out.improves = true;
-    for (std::size_t k = 1; k < out.scores.size(); ++k) {
-      judge.compare(out.scores[0], out.scores[k], r.seed + k);
-      out.improves = out.improves && out.scores[k].low90 > 0;
-    }
+  }
+  out.improves = out.failures.empty();
+  for (std::size_t k = 1; k < out.scores.size(); ++k) {
+    judge.compare(out.scores[0], out.scores[k], r.seed + k);
+    out.improves = out.improves && out.scores[k].low90 > 0;
   }
   return out;
 }

@@ -18,6 +18,7 @@ struct Prediction {
   MatrixXd covariance;  ///< of the simulations' mean
   double power = 0;     ///< W
   bool simulated = true;
+  std::string failure;  ///< why none of its simulations came to its end; "" when some did
 };
 
 struct Score {
@@ -31,7 +32,9 @@ struct Score {
 struct HeldOut {
   std::size_t condition = 0;
   std::vector<Score> scores;  ///< corrected first, where there is one
-  bool improves = false;      ///< the interval against every rival lies above 0
+  double base_p = 1;          ///< that a recording of the refitted base looks as bad
+  std::vector<std::string> failures;
+  bool improves = false;  ///< the interval against every rival lies above 0
 };
 
 /// θ that matches the powers of the fit conditions, nuisances at their priors, as near the middle of the ranges as that allows: the

@@ -12,10 +12,18 @@
 namespace millscope::diagnose {
 namespace {
 
-/// Share of draws that are at least `value`, the value itself counted among them.
-double tail(const std::vector<double>& draws, double value) {
-  const auto above = std::count_if(draws.begin(), draws.end(), [&](double d) { return d >= value; });
-  return static_cast<double>(1 + above) / static_cast<double>(1 + draws.size());
+constexpr double kAtLimit = 0.999;  // of the coded range
+
+/// Share of draws that are at least `value`, the value itself counted among them; the largest over the laws of noise, whose draws follow
+/// each other in turn.
+double tail(const std::vector<double>& draws, double value, std::size_t laws) {
+  double largest = 0;
+  for (std::size_t law = 0; law < laws; ++law) {
+    std::size_t above = 0, count = 0;
+    for (std::size_t b = law; b < draws.size(); b += laws, ++count) above += draws[b] >= value ? 1 : 0;
+    largest = std::max(largest, static_cast<double>(1 + above) / static_cast<double>(1 + count));
+  }
+  return largest;
 }
 
 Interval interval(std::vector<double> draws, double value) {
@@ -59,6 +67,7 @@ class Namer {
   }
 
  private:
+  double p_of(const std::vector<double>& draws, double value) const { return tail(draws, value, pseudo_.laws()); }
   std::size_t count() const { return p_.rivals.size(); }
   void say(const std::string& line) const {
     if (o_.say) o_.say(line);
@@ -70,15 +79,19 @@ class Namer {
     std::vector<Choice> choices{{}};
     for (std::size_t j = 0; j < count(); ++j) choices.push_back({static_cast<int>(j)});
     const auto drawn = pseudo_.draw(pseudo_.truth({}, out_.base), choices, o_.draws, 1);
-    out_.base_p = tail(collect(drawn, [](const auto& d) { return d.fit[0].q; }), out_.base.q);
+    out_.base_p = p_of(collect(drawn, [](const auto& d) { return d.fit[0].q; }), out_.base.q);
     out_.base_theta = theta_intervals(p_.data, out_.base, drawn, 0);
+    for (Index i = 0; i < out_.base.coded.size(); ++i) {
+      const Coordinate& c = p_.data.theta[static_cast<std::size_t>(i)];
+      if (!c.nuisance() && std::fabs(out_.base.coded[i]) > kAtLimit) out_.at_limit.push_back(c.name);
+    }
     std::vector<std::vector<double>> delta(count());
     for (std::size_t j = 0; j < count(); ++j) {
-      delta[j] = collect(drawn, [j](const auto& d) { return std::max(0.0, d.fit[0].q - d.fit[j + 1].q); });
+      delta[j] = collect(drawn, [j](const auto& d) { return d.fit[0].q - d.fit[j + 1].q; });
       Judged judged;
       judged.fit = pseudo_.fit({static_cast<int>(j)});
-      judged.delta_q = std::max(0.0, out_.base.q - judged.fit.q);
-      judged.p = tail(delta[j], judged.delta_q);
+      judged.delta_q = out_.base.q - judged.fit.q;
+      judged.p = p_of(delta[j], judged.delta_q);
       out_.judged.push_back(judged);
       visibility(static_cast<int>(j));
     }
@@ -86,21 +99,31 @@ class Namer {
     mismatch(drawn);
   }
 
-  /// min-p (Westfall and Young 1993): how often the smallest p of a draw is as small.
+  /// min-p (Westfall and Young 1993): how often the smallest p of a draw is as small, within each law of noise. A draw is compared with
+  /// the other draws, as the observed value is with all of them.
   void correct_family(const std::vector<std::vector<double>>& delta) {
-    const auto draws = static_cast<std::size_t>(o_.draws);
-    std::vector<double> least(draws, 1);
-    for (const std::vector<double>& d : delta) {
-      std::vector<double> sorted = d;
-      std::sort(sorted.begin(), sorted.end());
-      for (std::size_t b = 0; b < draws; ++b) {
-        const auto above = sorted.end() - std::lower_bound(sorted.begin(), sorted.end(), d[b]);
-        least[b] = std::min(least[b], static_cast<double>(1 + above) / static_cast<double>(1 + draws));
+    const std::size_t laws = pseudo_.laws();
+    for (Judged& j : out_.judged) j.p_family = 0;
+    for (std::size_t law = 0; law < laws; ++law) {
+      std::vector<double> least, observed;
+      for (std::size_t k = 0; k < delta.size(); ++k) {
+        std::vector<double> own;
+        for (std::size_t b = law; b < delta[k].size(); b += laws) own.push_back(delta[k][b]);
+        std::vector<double> sorted = own;
+        std::sort(sorted.begin(), sorted.end());
+        const auto others = static_cast<double>(own.size() - 1);
+        const auto above = [&](double value) {
+          return static_cast<double>(sorted.end() - std::lower_bound(sorted.begin(), sorted.end(), value));
+        };
+        least.resize(own.size(), 1);
+        for (std::size_t b = 0; b < own.size(); ++b) least[b] = std::min(least[b], above(own[b]) / (1 + others));
+        observed.push_back((1 + above(out_.judged[k].delta_q)) / (2 + others));
       }
-    }
-    for (Judged& j : out_.judged) {
-      const auto smaller = std::count_if(least.begin(), least.end(), [&](double p) { return p <= j.p; });
-      j.p_family = static_cast<double>(1 + smaller) / static_cast<double>(1 + draws);
+      for (std::size_t k = 0; k < delta.size(); ++k) {
+        const auto smaller = std::count_if(least.begin(), least.end(), [&](double p) { return p <= observed[k]; });
+        out_.judged[k].p_family =
+            std::max(out_.judged[k].p_family, static_cast<double>(1 + smaller) / static_cast<double>(1 + least.size()));
+      }
     }
   }
 
@@ -109,6 +132,9 @@ class Namer {
     const Visibility seen(p_, pseudo_.surrogate(), pseudo_.whitening(), out_.base.coded, j);
     const double found =
         judged.fit.shares.empty() ? judged.fit.coded[p_.rivals[static_cast<std::size_t>(j)].freed] : judged.fit.shares.front();
+    for (const BankRow& row : p_.data.rows) {
+      for (const Effect& e : row.effects) judged.runs += e.candidate == p_.rivals[static_cast<std::size_t>(j)].candidate ? 1 : 0;
+    }
     judged.lambda = seen.lambda(), judged.kappa = seen.kappa(), judged.lambda_found = seen.orthogonal(found);
     judged.undetectable = std::sqrt(judged.lambda) < o_.noise_units;
     judged.share = {found, found, found};
@@ -126,8 +152,8 @@ class Namer {
     const auto draws = static_cast<double>(drawn.size());
     const VectorXd sd = (square / draws - (mean / draws).cwiseAbs2()).cwiseMax(1e-300).cwiseSqrt();
     const auto largest = collect(drawn, [&](const auto& d) { return d.residual.cwiseQuotient(sd).cwiseAbs().maxCoeff(); });
-    const VectorXd z = (p_.observed - pseudo_.surrogate().at(out_.base.coded)).cwiseQuotient(sd);
-    for (Index i = 0; i < n; ++i) out_.mismatch.push_back({i, z[i], tail(largest, std::fabs(z[i]))});
+    const VectorXd base = pseudo_.surrogate().at(out_.base.coded), z = (p_.observed - base).cwiseQuotient(sd);
+    for (Index i = 0; i < n; ++i) out_.mismatch.push_back({i, base[i], z[i], p_of(largest, std::fabs(z[i]))});
     std::stable_sort(out_.mismatch.begin(), out_.mismatch.end(),
                      [](const Mismatch& a, const Mismatch& b) { return std::fabs(a.z) > std::fabs(b.z); });
   }
@@ -135,7 +161,7 @@ class Namer {
   void choose_best() {
     for (std::size_t j = 0; j < count(); ++j) {
       const Judged& judged = out_.judged[j];
-      if (judged.p_family > o_.level) continue;
+      if (judged.p_family > o_.level || (judged.runs == 0 && p_.rivals[j].candidate >= 0)) continue;
       if (out_.best < 0 || judged.fit.q < out_.judged[static_cast<std::size_t>(out_.best)].fit.q) out_.best = static_cast<int>(j);
     }
   }
@@ -144,12 +170,13 @@ class Namer {
   void look_closer(int j) {
     Judged& judged = out_.judged[static_cast<std::size_t>(j)];
     const auto drawn = pseudo_.draw(pseudo_.truth({j}, judged.fit), {{j}}, o_.rival_draws, 100 + static_cast<std::uint64_t>(j));
-    judged.goodness_p = tail(collect(drawn, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
+    judged.goodness_p = p_of(collect(drawn, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
     judged.theta = theta_intervals(p_.data, judged.fit, drawn, 0);
     if (!judged.fit.shares.empty())
       judged.share = interval(collect(drawn, [](const auto& d) { return d.fit[0].shares[0]; }), judged.fit.shares[0]);
   }
 
+  /// Under every other candidate: how often the best of all, whichever that is in the draw, would seem better by so much.
   void compare_rivals() {
     const int best = out_.best;
     out_.kept = {best};
@@ -158,9 +185,18 @@ class Namer {
       Judged& judged = out_.judged[k];
       const double excess = judged.fit.q - out_.judged[static_cast<std::size_t>(best)].fit.q;
       const Choice own{static_cast<int>(k)};
-      const auto drawn = pseudo_.draw(pseudo_.truth(own, judged.fit), {own, {best}}, o_.rival_draws, 300 + k);
-      judged.against_best_p = tail(collect(drawn, [](const auto& d) { return d.fit[0].q - d.fit[1].q; }), excess);
-      judged.goodness_p = tail(collect(drawn, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
+      std::vector<Choice> choices{own};
+      for (std::size_t j = 0; j < count(); ++j) {
+        if (j != k) choices.push_back({static_cast<int>(j)});
+      }
+      const auto drawn = pseudo_.draw(pseudo_.truth(own, judged.fit), choices, o_.rival_draws, 300 + k);
+      const auto lead = collect(drawn, [](const auto& d) {
+        double least = d.fit[0].q;
+        for (const FitResult& fit : d.fit) least = std::min(least, fit.q);
+        return d.fit[0].q - least;
+      });
+      judged.against_best_p = p_of(lead, excess);
+      judged.goodness_p = p_of(collect(drawn, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
       judged.theta = theta_intervals(p_.data, judged.fit, drawn, 0);
       if (!judged.fit.shares.empty())
         judged.share = interval(collect(drawn, [](const auto& d) { return d.fit[0].shares[0]; }), judged.fit.shares[0]);
@@ -201,13 +237,13 @@ class Namer {
       const FitResult fit = pseudo_.fit(choices[k + 1]);
       if (alone.q - fit.q > most) most = alone.q - fit.q, pair.second = others[k], pair.fit = fit;
     }
-    pair.p = tail(gain, most);
+    pair.p = p_of(gain, most);
     const FitResult& second = out_.judged[static_cast<std::size_t>(pair.second)].fit;
     const Choice own{pair.second}, both{first, pair.second};
     const auto reverse = pseudo_.draw(pseudo_.truth(own, second), {own, both}, o_.rival_draws, 600);
-    pair.p_first = tail(collect(reverse, [](const auto& d) { return d.fit[0].q - d.fit[1].q; }), second.q - pair.fit.q);
+    pair.p_first = p_of(collect(reverse, [](const auto& d) { return d.fit[0].q - d.fit[1].q; }), second.q - pair.fit.q);
     const auto under = pseudo_.draw(pseudo_.truth(both, pair.fit), {both}, o_.rival_draws, 700);
-    pair.goodness_p = tail(collect(under, [](const auto& d) { return d.fit[0].q; }), pair.fit.q);
+    pair.goodness_p = p_of(collect(under, [](const auto& d) { return d.fit[0].q; }), pair.fit.q);
     out_.pairs.push_back(pair);
   }
 

@@ -5,8 +5,8 @@
 //
 //   y* = m₋r(θ̂*) + c (y_r − m₋r(θ_r)) + ε,   ε ~ recording's covariance,  c² = (1 + h(θ̂))/(1 + h(θ_r))
 //
-// r is a run of the bank without an effect, taken out of the surrogate that made and that fits y*; h are leverages; nuisances in θ̂* are
-// drawn from their priors. So the emulator's error is part of every p-value.
+// r is a run of the bank, without an effect or with that of the model, taken out of the surrogate that made and that fits y*; h are
+// leverages; nuisances in θ̂* are drawn from their priors. So the emulator's error is part of every p-value.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,8 @@ struct Problem {
   BankData data;
   std::vector<Rival> rivals;
   VectorXd observed;
-  MatrixXd covariance;  ///< of the recording, block by condition
+  MatrixXd covariance;          ///< of the recording, block by condition: the weight of the observables
+  std::vector<MatrixXd> noise;  ///< laws that the recording's noise may have; every p is the largest over them. Empty: `covariance`
 };
 
 struct NamingOptions {
@@ -56,6 +57,7 @@ struct Judged {
   double lambda = 0;        ///< s⊥ᵀ Σ⁻¹ s⊥ at full strength
   double lambda_found = 0;  ///< at the fitted share
   bool undetectable = false;
+  int runs = 0;                 ///< of the bank with this candidate; too few: it was not tested
   Interval share;               ///< interval where it was worked out, else equal ends
   std::vector<Interval> theta;  ///< natural units; the same
   double goodness_p = 1;        ///< whether the data look like a draw of this model
@@ -65,8 +67,9 @@ struct Judged {
 /// One observable beside what the retuned base makes of it.
 struct Mismatch {
   Index observable = 0;
-  double z = 0;  ///< in standard deviations of the fitted base's residual
-  double p = 1;  ///< for all observables together
+  double base = 0;  ///< what the retuned base makes of it
+  double z = 0;     ///< in standard deviations of the fitted base's residual
+  double p = 1;     ///< for all observables together
 };
 
 struct Pair {
@@ -79,14 +82,15 @@ struct Pair {
 
 struct Naming {
   FitResult base;
-  double base_p = 1;                 ///< whether the data look like a draw of the base
-  std::vector<Interval> base_theta;  ///< the retuned parameters
-  std::vector<Judged> judged;        ///< one for each rival of the problem
-  int best = -1;                     ///< −1: none is significant
-  std::vector<int> kept;             ///< the best and all that are not rejected against it
-  std::vector<Pair> pairs;           ///< at most one: two effects together
-  std::vector<Mismatch> mismatch;    ///< the largest |z| first
-  MatrixXd covariance;               ///< Σ: recording and surrogate
+  double base_p = 1;                  ///< whether the data look like a draw of the base
+  std::vector<Interval> base_theta;   ///< the retuned parameters
+  std::vector<Judged> judged;         ///< one for each rival of the problem
+  std::vector<std::string> at_limit;  ///< parameters whose retuned value lies at an end of the bank's range
+  int best = -1;                      ///< −1: none is significant
+  std::vector<int> kept;              ///< the best and all that are not rejected against it
+  std::vector<Pair> pairs;            ///< at most one: two effects together
+  std::vector<Mismatch> mismatch;     ///< the largest |z| first
+  MatrixXd covariance;                ///< Σ: recording and surrogate
 };
 
 Naming name_physics(const Problem& problem, const NamingOptions& options);

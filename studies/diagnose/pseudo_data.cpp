@@ -32,21 +32,36 @@ PseudoData::PseudoData(const Problem& problem, const NamingOptions& options)
   const double mean_leverage = static_cast<double>(features_->base_size()) / static_cast<double>(data.rows.size());
   covariance_ = problem.covariance + (1 + mean_leverage) * surrogate_->residual_covariance();
   whitener_ = whitener(covariance_);
-  recording_factor_ = Eigen::LLT<MatrixXd>(problem.covariance).matrixL();
+  for (const MatrixXd& law : problem.noise) noise_factors_.push_back(factor(law));
+  if (noise_factors_.empty()) noise_factors_.push_back(factor(problem.covariance));
+  std::size_t base = 0;
   for (std::size_t r = 0; r < data.rows.size(); ++r) {
-    if (!data.rows[r].effects.empty()) continue;
     LeftOut left;
     std::vector<bool> used = all;
     used[r] = false;
     left.surrogate = std::make_unique<Surrogate>(data, *features_, used);
     const VectorXd u = data.coded(data.rows[r].theta);
-    left.deviation = data.value.row(static_cast<Index>(r)).transpose() - left.surrogate->at(u);
-    left.leverage = left.surrogate->leverage(u);
+    const std::vector<Effect>& effects = data.rows[r].effects;
+    left.deviation = data.value.row(static_cast<Index>(r)).transpose() - left.surrogate->at(u, effects);
+    left.leverage = left.surrogate->leverage(u, effects);
+    left.candidate = effects.empty() ? -1 : effects.front().candidate;
+    base += effects.empty() ? 1 : 0;
     left_out_.push_back(std::move(left));
   }
-  if (left_out_.size() < kLeastBase)
+  if (base < kLeastBase)
     throw config::UserError(
-        fmt::format("the bank has {} finished runs without an effect, the null needs {}; raise bank.base", left_out_.size(), kLeastBase));
+        fmt::format("the bank has {} finished runs without an effect, the null needs {}; raise bank.base", base, kLeastBase));
+}
+
+/// Runs whose deviations stand for the surrogate's error under a truth: those without an effect, and those with the effects that it has.
+std::vector<const PseudoData::LeftOut*> PseudoData::fitting(const Truth& truth) const {
+  std::vector<const LeftOut*> out;
+  for (const LeftOut& left : left_out_) {
+    const bool has =
+        std::any_of(truth.effects.begin(), truth.effects.end(), [&](const Effect& e) { return e.candidate == left.candidate; });
+    if (left.candidate < 0 || has) out.push_back(&left);
+  }
+  return out;
 }
 
 Model PseudoData::model(const Surrogate& surrogate, const Choice& choice) const {
@@ -62,33 +77,38 @@ Model PseudoData::model(const Surrogate& surrogate, const Choice& choice) const 
 
 FitResult PseudoData::fit(const Choice& choice) const { return model(*surrogate_, choice).fit(problem_.observed); }
 
-Truth PseudoData::truth(const Choice& choice, const FitResult& fit) const { return {fit.coded, model(*surrogate_, choice).effects(fit)}; }
+Truth PseudoData::truth(const Choice& choice, const FitResult& fit) const {
+  Truth truth{fit.coded, model(*surrogate_, choice).effects(fit), -1};
+  for (const int r : choice) truth.freed = std::max(truth.freed, problem_.rivals[static_cast<std::size_t>(r)].freed);
+  return truth;
+}
 
-VectorXd PseudoData::pseudo_recording(const LeftOut& left, const Truth& truth, emulate::Random& random) const {
+VectorXd PseudoData::pseudo_recording(const LeftOut& left, const Truth& truth, const MatrixXd& noise, emulate::Random& random) const {
   VectorXd u = truth.coded;
   for (Index i = 0; i < u.size(); ++i) {
     const Coordinate& c = problem_.data.theta[static_cast<std::size_t>(i)];
-    if (c.nuisance()) u[i] = std::clamp(c.coded(c.prior_mean + c.prior_sigma * random.normal()), -1.0, 1.0);
+    if (c.nuisance() && i != truth.freed) u[i] = std::clamp(c.coded(c.prior_mean + c.prior_sigma * random.normal()), -1.0, 1.0);
   }
   const double scale = std::sqrt((1 + left.surrogate->leverage(u, truth.effects)) / (1 + left.leverage));
-  return left.surrogate->at(u, truth.effects) + scale * left.deviation + recording_factor_ * random.normals(left.deviation.size());
+  return left.surrogate->at(u, truth.effects) + scale * left.deviation + noise * random.normals(left.deviation.size());
 }
 
 std::vector<PseudoData::Drawn> PseudoData::draw(const Truth& truth, const std::vector<Choice>& choices, int draws,
                                                 std::uint64_t stream) const {
+  const std::vector<const LeftOut*> runs = fitting(truth);
   std::vector<std::vector<Model>> models;  // [left out][choices]
-  for (const LeftOut& left : left_out_) {
+  for (const LeftOut* left : runs) {
     models.emplace_back();
-    for (const Choice& choice : choices) models.back().push_back(model(*left.surrogate, choice));
+    for (const Choice& choice : choices) models.back().push_back(model(*left->surrogate, choice));
   }
   std::vector<Drawn> out(static_cast<std::size_t>(draws));
   studies::for_each_item(out.size(), studies::worker_count(options_.threads, out.size()), [&](std::size_t b, std::size_t) {
     emulate::Random random(options_.seed + stream, b);
-    const std::size_t r = b % left_out_.size();
-    const VectorXd y = pseudo_recording(left_out_[r], truth, random);
+    const std::size_t r = b / laws() % runs.size();
+    const VectorXd y = pseudo_recording(*runs[r], truth, noise_factors_[b % laws()], random);
     for (const Model& m : models[r]) out[b].fit.push_back(m.fit(y));
     const FitResult& first = out[b].fit.front();
-    out[b].residual = y - left_out_[r].surrogate->at(first.coded, models[r].front().effects(first));
+    out[b].residual = y - runs[r]->surrogate->at(first.coded, models[r].front().effects(first));
   });
   return out;
 }

@@ -13,6 +13,7 @@ namespace millscope::diagnose {
 struct Truth {
   VectorXd coded;
   std::vector<Effect> effects;
+  Index freed = -1;  ///< a nuisance that stays where it was fitted; the others are drawn from their priors
 };
 
 /// What is refitted: some rivals of the problem switched on together; none: the base.
@@ -23,13 +24,15 @@ class PseudoData {
   explicit PseudoData(const Problem& problem, const NamingOptions& options);
 
   const Surrogate& surrogate() const { return *surrogate_; }
+  std::size_t laws() const { return noise_factors_.size(); }
   const MatrixXd& covariance() const { return covariance_; }
   const MatrixXd& whitening() const { return whitener_; }
   /// The observations themselves, or draw `b` of `truth`.
   FitResult fit(const Choice& choice) const;
   Truth truth(const Choice& choice, const FitResult& fit) const;
 
-  /// Fits of the choices to one draw each: [draws][choices]. `stream` keeps draws of different questions apart.
+  /// Fits of the choices to one draw each: [draws][choices]. Draw b has the noise of law b % laws(). `stream` keeps draws of different
+  /// questions apart.
   struct Drawn {
     std::vector<FitResult> fit;
     VectorXd residual;  ///< of the first choice: y* − m
@@ -39,11 +42,13 @@ class PseudoData {
  private:
   struct LeftOut {
     std::unique_ptr<Surrogate> surrogate;
-    VectorXd deviation;  ///< y_r − m₋r(θ_r)
+    VectorXd deviation;  ///< y_r − m₋r(θ_r, s_r)
     double leverage = 0;
+    int candidate = -1;  ///< that the run has on
   };
+  std::vector<const LeftOut*> fitting(const Truth& truth) const;
   Model model(const Surrogate& surrogate, const Choice& choice) const;
-  VectorXd pseudo_recording(const LeftOut& left, const Truth& truth, emulate::Random& random) const;
+  VectorXd pseudo_recording(const LeftOut& left, const Truth& truth, const MatrixXd& noise, emulate::Random& random) const;
 
   const Problem& problem_;
   const NamingOptions& options_;
@@ -51,7 +56,8 @@ class PseudoData {
   std::unique_ptr<Surrogate> surrogate_;
   std::vector<ShareRange> ranges_;
   std::vector<LeftOut> left_out_;
-  MatrixXd covariance_, whitener_, recording_factor_;
+  MatrixXd covariance_, whitener_;
+  std::vector<MatrixXd> noise_factors_;
 };
 
 }  // namespace millscope::diagnose

@@ -30,18 +30,22 @@ void add_recorded(const Question& question, const Workshop& workshop, const Bank
   for (const std::size_t c : conditions) n += workshop.recorded[c].value.size();
   problem.observed.resize(n);
   problem.covariance = MatrixXd::Zero(n, n);
+  problem.noise.assign(2, problem.covariance);
   Index at = 0;
   for (const std::size_t c : conditions) {
     const calibrate::Observation& o = workshop.recorded[c];
     const Index size = o.value.size();
     const VectorXd deviation = o.covariance.diagonal().cwiseSqrt();
     problem.observed.segment(at, size) = o.value;
-    problem.covariance.block(at, at, size, size) =
-        0.5 * (o.covariance + MatrixXd(deviation.asDiagonal() * correlation_of(bank, c, size) * deviation.asDiagonal()));
+    MatrixXd own = o.covariance, simulated = deviation.asDiagonal() * correlation_of(bank, c, size) * deviation.asDiagonal();
     for (Index i = 0; i < size; ++i) {
-      if (o.observables[static_cast<std::size_t>(i)].group == "power")
-        problem.covariance(at + i, at + i) += std::pow(question.power_error * o.value[i], 2);
+      if (o.observables[static_cast<std::size_t>(i)].group != "power") continue;
+      const double variance = std::pow(question.power_error * o.value[i], 2);
+      own(i, i) += variance, simulated(i, i) += variance;
     }
+    problem.noise[0].block(at, at, size, size) = own;
+    problem.noise[1].block(at, at, size, size) = simulated;
+    problem.covariance.block(at, at, size, size) = 0.5 * (own + simulated);
     at += size;
   }
 }
@@ -59,7 +63,7 @@ std::vector<Rival> rivals_of(const Question& question) {
   std::vector<Rival> rivals;
   for (std::size_t j = 0; j < question.candidates.size(); ++j) {
     const Candidate& c = question.candidates[j];
-    rivals.push_back({c.name, static_cast<int>(j), -1, c.range, c.excludes});
+    rivals.push_back({c.name, static_cast<int>(j), -1, c.on_or_off() ? ShareRange{1, 1} : c.range, c.excludes});
   }
   for (std::size_t i = 0; i < question.nuisances.size(); ++i) {
     rivals.push_back({question.nuisances[i].name, -1, static_cast<Index>(question.study.parameters.size() + i), {}, {}});

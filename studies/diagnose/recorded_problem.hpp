@@ -8,10 +8,10 @@
 
 namespace millscope::diagnose {
 
-/// Recordings of some conditions side by side, with their covariance. The sizes of the errors are the recording's own, the power's widened
-/// by that of speed and meter. Correlations between observables lie half-way between the recording's, shrunk towards none because ten or
-/// twenty independent blocks do not tell those of 35 numbers, and those of the simulated beads, the mean over the bank, which know nothing
-/// of the camera's own wander.
+/// Recordings of some conditions side by side. The sizes of their errors are the recordings' own, the power's widened by that of speed
+/// and meter. What is not known well is how the errors of 35 numbers are correlated: a recording has ten or twenty independent blocks and
+/// its correlations are shrunk towards none; those of simulated beads, the mean over the bank, know nothing of the camera's own wander.
+/// Observables are weighed by the mean of both, and p-values hold under either as the law of noise.
 void add_recorded(const Question& question, const Workshop& workshop, const Bank& bank, const std::vector<std::size_t>& conditions,
                   Problem& problem);
 

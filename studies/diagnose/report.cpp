@@ -10,6 +10,7 @@
 namespace millscope::diagnose {
 namespace {
 
+constexpr double kLevel = 0.05;
 constexpr std::size_t kShown = 8;  // rows of the mismatch
 constexpr std::size_t kCells = 4;  // of the missing force, in each condition
 
@@ -39,6 +40,8 @@ void where_it_differs(const Told& t, std::string& out) {
       "## Where the retuned base differs\n\nThe base with its parameters refitted to everything: Q = {:.1f} over {} observables, p = "
       "{:.2g} that a recording of this very model looks as bad.\n\n",
       n.base.q, t.diagnosis.problem.observed.size(), n.base_p);
+  if (n.mismatch.empty() || n.mismatch.front().p > kLevel)
+    out += "No single observable stands out; the largest differences, which chance alone makes as large:\n\n";
   for (std::size_t i = 0; i < std::min(kShown, n.mismatch.size()); ++i) add(out, "{}. {}\n", i + 1, mismatch_sentence(t, n.mismatch[i]));
   out += "\n";
 }
@@ -51,6 +54,7 @@ void what_was_tried(const Told& t, std::string& out) {
   for (std::size_t j = 0; j < d.naming.judged.size(); ++j) {
     const Judged& g = d.naming.judged[j];
     const bool best = static_cast<int>(j) == d.naming.best;
+    if (g.runs == 0 && d.problem.rivals[j].candidate >= 0) continue;
     const std::string against = best ? "the best" : d.naming.best < 0 ? "" : fmt::format("{:.2g}", g.against_best_p);
     add(out, "| {}{}{} | {} | {:.1f} | {:.2g} | {:.1f}{} | {:.0f} % | {} |\n", best ? "**" : "", d.problem.rivals[j].name, best ? "**" : "",
         strength(t, j), g.delta_q, g.p_family, std::sqrt(g.lambda), g.undetectable ? ", cannot be seen" : "", 100 * (1 - g.kappa), against);
@@ -77,7 +81,8 @@ void parameters(const Told& t, std::string& out) {
     out += "\n";
   }
   out +=
-      "\nFitted to each condition alone (drifting values conceal something, agreeing ones do not):\n\n| condition | parameter | base | "
+      "\nFitted to each condition alone (intervals from the curvature at the optimum, too narrow where two parameters trade places):\n\n| "
+      "condition | parameter | base | "
       "with the named effect |\n|---|---|---|---|\n";
   for (const Alone& a : d.alone) {
     for (std::size_t i = 0; i < t.question.study.parameters.size(); ++i)
@@ -100,6 +105,7 @@ void held_out(const Told& t, std::string& out) {
       add(out, "| {}: {} | {:.2f} | {:.4g} W ({:+.1f} %) | {} |\n", s.prediction.name, s.prediction.sentence, s.misfit, s.prediction.power,
           s.power_percent, compared ? fmt::format("{:.2f} ({:.2f} … {:.2f})", s.improvement, s.low90, s.high90) : "");
     }
+    if (!h.scores.empty()) add(out, "\nA recording of the refitted base would look as bad with p = {:.2g}.\n", h.base_p);
     out += "\n";
   }
 }
@@ -137,13 +143,10 @@ std::string mismatch_sentence(const Told& t, const Mismatch& m) {
       at += o.value.size();
       continue;
     }
-    const double recorded = o.value[m.observable - at];
-    const double error = std::sqrt(t.diagnosis.naming.covariance(m.observable, m.observable));
     return fmt::format(
-        "{}: the recording is {:.1f} standard deviations {} what the retuned base gives ({:.4g} ± {:.2g} {}; p = {:.2g} for all "
-        "observables together).",
-        observable_name(t, m.observable), std::fabs(m.z), m.z > 0 ? "above" : "below", recorded, error,
-        o.observables[static_cast<std::size_t>(m.observable - at)].unit, m.p);
+        "{}: recording {:.4g}, retuned base {:.4g} {}: {:.1f} standard deviations {} (p = {:.2g} for all observables together).",
+        observable_name(t, m.observable), o.value[m.observable - at], m.base,
+        o.observables[static_cast<std::size_t>(m.observable - at)].unit, std::fabs(m.z), m.z > 0 ? "above" : "below", m.p);
   }
   return "";
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "studies/doe/doe.hpp"
 #include "studies/emulate/random.hpp"
@@ -52,13 +53,11 @@ RivalModels::RivalModels(const HeldOutRequest& request, std::size_t held)
 
 VectorXd RivalModels::power_only() const {
   std::vector<Index> powers;
-  Index at = 0;
-  for (const std::size_t c : r_.fit) {
-    for (const calibrate::Observable& o : r_.workshop.recorded[c].observables) {
-      if (o.group == "power") powers.push_back(at);
-      ++at;
-    }
+  const auto& observables = r_.workshop.recorded[r_.fit.front()].observables;
+  for (std::size_t i = 0; i < observables.size(); ++i) {
+    if (observables[i].group == "power") powers.push_back(static_cast<Index>(i));
   }
+  if (powers.empty()) return {};
   return retuned_to_power(r_.problem.data, *surrogate_, r_.problem.observed, r_.naming.covariance, powers);
 }
 
@@ -83,7 +82,8 @@ Index RivalModels::partner(Index i, std::size_t fitted) const {
 Prediction RivalModels::placebo(const Prediction& base) const {
   const Index n = base.value.size(), m = r_.problem.observed.size();
   const MatrixXd whitening = whitener(r_.naming.covariance);
-  VectorXd sum = VectorXd::Zero(n);
+  VectorXd moved = VectorXd::Zero(n);
+  double least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kPlacebos; ++k) {
     emulate::Random random(r_.seed, static_cast<std::uint64_t>(1000 + k));
     const VectorXd chance = random.normals(n);
@@ -106,11 +106,13 @@ Prediction RivalModels::placebo(const Prediction& base) const {
       size = v.squaredNorm() > 0 ? v.dot(residual) / v.squaredNorm() : 0;
       fit = model.fit(r_.problem.observed - size * fitted);
     }
-    sum += held_surrogate_->at(fit.coded) - held_surrogate_->at(r_.naming.base.coded) + size * held;
+    if (fit.q >= least) continue;
+    least = fit.q;
+    moved = held_surrogate_->at(fit.coded) - held_surrogate_->at(r_.naming.base.coded) + size * held;
   }
   Prediction p = base;
   p.name = "placebo", p.simulated = false;
-  p.value += sum / kPlacebos;
+  p.value += moved;
   for (Index i = 0; i < n; ++i) {
     if (r_.workshop.recorded[held_].observables[static_cast<std::size_t>(i)].group == "power") p.power = p.value[i];
   }

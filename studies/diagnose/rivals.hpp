@@ -12,9 +12,10 @@ class RivalModels {
  public:
   RivalModels(const HeldOutRequest& request, std::size_t held);
 
+  /// Coded θ that matches the power of the first fitted condition; empty where no power was recorded there.
   VectorXd power_only() const;
   /// The base's prediction moved by a parameter of no meaning: each observable by a chance number times its error, the same number in all
-  /// conditions, its size fitted together with θ; the mean of several such parameters.
+  /// conditions, its size fitted together with θ; of several such parameters the one that helps the fitted conditions most.
   Prediction placebo(const Prediction& base) const;
   /// The base's prediction with the residuals of the fitted conditions, carried over by kriging in the speed of the mill.
   Prediction discrepancy(const Prediction& base) const;

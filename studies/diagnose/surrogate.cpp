@@ -135,6 +135,11 @@ double Surrogate::leverage(const VectorXd& coded, const std::vector<Effect>& eff
   return x.dot(inverse_ * x);
 }
 
+double Surrogate::leverage_of(const VectorXd& coded, const std::vector<Effect>& effects) const {
+  const VectorXd x = features_->all(coded, effects) - features_->all(coded, {});
+  return x.dot(inverse_ * x);
+}
+
 MatrixXd Surrogate::residual_covariance() const {
   const auto degrees = static_cast<double>(std::max<Index>(1, degrees_));
   // Rows scaled so that their mean square is the unbiased variance of one run.

@@ -37,6 +37,8 @@ class Surrogate {
   VectorXd at(const VectorXd& coded, const std::vector<Effect>& effects = {}) const;
   /// Variance of the prediction over that of one run's residual.
   double leverage(const VectorXd& coded, const std::vector<Effect>& effects = {}) const;
+  /// The same of the difference that effects make.
+  double leverage_of(const VectorXd& coded, const std::vector<Effect>& effects) const;
   const MatrixXd& coefficients() const { return coefficients_; }  ///< features × observables
   const Features& features() const { return *features_; }
   Index degrees() const { return degrees_; }  ///< rows − coefficients

@@ -6,9 +6,12 @@
 #include <cmath>
 
 #include "studies/diagnose/diagnosis.hpp"
+#include "studies/diagnose/visibility.hpp"
 
 namespace millscope::diagnose {
 namespace {
+
+constexpr double kLongest = 1e4;  // times the recording, that are thought of
 
 std::string rival_name(const Diagnosis& d, int rival) { return d.problem.rivals[static_cast<std::size_t>(rival)].name; }
 
@@ -54,31 +57,57 @@ std::string to_separate(const Question& q, const Workshop& workshop, const Diagn
     const double distance = separation(q, workshop, d, c, best, other);
     if (distance > most) most = distance, where = c;
   }
-  const double factor = noise_units * noise_units / std::max(most, 1e-12);
   return fmt::format(
-      "Of the conditions that were simulated, '{}' separates {} from {} best: {:.1f} noise units with the {:.0f} s recorded there{}.",
-      q.study.conditions[where].name, rival_name(d, best), rival_name(d, other), std::sqrt(most), workshop.recorded[where].bead_seconds,
-      factor > 1 ? fmt::format("; {:.2g} times as long a recording would give {:.0f}", factor, noise_units) : "");
+      "Of the conditions that were simulated, '{}' separates {} from {} best: {:.1f} noise units with the {:.0f} s recorded there.",
+      q.study.conditions[where].name, rival_name(d, best), rival_name(d, other), std::sqrt(most), workshop.recorded[where].bead_seconds);
+}
+
+/// λ of a candidate if the recordings were longer by a factor; what the surrogate cannot follow stays.
+double lambda_if(const Diagnosis& d, int rival, double longer) {
+  const Features features(d.problem.data);
+  const Surrogate s(d.problem.data, features, std::vector<bool>(d.problem.data.rows.size(), true));
+  const MatrixXd w = whitener(d.problem.covariance / longer + s.residual_covariance());
+  return Visibility(d.problem, s, w, d.naming.base.coded, rival).lambda();
 }
 
 std::string to_see(const Workshop& workshop, const Diagnosis& d, double noise_units) {
-  double most = 0;
-  std::size_t which = 0;
+  int which = -1;
   for (std::size_t j = 0; j < d.naming.judged.size(); ++j) {
-    if (d.problem.rivals[j].candidate >= 0 && d.naming.judged[j].lambda > most) most = d.naming.judged[j].lambda, which = j;
+    if (d.problem.rivals[j].candidate >= 0 &&
+        (which < 0 || d.naming.judged[j].lambda > d.naming.judged[static_cast<std::size_t>(which)].lambda))
+      which = static_cast<int>(j);
   }
-  if (most <= 0) return "";
-  return fmt::format(
-      "The most visible candidate, {}, stands {:.1f} noise units out at its strongest; about {:.2g} times the {:.0f} s recorded would "
-      "bring it to {:.0f}.",
-      d.problem.rivals[which].name, std::sqrt(most), noise_units * noise_units / most, seconds(workshop, d.fit), noise_units);
+  if (which < 0) return "";
+  double longer = 1;
+  while (longer < kLongest && std::sqrt(lambda_if(d, which, longer)) < noise_units) longer *= 1.25;
+  const std::string now = fmt::format("The most visible candidate, {}, stands {:.1f} noise units out at its strongest",
+                                      rival_name(d, which), std::sqrt(d.naming.judged[static_cast<std::size_t>(which)].lambda));
+  if (longer >= kLongest) return now + "; a longer recording alone would not show it: the bank has to grow (bank.base, bank.each).";
+  return now +
+         fmt::format("; about {:.2g} times the {:.0f} s recorded would bring it to {:.0f}.", longer, seconds(workshop, d.fit), noise_units);
 }
 
 bool held_out_improves(const Diagnosis& d) {
   return !d.held_out.empty() && std::all_of(d.held_out.begin(), d.held_out.end(), [](const HeldOut& h) { return h.improves; });
 }
 
-void nothing_named(const Workshop& workshop, double level, double noise_units, Diagnosis& d) {
+/// What limits the verdict, whatever it is.
+void reservations(Diagnosis& d) {
+  for (const std::string& name : d.naming.at_limit)
+    d.notes.push_back(
+        fmt::format("the retuned {} lies at an end of its range: a wider range might conceal more; widen it and diagnose again", name));
+  for (std::size_t j = 0; j < d.naming.judged.size(); ++j) {
+    if (d.problem.rivals[j].candidate >= 0 && d.naming.judged[j].runs == 0)
+      d.notes.push_back(
+          fmt::format("{} was not tested: none of its simulations came to its end, or it was screened out", d.problem.rivals[j].name));
+  }
+  for (const HeldOut& h : d.held_out) {
+    for (const std::string& f : h.failures) d.notes.push_back("held out, failed: " + f);
+  }
+}
+
+void nothing_named(const std::vector<calibrate::Condition>& conditions, const Workshop& workshop, double level, double noise_units,
+                   Diagnosis& d) {
   const bool blind = std::all_of(d.naming.judged.begin(), d.naming.judged.end(), [](const Judged& j) { return j.undetectable; });
   if (d.naming.base_p <= level) {
     d.verdict = Verdict::outside_library;
@@ -104,12 +133,18 @@ void nothing_named(const Workshop& workshop, double level, double noise_units, D
       "The recordings look like the base with its parameters retuned (p = {:.2g}); no candidate improves on it (smallest family-wise p = "
       "{:.2g}).",
       d.naming.base_p, least);
+  for (const HeldOut& h : d.held_out) {
+    if (h.base_p <= level)
+      d.sentence += fmt::format(" But it does not describe the held-out condition '{}' (p = {:.2g}): something differs there.",
+                                conditions[h.condition].name, h.base_p);
+  }
 }
 
 }  // namespace
 
 void conclude(const Question& q, const Workshop& workshop, double level, double noise_units, Diagnosis& d) {
-  if (d.naming.best < 0) return nothing_named(workshop, level, noise_units, d);
+  reservations(d);
+  if (d.naming.best < 0) return nothing_named(q.study.conditions, workshop, level, noise_units, d);
   const Judged& best = d.naming.judged[static_cast<std::size_t>(d.naming.best)];
   const std::string name = rival_name(d, d.naming.best);
   for (const int k : d.naming.kept) d.named.push_back(rival_name(d, k));
@@ -117,6 +152,7 @@ void conclude(const Question& q, const Workshop& workshop, double level, double 
     const Pair& pair = d.naming.pairs.front();
     if (pair.p <= level && pair.p_first <= level && pair.goodness_p > level) {
       d.named = {name, rival_name(d, pair.second)};
+      d.two_effects = true;
       d.verdict = Verdict::ambiguous;
       d.sentence = fmt::format(
           "Two effects together are asked for: {} and {} (p of the second beside the first {:.2g}, of the first beside the second {:.2g}).",

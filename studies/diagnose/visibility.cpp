@@ -27,11 +27,17 @@ Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const
     const Coordinate& c = problem.data.theta[static_cast<std::size_t>(i)];
     tangent_(n + i, i) = c.nuisance() ? 0.5 * (c.high - c.low) / c.prior_sigma : kFlat;
   }
+  run_noise_ =
+      (whitening * surrogate.residual_covariance() * whitening.transpose()).trace() * static_cast<double>(n - d) / static_cast<double>(n);
   const double full = rival_.freed >= 0 ? 1 : rival_.range.high;
-  const VectorXd s = effect(full);
-  lambda_ = rest(s).squaredNorm();
-  kappa_ = s.squaredNorm() > 0 ? std::sqrt(lambda_ / s.squaredNorm()) : 0;
+  lambda_ = orthogonal(full);
+  const double whole = std::max(0.0, effect(full).squaredNorm() - noise(full));
+  kappa_ = whole > 0 ? std::min(1.0, std::sqrt(lambda_ / whole)) : 0;
   if (rival_.freed >= 0 || rival_.range.low < 0) lambda_ = std::max(lambda_, orthogonal(rival_.freed >= 0 ? -1 : rival_.range.low));
+}
+
+double Visibility::noise(double share) const {
+  return rival_.freed >= 0 ? 0 : run_noise_ * surrogate_.leverage_of(coded_, {{rival_.candidate, share}});
 }
 
 VectorXd Visibility::effect(double share) const {
@@ -49,6 +55,6 @@ VectorXd Visibility::effect(double share) const {
 
 VectorXd Visibility::rest(const VectorXd& s) const { return s - tangent_ * tangent_.completeOrthogonalDecomposition().solve(s); }
 
-double Visibility::orthogonal(double share) const { return rest(effect(share)).squaredNorm(); }
+double Visibility::orthogonal(double share) const { return std::max(0.0, rest(effect(share)).squaredNorm() - noise(share)); }
 
 }  // namespace millscope::diagnose
