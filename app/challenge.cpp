@@ -1,0 +1,137 @@
+// challenge: sets whose physics is drawn and hidden, diagnosed and scored.
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "app/actions.hpp"
+#include "app/commands.hpp"
+#include "app/study_options.hpp"
+#include "kernel/output/file.hpp"
+#include "kernel/output/summary.hpp"
+#include "studies/challenge/make.hpp"
+#include "studies/challenge/page.hpp"
+#include "studies/challenge/run.hpp"
+
+namespace millscope::app {
+namespace {
+
+namespace po = boost::program_options;
+namespace fs = std::filesystem;
+using config::UserError;
+
+void add_runner_options(Options& options, const char* cache) {
+  options.add()("cache", po::value<std::string>()->value_name("DIR"), cache);
+  options.add()("runner", po::value<std::string>()->value_name("local|slurm"), "where simulations run (default: local, or the study's)");
+  options.add()("slots", po::value<int>()->value_name("N"), "simulations at once (default: as many as cores); no influence on results");
+  options.add()("slurm", po::value<std::vector<std::string>>()->value_name("OPTIONS"), "more options for sbatch");
+  options.add()("retry-failed", "run again what failed");
+  options.add()("quiet,q", "print nothing but errors");
+}
+
+campaign::Options campaign_of(const calibrate::SessionOptions& s) {
+  campaign::Options c;
+  c.cache = s.cache;
+  if (!s.runner.empty()) c.runner = s.runner;
+  c.slots = s.slots;
+  c.plugin_directories = s.plugin_directories;
+  c.slurm_options = s.slurm_options;
+  c.quiet = s.quiet;
+  c.retry_failed = s.retry_failed;
+  return c;
+}
+
+/// As it was given, without the place of the program.
+std::string command_text() {
+  std::string out = "millscope";
+  for (std::size_t i = 1; i < command_line.size(); ++i) out += " " + command_line[i];
+  return out;
+}
+
+int make_sets(const Arguments& arguments) {
+  Options options("challenge make CHALLENGE.yaml -o SETS",
+                  "Draws mills with hidden physics, simulates them with another step and law than the study fits with, and writes what a "
+                  "camera would have "
+                  "recorded of them; the answers are sealed. Stopped, it goes on where it was.",
+                  "millscope challenge make configs/mill10/challenge.yaml -o sets");
+  options.positional("CHALLENGE.yaml", "study, camera, truth and sets");
+  options.add()("output,o", po::value<std::string>()->value_name("SETS"), "directory for the sets");
+  add_runner_options(options, "where the truths' simulations are kept (default: SETS/answers/cache)");
+  options.with_overrides("replace a value of the challenge (may be repeated), e.g. --set seed=7");
+  options.with_plugins();
+  if (!options.parse(arguments)) return kDone;
+  const fs::path output = options.text("output");
+  const host::Registry registry = options.registry();
+  const challenge::Challenge what = challenge::read_challenge(options.text("CHALLENGE.yaml"), options.list("set"));
+  const diagnose::Question question = challenge::question_of(what, registry);
+  const calibrate::SessionOptions session = study_session(options, output);
+  challenge::make(what, question, registry, {output, campaign_of(session), session.say});
+  if (!options.has("quiet")) {
+    fmt::print("sets in {}; hash of its manifest: {}\nkeep {} and the seed from those who diagnose\n", output.string(),
+               challenge::manifest_hash(output), (output / "answers").string());
+  }
+  return kDone;
+}
+
+int run_sets(const Arguments& arguments) {
+  Options options("challenge run SETS",
+                  "Diagnoses all sets that have no diagnosis yet, from one bank; a set that fails is noted and the rest goes on.",
+                  "millscope challenge run sets");
+  options.positional("SETS", "what 'challenge make' wrote");
+  add_runner_options(options, "where the bank is kept (default: SETS/cache)");
+  options.add()("draws", po::value<int>()->value_name("N"), "pseudo-recordings behind every p-value (default: 2016)");
+  options.with_plugins();
+  if (!options.parse(arguments)) return kDone;
+  const fs::path sets = options.text("SETS");
+  const host::Registry registry = options.registry();
+  const calibrate::SessionOptions session = study_session(options, "");
+  diagnose::NamingOptions naming;
+  naming.say = session.say;
+  if (options.has("draws")) naming.draws = options.integer("draws");
+  if (naming.draws < 100) throw UserError(fmt::format("--draws {}: give 100 or more", naming.draws));
+  const challenge::RunCount count = challenge::run(sets, registry, session, naming);
+  if (!options.has("quiet"))
+    fmt::print("{} sets diagnosed now, {} before, {} failed; score them: millscope challenge score {}\n", count.done, count.known,
+               count.failed, sets.string());
+  return kDone;
+}
+
+int score_sets(const Arguments& arguments) {
+  Options options("challenge score SETS",
+                  "Opens the sealed answers and counts how often the diagnoses met them: misses as plainly as hits.",
+                  "millscope challenge score sets -o docs/proof.md");
+  options.positional("SETS", "what 'challenge make' wrote and 'challenge run' diagnosed");
+  options.add()("output,o", po::value<std::string>()->value_name("FILE.md"), "page to write (default: SETS/score.md)");
+  options.add()("quiet,q", "print nothing but errors");
+  if (!options.parse(arguments)) return kDone;
+  const fs::path sets = options.text("SETS");
+  const fs::path page = options.has("output") ? fs::path(options.text("output")) : sets / "score.md";
+  if (page.extension() != ".md") throw UserError(fmt::format("--output {}: name a page that ends in .md", page.string()));
+  const std::vector<challenge::Marked> marked = challenge::read_sets(sets);
+  const challenge::Score score = challenge::score(marked);
+  const challenge::Page what{marked, score, command_text(), challenge::manifest_hash(sets)};
+  output::write_file(page, challenge::page_text(what));
+  output::write_json(sets / "score.json", challenge::score_json(what));
+  if (!options.has("quiet")) {
+    fmt::print(
+        "{} of {} sets diagnosed\nfalse alarms             {}\nbest candidate is right  {}\namong those named        {}\nsee {} and {}\n",
+        score.diagnosed, score.sets, challenge::count_text(score.false_alarms), challenge::count_text(score.best_right),
+        challenge::count_text(score.in_class), page.string(), (sets / "score.json").string());
+  }
+  return kDone;
+}
+
+constexpr Action kActions[] = {
+    {"make", "draw mills with hidden physics and record them", make_sets},
+    {"run", "diagnose the sets", run_sets},
+    {"score", "hold the diagnoses against the sealed answers", score_sets},
+};
+
+}  // namespace
+
+int challenge_sets(const Arguments& arguments) {
+  return call_action({"challenge", "Sets with hidden physics: made, diagnosed, scored against sealed answers. Particles are spheres.",
+                      kActions, "millscope challenge make configs/mill10/challenge.yaml -o sets"},
+                     arguments);
+}
+
+}  // namespace millscope::app

@@ -1,0 +1,90 @@
+#include "studies/challenge/draw.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "kernel/config/case.hpp"
+
+namespace millscope::challenge {
+namespace {
+
+constexpr double kMiddle = 0.7;        // of the range: a truth at its end would be fitted at a limit
+constexpr int kTrials = 10000;         // until the constraints hold
+constexpr double kTrackStep = 0.0005;  // s: 2 kHz, impacts are cut short by less
+constexpr std::uint64_t kSeeds = 1000000000;
+constexpr std::uint64_t kConditions = 1000;  // streams kept for the runs of one truth
+
+double draw_nuisance(const diagnose::Nuisance& n, emulate::Random& random) {
+  for (int i = 0; i < kTrials; ++i) {
+    const double value = n.mean + n.sigma * random.normal();
+    if (value >= n.low && value <= n.high) return value;
+  }
+  return n.mean;
+}
+
+Eigen::VectorXd draw_theta(const Challenge& challenge, const diagnose::Question& q, emulate::Random& random) {
+  const auto parameters = static_cast<Eigen::Index>(q.study.parameters.size());
+  Eigen::VectorXd theta(static_cast<Eigen::Index>(q.dimensions()));
+  for (int trial = 0;; ++trial) {
+    for (Eigen::Index i = 0; i < parameters; ++i) {
+      const calibrate::Parameter& p = q.study.parameters[static_cast<std::size_t>(i)];
+      theta[i] = diagnose::rounded(p.low + (p.high - p.low) * (0.5 + kMiddle * (random.uniform() - 0.5)));
+    }
+    if (q.study.allowed(theta.head(parameters))) break;
+    if (trial == kTrials)
+      throw config::UserError(
+          fmt::format("{}: the study's constraints leave nothing of the middle of its ranges", challenge.file.string()));
+  }
+  for (std::size_t i = 0; i < q.nuisances.size(); ++i)
+    theta[parameters + static_cast<Eigen::Index>(i)] = diagnose::rounded(draw_nuisance(q.nuisances[i], random));
+  return theta;
+}
+
+diagnose::Effect draw_effect(const SetsOf& sets, const std::string& name, const diagnose::Question& q, emulate::Random& random) {
+  const auto found = std::find_if(q.candidates.begin(), q.candidates.end(), [&](const auto& c) { return c.name == name; });
+  const double share = found->on_or_off() ? 1 : sets.low + (sets.high - sets.low) * random.uniform();
+  return {static_cast<int>(found - q.candidates.begin()), diagnose::rounded_share(*found, share)};
+}
+
+}  // namespace
+
+std::vector<Truth> draw_truths(const Challenge& challenge, const diagnose::Question& question) {
+  std::vector<Truth> truths;
+  for (const SetsOf& sets : challenge.sets) {
+    for (int i = 0; i < sets.count; ++i) {
+      const std::uint64_t stream = kConditions * (1 + truths.size());
+      emulate::Random random(challenge.seed, stream);
+      Truth t{sets.kind, sets.name, draw_theta(challenge, question, random), {}, sets.settings, stream};
+      for (const std::string& name : sets.hypotheses) t.effects.push_back(draw_effect(sets, name, question, random));
+      truths.push_back(std::move(t));
+    }
+  }
+  emulate::Random order(challenge.seed, 0);
+  for (std::size_t i = truths.size(); i > 1; --i) std::swap(truths[i - 1], truths[order.below(i)]);
+  return truths;
+}
+
+emulate::Random random_of(const Challenge& challenge, const Truth& truth, std::size_t condition) {
+  return emulate::Random(challenge.seed, truth.stream + 1 + condition);
+}
+
+campaign::Simulation simulation_of(const Challenge& challenge, const diagnose::Question& q, const Truth& truth, std::size_t condition,
+                                   const std::string& label) {
+  campaign::Simulation s;
+  s.case_file = q.study.base;
+  s.label = label;
+  s.settings = q.study.conditions[condition].settings;
+  for (std::string& setting : q.settings(truth.theta, truth.effects)) s.settings.push_back(std::move(setting));
+  s.settings.insert(s.settings.end(), challenge.truth.begin(), challenge.truth.end());
+  s.settings.insert(s.settings.end(), truth.settings.begin(), truth.settings.end());
+  const double from = config::read_case(s.case_file.string(), s.settings).time.analyze_from;
+  s.settings.push_back(fmt::format("time.end_s={}", from + challenge.seconds));
+  s.settings.push_back(fmt::format("output.tracks={{beads: {}, every_s: {}}}", challenge.beads, kTrackStep));
+  s.settings.emplace_back("output.frames=~");
+  s.settings.emplace_back("output.vtk=~");
+  s.settings.push_back(fmt::format("seed={}", 1 + random_of(challenge, truth, condition).below(kSeeds)));
+  return s;
+}
+
+}  // namespace millscope::challenge

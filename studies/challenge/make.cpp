@@ -1,0 +1,114 @@
+#include "studies/challenge/make.hpp"
+
+#include <fmt/format.h>
+
+#include "kernel/output/file.hpp"
+#include "studies/challenge/answer.hpp"
+#include "studies/challenge/draw.hpp"
+#include "studies/challenge/record.hpp"
+
+namespace millscope::challenge {
+namespace {
+
+namespace fs = std::filesystem;
+using config::UserError;
+using Json = nlohmann::ordered_json;
+
+std::string set_name(std::size_t i) { return fmt::format("set_{:03}", i + 1); }
+
+std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+
+/// The study is included, so that all sets have one bank.
+std::string study_text(const diagnose::Question& q, const fs::path& folder) {
+  const fs::path study = fs::absolute(q.study.file).lexically_proximate(fs::absolute(folder));
+  std::string out = fmt::format("# Recordings of a mill whose physics is not told: which was left out?\ninclude: [{}]\n\nconditions:\n",
+                                quoted(study.string()));
+  for (const calibrate::Condition& c : q.study.conditions) out += fmt::format("  {}: {{recording: r_{}.yaml}}\n", c.name, c.name);
+  return out;
+}
+
+TrueEffect true_effect(const diagnose::Candidate& c, double share) {
+  if (c.on_or_off()) return {c.name, share, "share", share, 0, 1};
+  return {c.name, share, c.parameter, diagnose::rounded(c.value(share)), c.null_value, c.far};
+}
+
+Answer answer_of(const diagnose::Question& q, const Truth& truth, const std::string& set) {
+  Answer a{set, truth.kind, truth.name, {}, {}, Json::object()};
+  for (const diagnose::Effect& e : truth.effects)
+    a.effects.push_back(true_effect(q.candidates[static_cast<std::size_t>(e.candidate)], e.share));
+  const std::vector<diagnose::Coordinate> coordinates = q.coordinates();
+  for (std::size_t i = 0; i < coordinates.size(); ++i) a.theta.emplace_back(coordinates[i].name, truth.theta[static_cast<Eigen::Index>(i)]);
+  return a;
+}
+
+struct Maker {
+  const Challenge& challenge;
+  const diagnose::Question& question;
+  const host::Registry& registry;
+  const fs::path& output;
+  studies::Camera camera;
+
+  /// One condition of a set: what the camera and the meter make of the truth.
+  Json record(const Truth& truth, std::size_t condition, const campaign::Outcome& outcome, const fs::path& folder) const {
+    emulate::Random random = random_of(challenge, truth, condition);
+    random.next();  // the run's own seed
+    const std::uint64_t camera_seed = random.next();
+    const PowerOfRun power = power_of(outcome.folder);
+    const double measured = power.value * (1 + question.power_error * random.normal());
+    RecordingOf what{outcome.folder, folder, "r_" + question.study.conditions[condition].name, believed(question, condition, registry),
+                     camera_seed};
+    what.condition.power = studies::MeasuredPower{measured, power.sem};
+    write_recording(what, camera, registry);
+    return {{"power_W", power.value}, {"measured_power_W", measured}, {"camera_seed", camera_seed}, {"run", outcome.key}};
+  }
+};
+
+void refuse_failed(const std::vector<campaign::Simulation>& simulations, const std::vector<campaign::Outcome>& outcomes) {
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    if (outcomes[i].state == campaign::State::failed)
+      throw UserError(fmt::format("{}: its truth cannot be simulated: {}; correct the challenge and start again, nothing is computed twice",
+                                  simulations[i].label, outcomes[i].message));
+  }
+}
+
+}  // namespace
+
+void make(const Challenge& challenge, const diagnose::Question& question, const host::Registry& registry, MakeOptions options) {
+  const auto say = [&](const std::string& line) {
+    if (options.say) options.say(line);
+  };
+  if (fs::exists(options.output / "manifest.json"))
+    throw UserError(fmt::format("{}: holds sealed sets already; choose another folder", options.output.string()));
+  const Maker maker{challenge, question, registry, options.output, studies::read_camera(challenge.camera, registry)};
+  const std::vector<Truth> truths = draw_truths(challenge, question);
+  const std::size_t conditions = question.study.conditions.size();
+  std::vector<campaign::Simulation> simulations;
+  for (std::size_t t = 0; t < truths.size(); ++t) {
+    for (std::size_t c = 0; c < conditions; ++c)
+      simulations.push_back(
+          simulation_of(challenge, question, truths[t], c, fmt::format("{}, {}", set_name(t), question.study.conditions[c].name)));
+  }
+  fs::create_directories(options.output / "answers");
+  if (options.campaign.cache.empty()) options.campaign.cache = options.output / "answers" / "cache";
+  say(fmt::format("{} sets of {} conditions, {:.4g} s each", truths.size(), conditions, challenge.seconds));
+  const std::vector<campaign::Outcome> outcomes = campaign::run(simulations, options.campaign);
+  refuse_failed(simulations, outcomes);
+  std::vector<Answer> answers;
+  for (std::size_t t = 0; t < truths.size(); ++t) {
+    const fs::path folder = options.output / set_name(t);
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    Answer answer = answer_of(question, truths[t], set_name(t));
+    for (std::size_t c = 0; c < conditions; ++c) {
+      Json& made = answer.made[question.study.conditions[c].name];
+      made = maker.record(truths[t], c, outcomes[t * conditions + c], folder);
+      made["settings"] = simulations[t * conditions + c].settings;
+    }
+    output::write_file(folder / "study.yaml", study_text(question, folder));
+    answers.push_back(std::move(answer));
+    say(fmt::format("made {}", folder.string()));
+  }
+  seal(options.output, answers, question.study.file);
+}
+
+}  // namespace millscope::challenge

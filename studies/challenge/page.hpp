@@ -1,0 +1,29 @@
+// The score as a page for people and as JSON.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "studies/challenge/score.hpp"
+
+namespace millscope::challenge {
+
+struct Page {
+  const std::vector<Marked>& sets;
+  const Score& score;
+  std::string command;   ///< that made it
+  std::string manifest;  ///< hash of the manifest
+};
+
+/// Markdown; every sentence is made from the figures.
+std::string page_text(const Page& page);
+nlohmann::ordered_json score_json(const Page& page);
+
+/// "3 of 4 (75 %; 90 %: 25 … 99 %)"; "none tried".
+std::string count_text(const Count& count);
+/// The tables of the page: of every set, confusion, power, dose, coverage, recovery, gains.
+std::string tables_text(const Page& page);
+
+}  // namespace millscope::challenge

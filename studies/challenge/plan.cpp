@@ -1,0 +1,166 @@
+#include "studies/challenge/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "kernel/config/units.hpp"
+
+namespace millscope::challenge {
+namespace {
+
+namespace fs = std::filesystem;
+using config::between;
+using config::Node;
+
+constexpr int kMostSets = 999;
+constexpr int kMostBeads = 100000;
+
+std::string value_text(const Node& node) {
+  if (node.is_null()) return "~";
+  if (node.is_scalar()) return node.text();
+  std::string out;
+  for (const Node& item : node.items()) out += (out.empty() ? "" : ", ") + item.text();
+  return "[" + out + "]";
+}
+
+/// Leaves of a map as "path=value", paths below it.
+void collect_settings(const Node& node, std::size_t prefix, std::vector<std::string>& out) {
+  if (!node.is_map()) {
+    out.push_back(node.path().substr(prefix) + "=" + value_text(node));
+    return;
+  }
+  for (const std::string& key : node.keys()) collect_settings(node.at(key), prefix, out);
+}
+
+std::vector<std::string> settings_of(const Node& set) {
+  std::vector<std::string> out;
+  if (!set.is_map()) set.fail("is no map; write e.g. {stiffness_factor: 0.01}");
+  collect_settings(set, set.path().size() + 1, out);
+  return out;
+}
+
+Kind read_kind(const Node& node) {
+  const std::string kind = config::read_choice(node, "none|effect|two|outside");
+  return kind == "none" ? Kind::none : kind == "effect" ? Kind::effect : kind == "two" ? Kind::two : Kind::outside;
+}
+
+void read_strength(const Node& node, SetsOf& sets) {
+  const std::vector<Node> ends = node.items();
+  if (ends.size() != 2) node.fail(fmt::format("has {} values; give the least and the largest share, e.g. [0.3, 1]", ends.size()));
+  const auto range = between(-1, 1, "as a share of the prior range");
+  sets.low = config::read_number(ends[0], "1", range);
+  sets.high = config::read_number(ends[1], "1", range);
+  if (!(sets.low <= sets.high)) node.fail("has its lower end above the upper one; turn them round");
+}
+
+SetsOf read_sets(const Node& node) {
+  if (!node.is_map()) node.fail("is no set; write e.g. {kind: none, count: 5}");
+  SetsOf s;
+  s.where = node.where();
+  s.kind = read_kind(node.at("kind", "none, effect, two or outside"));
+  if (const auto count = node.find("count")) s.count = static_cast<int>(config::read_integer(*count, between(1, kMostSets)));
+  switch (s.kind) {
+    case Kind::none:
+      node.expect({"kind", "count"});
+      break;
+    case Kind::effect:
+      node.expect({"kind", "count", "hypothesis", "strength"});
+      s.hypotheses = {node.at("hypothesis", "a hypothesis of the study").text()};
+      break;
+    case Kind::two:
+      node.expect({"kind", "count", "hypotheses", "strength"});
+      for (const Node& item : node.at("hypotheses", "two hypotheses of the study").items()) s.hypotheses.push_back(item.text());
+      if (s.hypotheses.size() != 2 || s.hypotheses[0] == s.hypotheses[1])
+        node.at("hypotheses").fail("is no list of two different hypotheses");
+      break;
+    case Kind::outside:
+      node.expect({"kind", "count", "name", "set"});
+      s.name = node.at("name", "what it is called in the score").text();
+      s.settings = settings_of(node.at("set", "the physics that the study's list lacks"));
+      break;
+  }
+  if (const auto strength = node.find("strength")) read_strength(*strength, s);
+  return s;
+}
+
+fs::path existing_file(const Node& node) {
+  const fs::path file = config::resolve_file(node);
+  if (!fs::is_regular_file(file)) node.fail(fmt::format("is '{}': no such file; check the path", node.text()));
+  return file;
+}
+
+void check_hypothesis(const SetsOf& sets, const std::string& name, const diagnose::Question& question) {
+  std::vector<std::string> names;
+  for (const diagnose::Candidate& c : question.candidates) names.push_back(c.name);
+  const auto found = std::find_if(question.candidates.begin(), question.candidates.end(), [&](const auto& c) { return c.name == name; });
+  if (found == question.candidates.end())
+    throw config::UserError(sets.where, fmt::format("'{}' is no hypothesis of the study; {}", name, config::suggestion(name, names)));
+  if (!found->on_or_off() && (sets.low < found->range.low || sets.high > found->range.high)) {
+    throw config::UserError(sets.where, fmt::format("the strength {:.3g} … {:.3g} of '{}' leaves its range; give shares of {:.3g} … {:.3g}",
+                                                    sets.low, sets.high, name, found->range.low, found->range.high));
+  }
+  for (const std::string& other : sets.hypotheses) {
+    if (std::find(found->excludes.begin(), found->excludes.end(), other) != found->excludes.end())
+      throw config::UserError(sets.where, fmt::format("'{}' and '{}' cannot hold together; choose another pair", name, other));
+  }
+}
+
+}  // namespace
+
+const char* name_of(Kind kind) {
+  switch (kind) {
+    case Kind::none:
+      return "none";
+    case Kind::effect:
+      return "effect";
+    case Kind::two:
+      return "two";
+    case Kind::outside:
+      return "outside";
+  }
+  return "";
+}
+
+Challenge read_challenge(const fs::path& file, const std::vector<std::string>& overrides) {
+  const Node root = config::load_document_with_paths(file.string(), overrides);
+  root.expect({"schema_version", "study", "camera", "seed", "truth", "beads", "seconds", "sets"});
+  if (const auto version = root.find("schema_version")) {
+    if (config::read_integer(*version, between(1, 1e9)) != 1) version->fail("is not 1; this millscope reads version 1");
+  }
+  Challenge c;
+  c.file = file;
+  c.study = existing_file(root.at("study", "the study that is put to the test, as for 'millscope diagnose'"));
+  c.camera = existing_file(root.at("camera", "a camera file, e.g. configs/cameras/study.yaml"));
+  c.seed =
+      static_cast<std::uint64_t>(config::read_integer(root.at("seed", "any number that those who diagnose do not know"), between(0, 9e15)));
+  const Node truth = root.at("truth", "how the mill that makes the sets differs from the fitted one, e.g. {set: {stiffness_factor: 0.01}}");
+  truth.expect({"set"});
+  c.truth = settings_of(truth.at("set", "settings of the case, e.g. {stiffness_factor: 0.01}"));
+  if (const auto node = root.find("beads")) c.beads = static_cast<int>(config::read_integer(*node, between(1, kMostBeads)));
+  if (const auto node = root.find("seconds")) c.seconds = config::read_number(*node, "s", config::positive());
+  const Node sets = root.at("sets", "a list of what is made");
+  int count = 0;
+  for (const Node& item : sets.items()) {
+    c.sets.push_back(read_sets(item));
+    count += c.sets.back().count;
+  }
+  if (count < 1 || count > kMostSets) sets.fail(fmt::format("asks for {} sets; give 1 to {}", count, kMostSets));
+  return c;
+}
+
+diagnose::Question question_of(const Challenge& challenge, const host::Registry& registry) {
+  // A study is read only with recordings that exist; its own file stands for those that are still to be made, and nobody opens it.
+  std::vector<std::string> overrides;
+  const Node conditions = config::load_document_with_paths(challenge.study.string()).at("conditions");
+  for (const std::string& name : conditions.keys())
+    overrides.push_back(fmt::format("conditions.{}.recording={}", name, nlohmann::json(fs::absolute(challenge.study).string()).dump()));
+  diagnose::Question question = diagnose::read_question(challenge.study, overrides, registry);
+  for (const SetsOf& sets : challenge.sets) {
+    for (const std::string& name : sets.hypotheses) check_hypothesis(sets, name, question);
+  }
+  return question;
+}
+
+}  // namespace millscope::challenge

@@ -1,0 +1,88 @@
+// Diagnoses as `run` left them.
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "studies/challenge/score.hpp"
+
+namespace millscope::challenge {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+/// A number that was not finite is null in the file.
+double number(const Json& j) { return j.is_number() ? j.get<double>() : std::numeric_limits<double>::quiet_NaN(); }
+
+Interval interval_from(const Json& j) { return {number(j.at("value")), number(j.at("low90")), number(j.at("high90"))}; }
+
+std::map<std::string, Interval> parameters(const Json& contact, const char* which) {
+  std::map<std::string, Interval> out;
+  if (!contact.contains(which)) return out;
+  for (const auto& [name, value] : contact.at(which).items()) out[name] = interval_from(value);
+  return out;
+}
+
+std::vector<Gain> gains_from(const Json& held_out) {
+  std::vector<Gain> out;
+  for (const Json& h : held_out) {
+    for (const Json& model : h.at("models")) {
+      if (model.contains("improvement_of_corrected"))
+        out.push_back({h.at("condition"), model.at("model"), interval_from(model.at("improvement_of_corrected"))});
+    }
+  }
+  return out;
+}
+
+Found found_from(const Json& j) {
+  Found f;
+  f.verdict = j.at("verdict");
+  f.named = j.at("named").get<std::vector<std::string>>();
+  for (const Json& h : j.at("hypotheses")) {
+    Tested t{h.at("name"), h.at("class"), number(h.at("lambda")), {}};
+    const Json& of = h.at("parameters");
+    if (!of.empty()) t.strength = interval_from(of.begin().value());
+    f.hypotheses.push_back(std::move(t));
+  }
+  f.retuned = parameters(j.at("contact_parameters"), "retuned");
+  f.unmasked = parameters(j.at("contact_parameters"), "unmasked");
+  f.gains = gains_from(j.at("held_out"));
+  return f;
+}
+
+}  // namespace
+
+std::optional<Found> read_found(const fs::path& set) {
+  const fs::path file = set / "diagnosis" / "diagnosis.json", failed = set / "diagnosis" / "failed.txt";
+  if (fs::exists(file)) {
+    try {
+      return found_from(Json::parse(bytes_of(file)));
+    } catch (const Json::exception& e) {
+      throw config::UserError(
+          fmt::format("{}: is no diagnosis that can be scored ({}); remove it and run the challenge again", file.string(), e.what()));
+    }
+  }
+  if (!fs::exists(failed)) return std::nullopt;
+  Found f;
+  f.failure = bytes_of(failed);
+  while (!f.failure.empty() && f.failure.back() == '\n') f.failure.pop_back();
+  if (f.failure.empty()) f.failure = "no reason was noted";
+  return f;
+}
+
+std::vector<Marked> read_sets(const fs::path& sets) {
+  std::vector<Marked> out;
+  for (Answer& a : open_answers(sets)) {
+    std::optional<Found> found = read_found(sets / a.set);
+    out.push_back({std::move(a), std::move(found)});
+  }
+  return out;
+}
+
+}  // namespace millscope::challenge

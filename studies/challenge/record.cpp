@@ -1,0 +1,70 @@
+#include "studies/challenge/record.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "kernel/output/file.hpp"
+#include "studies/analysis/mill.hpp"
+#include "studies/analysis/parallel.hpp"
+#include "studies/camera/ctrack_writer.hpp"
+#include "studies/camera/simulated_beads.hpp"
+
+namespace millscope::challenge {
+
+namespace fs = std::filesystem;
+using config::UserError;
+
+namespace {
+
+constexpr std::size_t kLeastPoints = 30;  // of a bead that the camera saw too little of
+
+}  // namespace
+
+studies::Condition believed(const diagnose::Question& q, std::size_t condition, const host::Registry& registry) {
+  std::vector<std::string> settings = q.study.conditions[condition].settings;
+  for (const diagnose::Nuisance& n : q.nuisances) settings.push_back(fmt::format("{}={:.6g}", n.path, n.mean));
+  const studies::MillOfCase mill = studies::read_mill_of_case(q.study.base, registry, settings);
+  const AnalyzerContext& c = mill.context;
+  studies::Condition out;
+  if (c.omega != 0) out.angular_velocity = c.omega, out.speed = std::fabs(c.omega);
+  if (c.filling > 0) out.filling = c.filling, out.porosity = c.porosity;
+  out.bead_diameter = 2 * c.bead_radius;
+  out.bead_density = c.bead_density;
+  if (c.mill_radius > 0) out.mill_diameter = 2 * c.mill_radius;
+  if (mill.period == 0 && c.mill_length > 0) out.mill_length = c.mill_length;
+  return out;
+}
+
+PowerOfRun power_of(const fs::path& run) {
+  std::ifstream in(run / "summary.json", std::ios::binary);
+  const nlohmann::json j = nlohmann::json::parse(in, nullptr, false);
+  const auto power = j.is_object() ? j.value("power_W", nlohmann::json()) : nlohmann::json();
+  if (!power.is_object() || !power.contains("com") || !power["com"].is_number())
+    throw UserError(fmt::format("{}: its summary.json tells no power; the run has not come to its end", run.string()));
+  return {power["com"], power.contains("com_sem") && power["com_sem"].is_number() ? power["com_sem"].get<double>() : 0.0};
+}
+
+void write_recording(const RecordingOf& what, const studies::Camera& camera, const host::Registry& registry) {
+  const studies::SimulatedBeads beads(what.run, registry);
+  const std::size_t count = beads.tracks().size();
+  std::vector<std::string> texts(count);
+  studies::for_each_item(count, studies::worker_count(0, count), [&](std::size_t i, std::size_t) {
+    const studies::Run run = studies::observe(beads.path(i, beads.analyze_from()), camera, beads.context(i, what.seed));
+    if (run.size() >= kLeastPoints) texts[i] = studies::ctrack_text(run);
+  });
+  std::vector<std::string> names;
+  for (const std::string& text : texts) {
+    if (text.empty()) continue;
+    names.push_back(fmt::format("{}_{}.a", what.name, names.size() + 1));
+    output::write_file(what.folder / names.back(), text);
+  }
+  if (names.empty())
+    throw UserError(fmt::format("{}: the camera saw none of the beads for long enough; loosen it, or give more seconds", what.name));
+  output::write_file(what.folder / (what.name + ".yaml"),
+                     studies::recording_text(names, what.condition, "Tracers in one state of a mill, and what is known of it."));
+}
+
+}  // namespace millscope::challenge

@@ -1,0 +1,239 @@
+#include "studies/challenge/score.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <boost/math/distributions/beta.hpp>
+#include <cmath>
+
+namespace millscope::challenge {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kFewForALine = 3;
+
+bool says_missing(const Found& f) { return f.verdict == "named" || f.verdict == "ambiguous" || f.verdict == "outside_library"; }
+
+bool best_is(const Found& f, const std::string& name) {
+  const Tested* best = f.best();
+  return best != nullptr && best->name == name;
+}
+
+/// The share that a value stands for.
+double share_of(const TrueEffect& e, double value) { return (value - e.vanishes_at) / (e.far - e.vanishes_at); }
+
+void score_none(const Marked& m, Score& s) {
+  if (!m.found->failure.empty()) return;
+  s.false_alarms.add(says_missing(*m.found));
+  s.false_names.add(!m.found->named.empty());
+}
+
+/// Returns the size of the class that was named; 0: none.
+std::size_t score_effect(const Marked& m, Score& s) {
+  const Found& f = *m.found;
+  const std::string& truth = m.answer.effects.front().hypothesis;
+  const bool named = f.names(truth);
+  s.named_alone.add(f.verdict == "named" && named && f.named.size() == 1);
+  s.best_right.add(best_is(f, truth));
+  s.in_class.add(named);
+  s.in_class_of_two.add(named && f.named.size() <= 2);
+  s.abstained_on_effect.add(f.verdict == "outside_library");
+  return f.named.size();
+}
+
+void score_two(const Marked& m, Score& s) {
+  const bool first = m.found->names(m.answer.effects[0].hypothesis), second = m.found->names(m.answer.effects[1].hypothesis);
+  s.two_both.add(first && second);
+  s.two_one.add(first || second);
+}
+
+void score_outside(const Found& f, Score& s) {
+  s.outside_abstained.add(f.verdict == "outside_library");
+  s.outside_named.add(!f.named.empty());
+  s.outside_missed.add(f.verdict == "no_mismatch" || f.verdict == "undetectable");
+}
+
+/// λ grows with the square of the share, as far as the effect is linear in it.
+void add_power(const Marked& m, Score& s) {
+  for (const TrueEffect& e : m.answer.effects) {
+    const Tested* tested = m.found->find(e.hypothesis);
+    if (tested == nullptr) continue;
+    const double lambda = tested->lambda * e.share * e.share;
+    for (PowerBin& bin : s.power) {
+      if (lambda >= bin.low && lambda < bin.high) bin.named.add(m.found->names(e.hypothesis) && m.found->named.size() <= 2);
+    }
+  }
+}
+
+void add_dose(const Marked& m, Score& s) {
+  if (m.answer.kind != Kind::effect) return;
+  const TrueEffect& e = m.answer.effects.front();
+  const Tested* tested = m.found->find(e.hypothesis);
+  if (tested == nullptr || !tested->strength) return;
+  s.doses.push_back({m.answer.set, e.hypothesis, e.share, share_of(e, tested->strength->value), m.found->names(e.hypothesis)});
+  if (tested->strength->worked_out()) s.strength.add(tested->strength->holds(e.value));
+}
+
+/// The model that is right for the set: the base where nothing is hidden, the best candidate where that is the truth.
+const std::map<std::string, Interval>* right_parameters(const Marked& m) {
+  if (m.answer.kind == Kind::none) return &m.found->retuned;
+  if (m.answer.kind == Kind::effect && best_is(*m.found, m.answer.effects.front().hypothesis)) return &m.found->unmasked;
+  return nullptr;
+}
+
+void add_theta(const Marked& m, Score& s) {
+  const auto* parameters = right_parameters(m);
+  if (parameters == nullptr) return;
+  for (const auto& [name, truth] : m.answer.theta) {
+    const auto interval = parameters->find(name);
+    if (interval == parameters->end() || !interval->second.worked_out()) continue;
+    auto counted = std::find_if(s.theta.begin(), s.theta.end(), [&, &n = name](const auto& t) { return t.first == n; });
+    if (counted == s.theta.end()) counted = s.theta.insert(s.theta.end(), {name, {}});
+    counted->second.add(interval->second.holds(truth));
+  }
+}
+
+void add_recovery(const Marked& m, Score& s) {
+  if (m.answer.kind != Kind::effect || right_parameters(m) == nullptr) return;
+  for (const auto& [name, truth] : m.answer.theta) {
+    const auto before = m.found->retuned.find(name), after = m.found->unmasked.find(name);
+    if (before == m.found->retuned.end() || after == m.found->unmasked.end()) continue;
+    auto r = std::find_if(s.recovery.begin(), s.recovery.end(), [&, &n = name](const auto& t) { return t.parameter == n; });
+    if (r == s.recovery.end()) r = s.recovery.insert(s.recovery.end(), {name, 0, 0, 0});
+    ++r->sets;
+    r->retuned += (std::fabs(before->second.value - truth) - r->retuned) / r->sets;
+    r->unmasked += (std::fabs(after->second.value - truth) - r->unmasked) / r->sets;
+  }
+}
+
+Line line_of(const std::vector<Dose>& doses) {
+  if (doses.size() < kFewForALine) return {};
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (const Dose& d : doses) n += 1, x += d.truth, y += d.estimate, xx += d.truth * d.truth, xy += d.truth * d.estimate;
+  const double slope = (n * xy - x * y) / (n * xx - x * x);
+  return {slope, (y - slope * x) / n};
+}
+
+/// What is estimated where there is nothing; only of hypotheses whose range the answers tell.
+void add_at_zero(const std::vector<Marked>& sets, Score& s) {
+  std::map<std::string, TrueEffect> known;
+  for (const Marked& m : sets) {
+    for (const TrueEffect& e : m.answer.effects) known.emplace(e.hypothesis, e);
+  }
+  for (const Marked& m : sets) {
+    if (!m.found || m.answer.kind != Kind::none) continue;
+    for (const Tested& t : m.found->hypotheses) {
+      const auto e = known.find(t.name);
+      if (e != known.end() && t.strength) s.at_zero.push_back(share_of(e->second, t.strength->value));
+    }
+  }
+}
+
+/// Held-out gain of the sets with effects in which something right was best.
+void add_gains(const std::vector<Marked>& sets, Score& s) {
+  std::map<std::string, std::vector<Interval>> by_model;
+  for (const Marked& m : sets) {
+    if (!m.found || m.answer.effects.empty()) continue;
+    const bool right =
+        std::any_of(m.answer.effects.begin(), m.answer.effects.end(), [&](const auto& e) { return best_is(*m.found, e.hypothesis); });
+    if (!right) continue;
+    for (const Gain& g : m.found->gains) by_model[g.model].push_back(g.improvement);
+  }
+  for (auto& [model, all] : by_model) {
+    GainCount count{model, {}, 0};
+    for (const Interval& i : all) count.surely.add(i.low90 > 0);
+    std::sort(all.begin(), all.end(), [](const Interval& a, const Interval& b) { return a.value < b.value; });
+    count.median = 0.5 * (all[(all.size() - 1) / 2].value + all[all.size() / 2].value);
+    s.gains.push_back(count);
+  }
+}
+
+std::size_t place(std::vector<std::string>& labels, const std::string& label) {
+  const auto found = std::find(labels.begin(), labels.end(), label);
+  if (found != labels.end()) return static_cast<std::size_t>(found - labels.begin());
+  labels.push_back(label);
+  return labels.size() - 1;
+}
+
+void add_confusion(const std::vector<Marked>& sets, Score& s) {
+  for (const Marked& m : sets) {
+    if (m.found) place(s.truths, label_of(m.answer)), place(s.answers, label_of(*m.found));
+  }
+  std::sort(s.truths.begin(), s.truths.end());
+  std::sort(s.answers.begin(), s.answers.end());
+  s.confusion.assign(s.truths.size(), std::vector<int>(s.answers.size(), 0));
+  for (const Marked& m : sets) {
+    if (m.found) ++s.confusion[place(s.truths, label_of(m.answer))][place(s.answers, label_of(*m.found))];
+  }
+}
+
+}  // namespace
+
+const Tested* Found::find(const std::string& name) const {
+  const auto found = std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Tested& t) { return t.name == name; });
+  return found == hypotheses.end() ? nullptr : &*found;
+}
+
+const Tested* Found::best() const {
+  const auto found = std::find_if(hypotheses.begin(), hypotheses.end(), [](const Tested& t) { return t.class_of == "best"; });
+  return found == hypotheses.end() ? nullptr : &*found;
+}
+
+bool Found::names(const std::string& name) const { return std::find(named.begin(), named.end(), name) != named.end(); }
+
+double upper_bound(const Count& c, double confidence) {
+  if (c.hits >= c.of) return 1;
+  return boost::math::quantile(boost::math::beta_distribution<>(c.hits + 1, c.of - c.hits), confidence);
+}
+
+double lower_bound(const Count& c, double confidence) {
+  if (c.hits == 0) return 0;
+  return boost::math::quantile(boost::math::beta_distribution<>(c.hits, c.of - c.hits + 1), 1 - confidence);
+}
+
+std::string label_of(const Answer& a) {
+  if (a.kind == Kind::none) return "none";
+  if (a.kind == Kind::outside) return "outside: " + a.name;
+  std::string out;
+  for (const TrueEffect& e : a.effects) out += (out.empty() ? "" : " + ") + e.hypothesis;
+  return out;
+}
+
+std::string label_of(const Found& f) {
+  if (!f.failure.empty()) return "failed";
+  return f.named.empty() ? f.verdict : fmt::format("{}: {}", f.verdict, fmt::join(f.named, ", "));
+}
+
+Score score(const std::vector<Marked>& sets) {
+  Score s;
+  s.power = {{0, 3, {}}, {3, 10, {}}, {10, 30, {}}, {30, 100, {}}, {100, kInfinity, {}}};
+  double class_sum = 0;
+  int classes = 0;
+  for (const Marked& m : sets) {
+    ++s.sets;
+    if (!m.found) continue;
+    ++s.diagnosed;
+    if (!m.found->failure.empty()) ++s.failed;
+    if (m.answer.kind == Kind::none) score_none(m, s);
+    if (m.answer.kind == Kind::two) score_two(m, s);
+    if (m.answer.kind == Kind::outside) score_outside(*m.found, s);
+    if (m.answer.kind == Kind::effect) {
+      const std::size_t size = score_effect(m, s);
+      class_sum += static_cast<double>(size);
+      classes += size > 0 ? 1 : 0;
+    }
+    add_power(m, s);
+    add_dose(m, s);
+    add_theta(m, s);
+    add_recovery(m, s);
+  }
+  if (classes > 0) s.mean_class = class_sum / classes;
+  s.line = line_of(s.doses);
+  add_at_zero(sets, s);
+  add_gains(sets, s);
+  add_confusion(sets, s);
+  return s;
+}
+
+}  // namespace millscope::challenge

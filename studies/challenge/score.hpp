@@ -1,0 +1,132 @@
+// How well diagnoses met the answers: nothing but counting, so that every number can be checked by hand.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "studies/challenge/answer.hpp"
+
+namespace millscope::challenge {
+
+struct Interval {
+  double value = 0, low90 = 0, high90 = 0;
+  bool worked_out() const { return high90 > low90; }  ///< diagnosis.json has equal ends where it was not
+  bool holds(double truth) const { return truth >= low90 && truth <= high90; }
+};
+
+/// One hypothesis of a diagnosis.
+struct Tested {
+  std::string name, class_of;  ///< "best", "not rejected", …
+  double lambda = 0;           ///< at full strength
+  std::optional<Interval> strength;
+};
+
+struct Gain {
+  std::string condition, model;  ///< held out; against this model
+  Interval improvement;
+};
+
+/// What a diagnosis says.
+struct Found {
+  std::string failure;  ///< why there is none; else ""
+  std::string verdict;
+  std::vector<std::string> named;
+  std::vector<Tested> hypotheses;
+  std::map<std::string, Interval> retuned, unmasked;  ///< contact parameters and nuisances
+  std::vector<Gain> gains;
+
+  const Tested* find(const std::string& name) const;
+  const Tested* best() const;
+  bool names(const std::string& name) const;
+};
+
+/// A set with its diagnosis; nothing: not diagnosed yet.
+struct Marked {
+  Answer answer;
+  std::optional<Found> found;
+};
+
+/// Reads what `run` left of a set.
+std::optional<Found> read_found(const std::filesystem::path& set);
+/// Answers, held against their hashes, and diagnoses.
+std::vector<Marked> read_sets(const std::filesystem::path& sets);
+
+struct Count {
+  int hits = 0, of = 0;
+  void add(bool hit) { hits += hit ? 1 : 0, ++of; }
+  double share() const { return of > 0 ? static_cast<double>(hits) / of : std::numeric_limits<double>::quiet_NaN(); }
+};
+
+/// Clopper & Pearson 1934: the probability below which `of` trials give more than `hits` with the given confidence, and the one above which
+/// they give fewer. One-sided; 0/59 has an upper bound of 5 % at 95 %.
+double upper_bound(const Count& count, double confidence);
+double lower_bound(const Count& count, double confidence);
+
+struct PowerBin {
+  double low, high;  ///< of lambda
+  Count named;       ///< alone or in a class of two
+};
+
+struct Dose {
+  std::string set, hypothesis;
+  double truth = 0, estimate = 0;  ///< shares of the prior range
+  bool found = false;              ///< the hypothesis is among those named
+};
+
+/// estimate = intercept + slope · truth, least squares.
+struct Line {
+  double slope = std::numeric_limits<double>::quiet_NaN(), intercept = std::numeric_limits<double>::quiet_NaN();
+};
+
+struct GainCount {
+  std::string model;
+  Count surely;       ///< the 90 % interval lies above 0
+  double median = 0;  ///< improvement of the misfit
+};
+
+struct Recovery {
+  std::string parameter;
+  int sets = 0;
+  double retuned = 0, unmasked = 0;  ///< mean |estimate − truth|
+};
+
+struct Score {
+  int sets = 0, diagnosed = 0, failed = 0;
+
+  Count false_alarms;  ///< sets with nothing hidden for which something is said to be missing
+  Count false_names;   ///< and that are given a name
+  Count named_alone;   ///< one effect: the verdict is `named` and right
+  Count best_right;    ///< the best candidate is the truth
+  Count in_class;      ///< the truth is among those named
+  Count in_class_of_two;
+  double mean_class = std::numeric_limits<double>::quiet_NaN();  ///< of the sets with one effect that name something
+  Count abstained_on_effect;                                     ///< outside_library, though the truth is in the list
+  Count two_both, two_one;                                       ///< two effects: both, at least one named
+  Count outside_abstained, outside_named, outside_missed;
+
+  Count strength;                                    ///< truth in the 90 % interval
+  std::vector<std::pair<std::string, Count>> theta;  ///< the same, by parameter
+  std::vector<PowerBin> power;
+  std::vector<Dose> doses;
+  Line line;
+  std::vector<double> at_zero;  ///< estimated shares of hypotheses in sets that hide nothing
+  std::vector<Recovery> recovery;
+  std::vector<GainCount> gains;
+
+  std::vector<std::string> truths, answers;  ///< of the confusion matrix
+  std::vector<std::vector<int>> confusion;
+};
+
+Score score(const std::vector<Marked>& sets);
+
+/// "none", "rolling_resistance", "a + b", "outside: x".
+std::string label_of(const Answer& answer);
+/// The verdict; with its names where there are some: "named: a", "ambiguous: a, b".
+std::string label_of(const Found& found);
+
+}  // namespace millscope::challenge

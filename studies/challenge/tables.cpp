@@ -1,0 +1,112 @@
+// Tables of the page.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+
+#include "studies/challenge/page.hpp"
+
+namespace millscope::challenge {
+namespace {
+
+template <class... Values>
+void add(std::string& out, fmt::format_string<Values...> text, Values&&... values) {
+  fmt::format_to(std::back_inserter(out), text, std::forward<Values>(values)...);
+}
+
+void every_set(const Page& page, std::string& out) {
+  out += "## Every set\n\n| set | hidden | strength (share of the prior range) | diagnosis |\n|---|---|---|---|\n";
+  for (const Marked& m : page.sets) {
+    std::string strength;
+    for (const TrueEffect& e : m.answer.effects) strength += fmt::format("{}{:.2f}", strength.empty() ? "" : ", ", e.share);
+    add(out, "| {} | {} | {} | {}{} |\n", m.answer.set, label_of(m.answer), strength, m.found ? label_of(*m.found) : "not diagnosed yet",
+        m.found && !m.found->failure.empty() ? ": " + m.found->failure : "");
+  }
+  out += "\n";
+}
+
+void confusion(const Score& s, std::string& out) {
+  if (s.answers.empty()) return;
+  out += "## Confusion\n\nRows: what is hidden; columns: what the diagnosis says.\n\n|";
+  for (const std::string& answer : s.answers) add(out, " | {}", answer);
+  out += " |\n|---";
+  for (std::size_t i = 0; i < s.answers.size(); ++i) out += "|---";
+  out += "|\n";
+  for (std::size_t r = 0; r < s.truths.size(); ++r) {
+    add(out, "| {}", s.truths[r]);
+    for (const int count : s.confusion[r]) add(out, " | {}", count == 0 ? "" : std::to_string(count));
+    out += " |\n";
+  }
+  out += "\n";
+}
+
+void power(const Score& s, std::string& out) {
+  out +=
+      "## Power\n\nλ: squared length, in noise units, of the effect's part that no retuning imitates, at the hidden strength; the "
+      "diagnosis' own λ at full "
+      "strength times the squared share.\n\n| λ | named, alone or in a class of two |\n|---|---|\n";
+  for (const PowerBin& b : s.power)
+    add(out, "| {} | {} |\n", std::isfinite(b.high) ? fmt::format("{:g} … {:g}", b.low, b.high) : fmt::format("{:g} and more", b.low),
+        count_text(b.named));
+  out += "\n";
+}
+
+void doses(const Score& s, std::string& out) {
+  out += "## Dose and response\n\n";
+  if (!s.doses.empty()) {
+    out += "| set | hypothesis | hidden share | estimated share | named |\n|---|---|---|---|---|\n";
+    for (const Dose& d : s.doses)
+      add(out, "| {} | {} | {:.2f} | {:.2f} | {} |\n", d.set, d.hypothesis, d.truth, d.estimate, d.found ? "yes" : "no");
+    out += "\n";
+  }
+  if (std::isfinite(s.line.slope)) add(out, "Least squares: estimate = {:.2f} + {:.2f} × hidden share.\n", s.line.intercept, s.line.slope);
+  if (!s.at_zero.empty()) {
+    const double mean = std::accumulate(s.at_zero.begin(), s.at_zero.end(), 0.0) / static_cast<double>(s.at_zero.size());
+    add(out, "Where nothing is hidden, {} fitted shares have a mean of {:.2f} and a maximum of {:.2f}; one-sided ones cannot be below 0.\n",
+        s.at_zero.size(), mean, *std::max_element(s.at_zero.begin(), s.at_zero.end()));
+  }
+  if (s.doses.empty() && s.at_zero.empty()) out += "No strength was estimated.\n";
+  out += "\n";
+}
+
+void coverage(const Score& s, std::string& out) {
+  out += "## Coverage of the 90 % intervals\n\n| of | truth inside |\n|---|---|\n";
+  add(out, "| the hidden strength | {} |\n", count_text(s.strength));
+  for (const auto& [name, count] : s.theta) add(out, "| {} | {} |\n", name, count_text(count));
+  out += "\nParameters: of the base where nothing is hidden, of the corrected model where its physics is the hidden one.\n\n";
+  if (s.recovery.empty()) return;
+  out +=
+      "## Parameters recovered\n\nMean distance from the truth, in the sets with one effect whose best candidate is right.\n\n"
+      "| parameter | sets | retuned base | with the effect |\n|---|---|---|---|\n";
+  for (const Recovery& r : s.recovery) add(out, "| {} | {} | {:.3g} | {:.3g} |\n", r.parameter, r.sets, r.retuned, r.unmasked);
+  out += "\n";
+}
+
+void gains(const Score& s, std::string& out) {
+  out += "## Held-out gain\n\n";
+  if (s.gains.empty()) {
+    out += "No set with a hidden effect has a right best candidate and a held-out condition: no gain was shown.\n";
+    return;
+  }
+  out +=
+      "Where the best candidate is right: by how much the corrected model's misfit on held-out conditions is smaller than that of …\n\n"
+      "| … | surely smaller | median improvement |\n|---|---|---|\n";
+  for (const GainCount& g : s.gains) add(out, "| {} | {} | {:.2f} |\n", g.model, count_text(g.surely), g.median);
+}
+
+}  // namespace
+
+std::string tables_text(const Page& page) {
+  std::string out;
+  every_set(page, out);
+  confusion(page.score, out);
+  power(page.score, out);
+  doses(page.score, out);
+  coverage(page.score, out);
+  gains(page.score, out);
+  return out;
+}
+
+}  // namespace millscope::challenge
