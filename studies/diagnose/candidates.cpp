@@ -78,8 +78,6 @@ void add_plugin(const config::Case& base, const Descriptor& d, Library& library)
     } else if (parameter == nullptr) {
       library.left_out.push_back(
           fmt::format("{}: {} has no parameter '{}'; its author has to correct that", of.name, d.name, of.parameter));
-    } else if (const std::string lacks = missing(base, d, of.parameter); !lacks.empty()) {
-      library.left_out.push_back(fmt::format("{}: needs {}; give it in the base case or under hypotheses.{}.set", of.name, lacks, of.name));
     } else {
       Candidate c{of.name, of.sentence, of.equation,   of.citation,   of.parameter, parameter->unit,
                   {},      {},          of.null_value, of.prior_high, {},           words(of.excludes)};
@@ -91,7 +89,11 @@ void add_plugin(const config::Case& base, const Descriptor& d, Library& library)
       if (parameter->scope == Scope::pair) {
         for (const std::string& key : base.pairs.keys()) c.paths.push_back(fmt::format("pairs.{}.{}", key, of.parameter));
       }
-      library.candidates.push_back(std::move(c));
+      const std::string lacks = missing(base, d, of.parameter);
+      if (!lacks.empty())
+        library.left_out.push_back(
+            fmt::format("{}: needs {}; give it in the base case or under hypotheses.{}.set", of.name, lacks, of.name));
+      (lacks.empty() ? library.candidates : library.incomplete).push_back(std::move(c));
     }
   }
 }

@@ -35,6 +35,7 @@ double rounded(double value);
 /// Candidates of a base case, in alphabetical order, and why others do not apply.
 struct Library {
   std::vector<Candidate> candidates;
+  std::vector<Candidate> incomplete;  ///< need values that the base case lacks
   std::vector<std::string> left_out;  ///< "cohesion: already in the base case"
 };
 

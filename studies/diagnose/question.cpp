@@ -7,11 +7,14 @@
 #include <cmath>
 
 #include "kernel/config/units.hpp"
+#include "kernel/config/writer.hpp"
 
 namespace millscope::diagnose {
 namespace {
 
 using config::Node;
+
+constexpr double kMostPowerError = 0.5;
 
 double number(const Node& node) {
   const config::Quantity q = config::read_quantity(node);
@@ -54,6 +57,14 @@ void collect_settings(const Node& node, std::size_t prefix, std::vector<std::str
   for (const std::string& key : node.keys()) collect_settings(node.at(key), prefix, out);
 }
 
+/// A hypothesis of a plugin that needs values besides, which 'set' may give; else an empty one.
+Candidate incomplete(const Library& library, const std::string& name) {
+  for (const Candidate& c : library.incomplete) {
+    if (c.name == name) return c;
+  }
+  return {};
+}
+
 /// A hypothesis of the study: one of the library with changes, or one of its own.
 Candidate read_candidate(const Node& node, const Library& library) {
   node.expect({"sentence", "equation", "citation", "path", "paths", "without", "range", "set", "excludes"});
@@ -69,7 +80,7 @@ Candidate read_candidate(const Node& node, const Library& library) {
     node.fail(fmt::format("is no hypothesis of a loaded plugin; known: {}; or give it a 'path' with 'without' and 'range', or a 'set'",
                           fmt::join(names, ", ")));
   }
-  Candidate c = known == library.candidates.end() ? Candidate{} : *known;
+  Candidate c = known == library.candidates.end() ? incomplete(library, node.name()) : *known;
   c.name = node.name();
   if (node.has("sentence")) c.sentence = node.at("sentence").text();
   if (c.sentence.empty()) node.fail("has no 'sentence' that says what it means, e.g. The lifters are worn.");
@@ -82,6 +93,7 @@ Candidate read_candidate(const Node& node, const Library& library) {
     c.null_value = number(node.at("without", "the value at which it vanishes"));
   }
   if (node.has("range")) {
+    if (c.on_or_off()) node.at("range").fail("has no 'path' that takes its values; give one, or leave the range out: it is on or off");
     const auto [low, high] = range(node.at("range"));
     const bool downwards = std::fabs(low - c.null_value) > std::fabs(high - c.null_value);
     c.far = downwards ? low : high;
@@ -92,6 +104,63 @@ Candidate read_candidate(const Node& node, const Library& library) {
     node.fail("has a 'path' but no 'range'; give both ends, e.g. [3 mm, 5 mm]");
   }
   return c;
+}
+
+/// The case with some settings, written out; throws config::UserError where plugins or reader refuse it.
+std::string resolved(const calibrate::Study& study, const std::vector<std::string>& settings, const host::Registry& registry) {
+  std::vector<std::string> all = study.conditions[study.with_role(calibrate::Role::fit).front()].settings;
+  all.insert(all.end(), settings.begin(), settings.end());
+  const config::Case c = config::read_case(study.base.string(), all);
+  const std::vector<const Descriptor*> descriptors = registry.descriptors();
+  config::finish(c, descriptors);
+  return config::resolved_yaml(c, descriptors);
+}
+
+void check_nuisance(const Question& q, const Nuisance& n, const host::Registry& registry) {
+  for (const calibrate::Parameter& p : q.study.parameters) {
+    if (p.path == n.path || p.name == n.name)
+      throw config::UserError(n.where,
+                              fmt::format("nuisance '{}' is a parameter, too; keep one of them, or give it another 'name'", n.name));
+  }
+  try {
+    const std::string low = resolved(q.study, {fmt::format("{}={:.17g}", n.path, n.low)}, registry);
+    if (low != resolved(q.study, {fmt::format("{}={:.17g}", n.path, n.high)}, registry)) return;
+  } catch (const config::UserError& e) {
+    throw config::UserError(n.where, fmt::format("nuisance '{}': {}", n.name, e.what()));
+  }
+  throw config::UserError(
+      n.where, fmt::format("nuisance '{}' changes nothing in {}: the case overrides it; leave it out", n.path, q.study.base.string()));
+}
+
+/// Why the candidate gives no case that can be run; "" when it does.
+std::string refused(const Question& q, const Candidate& c, const host::Registry& registry) {
+  try {
+    const std::string without = resolved(q.study, {}, registry);
+    if (c.range.low < 0) resolved(q.study, settings_of(c, c.range.low), registry);
+    if (resolved(q.study, settings_of(c, 1), registry) == without) return "changes nothing in the base case; leave it out";
+  } catch (const config::UserError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+void read_candidates(const Node& node, const Library& library, const host::Registry& registry, Question& q) {
+  for (const std::string& key : node.keys()) {
+    const Node one = node.at(key);
+    q.candidates.push_back(read_candidate(one, library));
+    if (const std::string why = refused(q, q.candidates.back(), registry); !why.empty())
+      throw config::UserError(one.where(), fmt::format("hypothesis '{}': {}", key, why));
+  }
+}
+
+/// Every candidate of the library that gives a case which can be run.
+void take_all(const Library& library, const host::Registry& registry, Question& q) {
+  for (const Candidate& c : library.candidates) {
+    if (const std::string why = refused(q, c, registry); why.empty())
+      q.candidates.push_back(c);
+    else
+      q.left_out.push_back(c.name + ": " + why);
+  }
 }
 
 }  // namespace
@@ -129,13 +198,13 @@ Question read_question(const std::filesystem::path& file, const std::vector<std:
     const config::Case at = config::read_case(q.study.base.string(), c.settings);
     q.speed.push_back(at.mill ? std::fabs(at.mill->speed) : 0.0);
   }
-  Library library = library_of(base, registry);
+  for (const Nuisance& n : q.nuisances) check_nuisance(q, n, registry);
+  const Library library = library_of(base, registry);
   q.left_out = library.left_out;
-  if (const auto node = root.find("hypotheses")) {
-    for (const std::string& key : node->keys()) q.candidates.push_back(read_candidate(node->at(key), library));
-  } else {
-    q.candidates = std::move(library.candidates);
-  }
+  if (const auto node = root.find("hypotheses"))
+    read_candidates(*node, library, registry, q);
+  else
+    take_all(library, registry, q);
   if (const auto node = root.find("bank")) {
     node->expect({"base", "each", "first"});
     const auto whole = [&](const char* key, int standard, double least) {
@@ -144,7 +213,8 @@ Question read_question(const std::filesystem::path& file, const std::vector<std:
     };
     q.bank = {whole("base", 24, 8), whole("each", 10, 1), whole("first", 4, 1)};
   }
-  if (const auto node = root.find("power_error")) q.power_error = number(*node);
+  if (const auto node = root.find("power_error"))
+    q.power_error = config::read_number(*node, "1", config::between(0, kMostPowerError, "it is a share of the power"));
   return q;
 }
 

@@ -23,7 +23,7 @@ double number(const config::Node& node) {
 
 void lifters(const config::GeometryCase& g, std::vector<Candidate>& out) {
   const config::Node& node = g.plugin.node;
-  if (!node.has("lifters") || !node.has("lifter_height")) return;
+  if (!node.has("lifters") || !node.has("lifter_height") || number(node.at("lifters")) < 1) return;
   const std::string at = "geometry." + g.plugin.name + ".";
   const double height = number(node.at("lifter_height"));
   out.push_back({"lifter_wear",
@@ -39,6 +39,8 @@ void lifters(const config::GeometryCase& g, std::vector<Candidate>& out) {
                  {},
                  {}});
   const double angle = node.has("lifter_face_angle") ? number(node.at("lifter_face_angle")) : 60 * kDegree;
+  const double steep = std::min(angle + kAngle, kSteepest), shallow = angle - kAngle;
+  const double far = steep < angle + kAngle ? shallow : steep;
   out.push_back({"lifter_face_angle",
                  "The faces of the lifters stand at another angle than the drawing says.",
                  "",
@@ -48,8 +50,8 @@ void lifters(const config::GeometryCase& g, std::vector<Candidate>& out) {
                  {},
                  {at + "lifter_face_angle"},
                  angle,
-                 std::min(angle + kAngle, kSteepest),
-                 {-kAngle / (std::min(angle + kAngle, kSteepest) - angle), 1},
+                 far,
+                 {std::min(0.0, ((far == steep ? shallow : steep) - angle) / (far - angle)), 1},
                  {}});
 }
 
