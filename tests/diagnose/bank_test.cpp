@@ -1,0 +1,150 @@
+// The bank: which simulations are planned, that it grows without losing one, what becomes of those that fail.
+#include "studies/diagnose/bank.hpp"
+
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "made_up_study.hpp"
+
+using namespace millscope;
+using namespace millscope::diagnose;
+using Catch::WithinRel;
+using Catch::Matchers::Contains;
+using testing::Scratch;
+
+namespace {
+
+const std::string kNuisance = "nuisances: {fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %}}\n";
+const std::string kSections = kNuisance + "hypotheses: {lifter_face_angle: {}, rolling_resistance: {}, end_faces_at_rest: {}}\n";
+
+std::vector<std::string> settings(const Question& q, const BankPoint& p) { return simulation_of(q, p, 0).settings; }
+
+int candidate(const Question& q, const std::string& name) {
+  for (std::size_t j = 0; j < q.candidates.size(); ++j) {
+    if (q.candidates[j].name == name) return static_cast<int>(j);
+  }
+  throw std::runtime_error("no candidate " + name);
+}
+
+}  // namespace
+
+TEST_CASE("a bank that grows keeps every earlier run") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  for (const int group : {-1, 0, 1, 2}) {
+    const auto few = plan_group(q, group, 8), many = plan_group(q, group, 40);
+    REQUIRE(few.size() == 8);
+    REQUIRE(many.size() == 40);
+    for (std::size_t i = 0; i < few.size(); ++i) CHECK(settings(q, few[i]) == settings(q, many[i]));
+  }
+  // A group's runs do not change when other groups come.
+  const Question alone = question_of(folder, kNuisance + "hypotheses: {rolling_resistance: {}}\n");
+  const auto with = plan_group(q, candidate(q, "rolling_resistance"), 5), without = plan_group(alone, 0, 5);
+  for (std::size_t i = 0; i < with.size(); ++i) CHECK(settings(q, with[i]) == settings(alone, without[i]));
+}
+
+TEST_CASE("all runs of a bank differ, each has a seed of its own") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections + "bank: {base: 24, each: 10}\n");
+  const std::vector<BankPoint> points = plan_bank(q);
+  CHECK(points.size() == 24 + 3 * 10);
+  std::set<std::vector<std::string>> different;
+  std::set<std::string> labels, parameters;
+  for (const BankPoint& p : points) {
+    different.insert(settings(q, p));
+    labels.insert(simulation_of(q, p, 0).label);
+    parameters.insert(settings(q, p)[1] + settings(q, p)[2] + settings(q, p)[3]);
+  }
+  CHECK(different.size() == points.size());
+  CHECK(labels.size() == points.size());
+  CHECK(parameters.size() > points.size() / 2);  // θ of different groups need not agree
+  const auto one = simulation_of(q, points[0], 0).settings, other = simulation_of(q, points[0], 1).settings;
+  CHECK(one[0] == "mill.speed=75 %critical");
+  CHECK(other[0] == "mill.speed=60 %critical");
+  CHECK(one.back() != other.back());
+  CHECK(one.back().rfind("seed=", 0) == 0);
+}
+
+TEST_CASE("shares cover what they are meant to, and agree with the rounded values") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  const int rolling = candidate(q, "rolling_resistance"), angle = candidate(q, "lifter_face_angle");
+  double least = 1, most = 0, lowest = 1;
+  for (const BankPoint& p : plan_group(q, rolling, 64)) {
+    REQUIRE(p.effects.size() == 1);
+    const double share = p.effects[0].share;
+    CHECK(share >= 0.1 - 1e-3);
+    CHECK(share <= 1);
+    least = std::min(least, share), most = std::max(most, share);
+    const Candidate& c = q.candidates[static_cast<std::size_t>(rolling)];
+    CHECK_THAT(c.value(share), WithinRel(rounded(c.value(share)), 1e-12));
+  }
+  CHECK(least < 0.2);
+  CHECK(most > 0.9);
+  for (const BankPoint& p : plan_group(q, angle, 64)) lowest = std::min(lowest, p.effects[0].share);
+  CHECK(lowest < -0.8);
+  CHECK(lowest >= q.candidates[static_cast<std::size_t>(angle)].range.low - 1e-3);
+  for (const BankPoint& p : plan_group(q, candidate(q, "end_faces_at_rest"), 8)) CHECK(p.effects[0].share == 1);
+  for (const BankPoint& p : plan_group(q, -1, 8)) CHECK(p.effects.empty());
+}
+
+TEST_CASE("parameters stay within their ranges, have four digits and break no constraint") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections + "constraints: [wall_friction < bead_friction]\n");
+  const auto points = plan_group(q, -1, 40);
+  CHECK(points.size() < 40);
+  CHECK(points.size() > 10);
+  const std::vector<Coordinate> theta = q.coordinates();
+  for (const BankPoint& p : points) {
+    CHECK(p.theta[1] < p.theta[0]);
+    for (Index i = 0; i < p.theta.size(); ++i) {
+      CHECK(p.theta[i] == rounded(p.theta[i]));
+      CHECK(p.theta[i] >= theta[static_cast<std::size_t>(i)].low);
+      CHECK(p.theta[i] <= theta[static_cast<std::size_t>(i)].high);
+    }
+  }
+}
+
+TEST_CASE("a parameter set of which one condition failed is left out, and said") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  MadeUpMill mill(q, {}, {});
+  mill.fails = [](const auto& s) { return s.at("mill.speed") == "60 %critical" && std::stod(s.at("fill.filling")) > 0.315; };
+  const std::vector<BankPoint> points = plan_group(q, -1, 16);
+  const Bank bank = fill_bank(q, mill.workshop(), points, {0, 1});
+  CHECK(mill.computed() == 32);
+  std::size_t failed = 0;
+  for (const BankPoint& p : points) failed += p.theta[2] > 0.315 ? 1 : 0;
+  REQUIRE(failed > 0);
+  REQUIRE(failed < 16);
+  CHECK(bank.failures.size() == failed);
+  CHECK_THAT(bank.failures.front(), Contains("base_") && Contains("speed60: a bead ran away"));
+  const BankData both = data_of(q, bank, {0, 1}), first = data_of(q, bank, {0});
+  CHECK(both.rows.size() == 16 - failed);
+  CHECK(first.rows.size() == 16);
+  CHECK(both.value.cols() == 32);
+  CHECK(both.condition.front() == 0);
+  CHECK(both.condition.back() == 1);
+  CHECK(both.condition.size() == 32);
+  for (const BankRow& row : both.rows) CHECK(row.theta[2] <= 0.315);
+  mill.fails = [](const auto&) { return true; };
+  const Bank none = fill_bank(q, mill.workshop(), points, {0});
+  CHECK_THAT(testing::refusal([&] { data_of(q, none, {0}); }),
+             Contains("no simulation of the bank has come to its end; the first: base_0_speed75: a bead ran away; correct the base case"));
+}
+
+TEST_CASE("numbers stand under their condition when the first parameter set has failed") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  MadeUpMill mill(q, {}, {});
+  const std::vector<BankPoint> points = plan_group(q, -1, 8);
+  const std::string first = settings(q, points[0])[1];
+  mill.fails = [&](const auto& s) {
+    return "pairs.glass~glass.static_friction=" + s.at("pairs.glass~glass.static_friction") == first &&
+           s.at("mill.speed") == "60 %critical";
+  };
+  const BankData data = data_of(q, fill_bank(q, mill.workshop(), points, {0, 1}), {0, 1});
+  REQUIRE(data.condition.size() == 32);
+  CHECK(data.condition[15] == 0);
+  CHECK(data.condition[16] == 1);
+}

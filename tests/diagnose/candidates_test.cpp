@@ -1,0 +1,149 @@
+// What a base case may lack: which hypotheses apply, what switches them on, how far they reach.
+#include "studies/diagnose/candidates.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "kernel/config/writer.hpp"
+#include "made_up_study.hpp"
+
+using namespace millscope;
+using namespace millscope::diagnose;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+const std::string kMill = MILLSCOPE_SOURCE_DIR "/configs/mill10/case.yaml";
+
+Library library(const std::vector<std::string>& settings = {}, const std::string& file = kMill) {
+  return library_of(config::read_case(file, settings), registry());
+}
+
+const Candidate* find(const Library& l, const std::string& name) {
+  for (const Candidate& c : l.candidates) {
+    if (c.name == name) return &c;
+  }
+  return nullptr;
+}
+
+std::string why_not(const Library& l, const std::string& name) {
+  for (const std::string& line : l.left_out) {
+    if (line.rfind(name + ":", 0) == 0) return line.substr(name.size() + 2);
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("hypotheses of plugins that the base lacks apply, others say why they do not") {
+  const Library l = library();
+  for (const char* name : {"adhesion", "air_drag", "capillary_bridge", "cohesion", "fluid_pool", "lubrication", "rolling_friction",
+                           "rolling_resistance", "speed_dependent_friction", "lifter_wear", "lifter_face_angle", "end_faces_at_rest"}) {
+    INFO(name << ": " << why_not(l, name));
+    CHECK(find(l, name) != nullptr);
+  }
+  CHECK(std::is_sorted(l.candidates.begin(), l.candidates.end(), [](const auto& a, const auto& b) { return a.name < b.name; }));
+  CHECK_THAT(why_not(l, "location_blur"), StartsWith("a camera's effect is estimated from the recording itself"));
+  CHECK_THAT(why_not(l, "speed_dependent_restitution"),
+             StartsWith("needs pairs.glass~glass.reference_restitution; give it in the base case or under hypotheses."));
+}
+
+TEST_CASE("what is in the base is no candidate") {
+  const Library l = library({"contact.interactions.roll.kind=rolling_epsd", "pairs.glass~glass.rolling_friction=0.01",
+                             "pairs.glass~liner.rolling_friction=0.01", "body_forces.air.kind=air_drag", "contact.law={kind: jkr}",
+                             "pairs.glass~glass.surface_energy=0.01", "pairs.glass~liner.surface_energy=0.01"});
+  CHECK(find(l, "rolling_resistance") == nullptr);
+  CHECK(why_not(l, "rolling_resistance") == "rolling_epsd is in the base case already");
+  CHECK(why_not(l, "air_drag") == "air_drag is in the base case already");
+  CHECK(why_not(l, "adhesion") == "jkr is in the base case already");
+  CHECK(find(l, "rolling_friction") != nullptr);
+}
+
+TEST_CASE("every candidate gives a case that can be run, at both ends of its range") {
+  const std::vector<const Descriptor*> descriptors = registry().descriptors();
+  for (const Candidate& c : library().candidates) {
+    for (const double share : {c.range.low, c.range.high}) {
+      INFO(c.name << " at " << share);
+      const config::Case with = config::read_case(kMill, settings_of(c, share));
+      CHECK_NOTHROW(config::finish(with, descriptors));
+      CHECK_NOTHROW(config::resolved_yaml(with, descriptors));
+    }
+    CHECK_FALSE(c.sentence.empty());
+    CHECK(c.far != c.null_value);
+  }
+}
+
+TEST_CASE("a parameter of pairs is set for every pair, one of the plugin once") {
+  const Library l = library();
+  REQUIRE(find(l, "rolling_resistance") != nullptr);
+  CHECK(settings_of(*find(l, "rolling_resistance"), 0.25) == std::vector<std::string>{"contact.interactions.rolling_epsd.kind=rolling_epsd",
+                                                                                      "pairs.glass~glass.rolling_friction=0.05",
+                                                                                      "pairs.glass~liner.rolling_friction=0.05"});
+  REQUIRE(find(l, "air_drag") != nullptr);
+  CHECK(settings_of(*find(l, "air_drag"), 1) ==
+        std::vector<std::string>{"body_forces.air_drag.kind=air_drag", "body_forces.air_drag.strength=3"});
+  CHECK(find(l, "rolling_resistance")->excludes == std::vector<std::string>{"rolling_friction"});
+  CHECK(find(l, "capillary_bridge")->excludes == std::vector<std::string>{"cohesion", "adhesion"});
+}
+
+TEST_CASE("a range may go downwards") {
+  const Candidate* c = nullptr;
+  const Library l = library();
+  REQUIRE((c = find(l, "speed_dependent_friction")) != nullptr);
+  CHECK(c->null_value == 1);
+  CHECK(c->far == 0.2);
+  CHECK(c->range.low == 0);
+  CHECK_THAT(c->value(0.5), WithinRel(0.6, 1e-12));
+  CHECK_THAT(settings_of(*c, 1).back(), Contains("kinetic_ratio=0.2"));
+}
+
+TEST_CASE("lifters may be worn, and their faces stand otherwise, to both sides") {
+  const Library l = library();
+  const Candidate *wear = find(l, "lifter_wear"), *angle = find(l, "lifter_face_angle");
+  REQUIRE(wear != nullptr);
+  REQUIRE(angle != nullptr);
+  CHECK(settings_of(*wear, 0) == std::vector<std::string>{"geometry.liner.lifter_height=0.005"});
+  CHECK(settings_of(*wear, 1) == std::vector<std::string>{"geometry.liner.lifter_height=0.003"});
+  const double degree = std::acos(-1.0) / 180;
+  CHECK_THAT(angle->null_value, WithinRel(60 * degree, 1e-12));
+  CHECK_THAT(angle->value(1), WithinRel(75 * degree, 1e-12));
+  CHECK_THAT(angle->value(angle->range.low), WithinRel(45 * degree, 1e-12));
+  // A face that stands at 80 degrees can be steeper by 9 only: the far end is the one below.
+  const Library steep = library({"geometry.liner.lifter_face_angle=80 deg"});
+  REQUIRE(find(steep, "lifter_face_angle") != nullptr);
+  const Candidate& s = *find(steep, "lifter_face_angle");
+  CHECK_THAT(std::min(s.value(1), s.value(s.range.low)), WithinRel(65 * degree, 1e-9));
+  CHECK_THAT(std::max(s.value(1), s.value(s.range.low)), WithinRel(89 * degree, 1e-9));
+  const Library upright = library({"geometry.liner.lifter_face_angle=89 deg"});
+  if (const Candidate* u = find(upright, "lifter_face_angle")) CHECK(std::isfinite(u->range.low));
+  CHECK(find(library({"geometry.liner.lifters=0"}), "lifter_wear") == nullptr);
+}
+
+TEST_CASE("end faces that turn may be at rest, on or off") {
+  const Library l = library();
+  const Candidate* c = find(l, "end_faces_at_rest");
+  REQUIRE(c != nullptr);
+  CHECK(c->on_or_off());
+  CHECK(rounded_share(*c, 1) == 1);
+  const std::vector<std::string> settings = settings_of(*c, 1);
+  REQUIRE(settings.size() == 3);
+  CHECK(settings[0] == "geometry.liner.end_faces=false");
+  CHECK_THAT(settings[2], Contains("point: [0, 0, 0.06]") && Contains("material: liner"));
+  CHECK(find(library({"geometry.liner.end_faces=false"}), "end_faces_at_rest") == nullptr);
+  CHECK(find(library({}, MILLSCOPE_SOURCE_DIR "/configs/demo.yaml"), "end_faces_at_rest") == nullptr);
+}
+
+TEST_CASE("shares stand for values of four digits") {
+  Candidate c;
+  c.paths = {"a"};
+  c.null_value = 0.4, c.far = 0.1;
+  const double share = 0.123456789;
+  CHECK(c.value(rounded_share(c, share)) == Approx(rounded(c.value(share))).epsilon(1e-14));
+  CHECK(settings_of(c, share) == settings_of(c, rounded_share(c, share)));
+  CHECK(rounded(0.123456) == 0.1235);
+  CHECK(rounded(0) == 0);
+  CHECK(rounded(-1234567) == -1235000);
+}

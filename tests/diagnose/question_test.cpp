@@ -1,0 +1,170 @@
+// study.yaml of a diagnosis: what is read, and what is refused with its place.
+#include "studies/diagnose/question.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "made_up_study.hpp"
+
+using namespace millscope;
+using namespace millscope::diagnose;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+using testing::Scratch;
+
+namespace {
+
+/// The message for a study with these sections, from the file's name on; one line.
+std::string refused(const std::string& sections) {
+  const Scratch folder;
+  const std::string message = testing::refusal([&] { question_of(folder, sections); });
+  CHECK(message.find('\n') == std::string::npos);
+  const std::size_t name = message.find("study.yaml:");
+  return name == std::string::npos ? message : message.substr(name);
+}
+
+const Candidate& candidate(const Question& q, const std::string& name) {
+  for (const Candidate& c : q.candidates) {
+    if (c.name == name) return c;
+  }
+  throw std::runtime_error("no candidate " + name);
+}
+
+}  // namespace
+
+TEST_CASE("a question reads as it is written") {
+  const Scratch folder;
+  const Question q =
+      question_of(folder,
+                  "nuisances:\n"
+                  "  fill.filling: {range: [30.4 %, 32.2 %], mean: 31.0 %, sigma: 0.313 %, name: filling}\n"
+                  "  geometry.liner.diameter: {range: [299 mm, 301 mm], sigma: 0.3 mm}\n"
+                  "hypotheses:\n"
+                  "  rolling_resistance: {range: [0, 0.1]}\n"
+                  "  end_faces_at_rest: {}\n"
+                  "  lining: {sentence: The liner is rubber., path: pairs.glass~liner.restitution, without: 0.55, range: [0.2, 0.55]}\n"
+                  "  stiff: {sentence: Softer., equation: k, citation: us, set: {stiffness_factor: 0.002}}\n"
+                  "bank: {base: 30, each: 12, first: 3}\n"
+                  "power_error: 1 %\n");
+  REQUIRE(q.nuisances.size() == 2);
+  CHECK(q.nuisances[0].name == "filling");
+  CHECK(q.nuisances[0].path == "fill.filling");
+  CHECK_THAT(q.nuisances[0].mean, WithinRel(0.31, 1e-12));
+  CHECK_THAT(q.nuisances[0].sigma, WithinRel(0.00313, 1e-12));
+  CHECK(q.nuisances[1].name == "diameter");
+  CHECK_THAT(q.nuisances[1].mean, WithinRel(0.3, 1e-12));
+  CHECK_THAT(q.nuisances[1].low, WithinRel(0.299, 1e-12));
+  REQUIRE(q.candidates.size() == 4);
+  CHECK(candidate(q, "rolling_resistance").far == 0.1);
+  CHECK(candidate(q, "end_faces_at_rest").on_or_off());
+  const Candidate& lining = candidate(q, "lining");
+  CHECK(lining.far == 0.2);
+  CHECK(lining.range.low == 0);
+  CHECK(lining.parameter == "restitution");
+  CHECK(settings_of(lining, 0.5) == std::vector<std::string>{"pairs.glass~liner.restitution=0.375"});
+  CHECK(candidate(q, "stiff").set == std::vector<std::string>{"stiffness_factor=0.002"});
+  CHECK(candidate(q, "stiff").equation == "k");
+  CHECK(q.bank.base == 30);
+  CHECK(q.bank.each == 12);
+  CHECK(q.bank.first == 3);
+  CHECK(q.power_error == 0.01);
+  REQUIRE(q.speed.size() == 3);
+  CHECK_THAT(q.speed[2] / q.speed[0], WithinRel(50.0 / 75, 1e-9));
+  const std::vector<Coordinate> theta = q.coordinates();
+  CHECK(theta[0].name == "bead_friction");
+  CHECK_FALSE(theta[0].nuisance());
+  CHECK(theta[2].nuisance());
+}
+
+TEST_CASE("without a map of hypotheses all that apply are asked, in alphabetical order; standards are those of the documentation") {
+  const Scratch folder;
+  const Question q = question_of(folder, "");
+  CHECK(q.candidates.size() >= 8);
+  CHECK(std::is_sorted(q.candidates.begin(), q.candidates.end(), [](const auto& a, const auto& b) { return a.name < b.name; }));
+  CHECK(q.bank.base == 24);
+  CHECK(q.bank.each == 10);
+  CHECK(q.power_error == 0.005);
+  CHECK_FALSE(q.left_out.empty());
+}
+
+TEST_CASE("settings carry four digits, what is tied goes along, effects come last") {
+  const Scratch folder;
+  const Question q = question_of(folder,
+                                 "nuisances: {fill.filling: {range: [30 %, 32 %], sigma: 0.3 %}}\n"
+                                 "hypotheses: {rolling_resistance: {}}\n");
+  const std::vector<std::string> s = q.settings((VectorXd(3) << 0.123456, 0.3, 0.31).finished(), {{0, 0.5}});
+  CHECK(s[0] == "pairs.glass~glass.static_friction=0.1235");
+  CHECK(s[1] == "pairs.glass~liner.static_friction=0.3");
+  CHECK(s[2] == "fill.filling=0.31");
+  CHECK(s[3] == "contact.interactions.rolling_epsd.kind=rolling_epsd");
+  CHECK(s[4] == "pairs.glass~glass.rolling_friction=0.1");
+  CHECK(s[5] == "pairs.glass~liner.rolling_friction=0.1");
+}
+
+TEST_CASE("a hypothesis that lacks a value of the base takes it from 'set'") {
+  CHECK_THAT(refused("hypotheses:\n  speed_dependent_restitution: {}\n"),
+             StartsWith("study.yaml:10: 'hypotheses.speed_dependent_restitution' does not apply: needs pairs.glass~glass.reference_"));
+  const Scratch folder;
+  const Question q =
+      question_of(folder,
+                  "hypotheses:\n"
+                  "  speed_dependent_restitution:\n"
+                  "    set: {pairs.glass~glass.reference_restitution: 0.8, pairs.glass~liner.reference_restitution: 0.55}\n");
+  const Candidate& c = candidate(q, "speed_dependent_restitution");
+  CHECK_THAT(c.sentence, Contains("Fast impacts"));
+  CHECK(c.paths.front() == "pairs.glass~glass.strength");
+  REQUIRE(c.set.size() == 3);
+  CHECK(c.set[0] == "contact.pair_parameters.restitution_by_speed.kind=restitution_by_speed");
+  CHECK(c.set[1] == "pairs.glass~glass.reference_restitution=0.8");
+}
+
+TEST_CASE("nuisances that cannot be are refused at their line") {
+  const auto nuisance = [](const std::string& text) { return refused("nuisances:\n  fill.filling: " + text + "\n"); };
+  CHECK_THAT(nuisance("31 %"), StartsWith("study.yaml:10: 'nuisances.fill.filling' is no nuisance; write e.g. {range:"));
+  CHECK_THAT(nuisance("{range: [30 %], sigma: 1 %}"), StartsWith("study.yaml:10: ") && Contains("has 1 values; give the lower and the"));
+  CHECK_THAT(nuisance("{range: [32 %, 30 %], sigma: 1 %}"), StartsWith("study.yaml:10: ") && Contains("turn them round"));
+  CHECK_THAT(nuisance("{range: [30 %, 32 %]}"), StartsWith("study.yaml:10: ") && Contains("sigma") && Contains("standard deviation"));
+  CHECK_THAT(nuisance("{range: [30 %, 32 %], sigma: 0}"), StartsWith("study.yaml:10: 'nuisances.fill.filling.sigma' is not above 0"));
+  CHECK_THAT(nuisance("{range: [30 %, 32 %], sigma: -1 %}"), Contains("is not above 0; leave out what is known exactly"));
+  CHECK_THAT(nuisance("{range: [30 %, 32 %], mean: 33 %, sigma: 1 %}"), Contains("mean 0.33 outside the range 0.3 … 0.32"));
+  CHECK_THAT(nuisance("{range: [30 %, 32 %], sigm: 1 %}"), Contains("unknown key 'sigm'") && Contains("sigma"));
+  CHECK_THAT(refused("nuisances:\n  pairs.glass~glass.static_friction: {range: [0.1, 0.6], sigma: 0.1}\n"),
+             StartsWith("study.yaml:10: ") && Contains("is a parameter, too"));
+}
+
+TEST_CASE("hypotheses that cannot be are refused at their line") {
+  const auto hypothesis = [](const std::string& text) { return refused("hypotheses:\n  " + text + "\n"); };
+  CHECK_THAT(hypothesis("roling: {}"), StartsWith("study.yaml:10: 'hypotheses.roling' is no hypothesis of a loaded plugin; known: ") &&
+                                           Contains("rolling_resistance") && Contains("or give it a 'path'"));
+  CHECK_THAT(hypothesis("rolling_resistance: {rang: [0, 1]}"), StartsWith("study.yaml:10: ") && Contains("did you mean 'range'?"));
+  CHECK_THAT(hypothesis("rolling_resistance: {range: [0.05, 0.2]}"),
+             StartsWith("study.yaml:10: 'hypotheses.rolling_resistance.range' does not hold 0, where the effect vanishes"));
+  CHECK_THAT(hypothesis("own: {path: a.b, without: 0, range: [0, 1]}"), StartsWith("study.yaml:10: ") && Contains("has no 'sentence'"));
+  CHECK_THAT(hypothesis("own: {sentence: S., path: a.b, range: [0, 1]}"), StartsWith("study.yaml:10: ") && Contains("without"));
+  CHECK_THAT(hypothesis("own: {sentence: S., path: a.b, without: 0}"), StartsWith("study.yaml:10: ") && Contains("no 'range'"));
+  CHECK_THAT(hypothesis("own: {sentence: S., path: a.b, without: 0, range: [0.2, 1]}"), Contains("does not hold 0"));
+  CHECK_THAT(hypothesis("own: {sentence: S., set: {a.b: 1}, range: [0, 1]}"),
+             StartsWith("study.yaml:10: ") && Contains("has no 'path' that takes its values"));
+  CHECK_THAT(hypothesis("location_blur: {}"), StartsWith("study.yaml:10: ") && Contains("does not apply: a camera's effect"));
+  CHECK_THAT(refused("hypotheses: all\n"), StartsWith("study.yaml:9: 'hypotheses'"));
+}
+
+TEST_CASE("what no value of the case stands behind is refused before anything is simulated") {
+  CHECK_THAT(refused("hypotheses:\n  own: {sentence: S., path: pairs.glass~glass.static_fricton, without: 0, range: [0, 1]}\n"),
+             StartsWith("study.yaml:10: hypothesis 'own'") && Contains("static_friction"));
+  CHECK_THAT(refused("hypotheses:\n  own: {sentence: S., path: pairs.glass~glass.restitution, without: 0.8, range: [0.8, 1.8]}\n"),
+             StartsWith("study.yaml:10: hypothesis 'own'") && Contains("1.8"));
+  CHECK_THAT(refused("nuisances:\n  fill.fillin: {range: [30 %, 32 %], sigma: 1 %}\n"),
+             StartsWith("study.yaml:10: nuisance 'fillin'") && Contains("filling"));
+}
+
+TEST_CASE("a bank and an error of power that cannot be are refused at their line") {
+  CHECK_THAT(refused("bank: {base: 4}\n"), StartsWith("study.yaml:9: 'bank.base'") && Contains("8"));
+  CHECK_THAT(refused("bank: {each: 0}\n"), StartsWith("study.yaml:9: 'bank.each'"));
+  CHECK_THAT(refused("bank: {each: 2.5}\n"), StartsWith("study.yaml:9: 'bank.each'"));
+  CHECK_THAT(refused("bank: {total: 100}\n"), StartsWith("study.yaml:9: ") && Contains("unknown key 'total'"));
+  CHECK_THAT(refused("power_error: -1 %\n"), StartsWith("study.yaml:9: 'power_error'"));
+  CHECK_THAT(refused("power_error: 5\n"), StartsWith("study.yaml:9: 'power_error'"));
+  CHECK_THAT(refused("power_error: much\n"), StartsWith("study.yaml:9: 'power_error'"));
+}
