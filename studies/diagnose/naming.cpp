@@ -99,8 +99,8 @@ class Namer {
     mismatch(drawn);
   }
 
-  /// min-p (Westfall and Young 1993): how often the smallest p of a draw is as small, within each law of noise. A draw is compared with
-  /// the other draws, as the observed value is with all of them.
+  /// min-p (Westfall and Young 1993): how often the smallest p of a draw is as small, within each law of noise. Draws and what was
+  /// observed are ranked together, so that neither has a finer scale.
   void correct_family(const std::vector<std::vector<double>>& delta) {
     const std::size_t laws = pseudo_.laws();
     for (Judged& j : out_.judged) j.p_family = 0;
@@ -109,15 +109,15 @@ class Namer {
       for (std::size_t k = 0; k < delta.size(); ++k) {
         std::vector<double> own;
         for (std::size_t b = law; b < delta[k].size(); b += laws) own.push_back(delta[k][b]);
-        std::vector<double> sorted = own;
-        std::sort(sorted.begin(), sorted.end());
-        const auto others = static_cast<double>(own.size() - 1);
-        const auto above = [&](double value) {
-          return static_cast<double>(sorted.end() - std::lower_bound(sorted.begin(), sorted.end(), value));
+        std::vector<double> pool = own;
+        pool.push_back(out_.judged[k].delta_q);
+        std::sort(pool.begin(), pool.end());
+        const auto p = [&](double value) {
+          return static_cast<double>(pool.end() - std::lower_bound(pool.begin(), pool.end(), value)) / static_cast<double>(pool.size());
         };
         least.resize(own.size(), 1);
-        for (std::size_t b = 0; b < own.size(); ++b) least[b] = std::min(least[b], above(own[b]) / (1 + others));
-        observed.push_back((1 + above(out_.judged[k].delta_q)) / (2 + others));
+        for (std::size_t b = 0; b < own.size(); ++b) least[b] = std::min(least[b], p(own[b]));
+        observed.push_back(p(out_.judged[k].delta_q));
       }
       for (std::size_t k = 0; k < delta.size(); ++k) {
         const auto smaller = std::count_if(least.begin(), least.end(), [&](double p) { return p <= observed[k]; });

@@ -82,6 +82,8 @@ TEST_CASE("a filling beyond its prior is a nuisance, not physics") {
   const Naming n = name_physics(p, quick());
   REQUIRE(n.best == 3);
   CHECK_THAT(n.judged[3].theta[2].value, WithinAbs(0.95, 0.25));
+  CHECK(n.judged[3].theta[2].low90 > 0.3);  // it does not go back to its prior
+  CHECK(n.judged[3].theta[2].high90 >= n.judged[3].theta[2].value);
 }
 
 TEST_CASE("false alarms stay at the level, and p-values are spread evenly where nothing is missing") {
@@ -98,6 +100,32 @@ TEST_CASE("false alarms stay at the level, and p-values are spread evenly where 
   CHECK(alarms <= 8);  // of 60 at 5 %: 3 expected, more than 8 by chance once in 250
   CHECK(below_half >= 15);
   CHECK(below_half <= 48);
+}
+
+TEST_CASE("false alarms stay at the level where errors are correlated in the one way or the other") {
+  int alarms = 0;
+  const int sets = 40;
+  for (int k = 0; k < sets; ++k) {
+    emulate::Random random(78, static_cast<std::uint64_t>(k));
+    Problem p = made_up_problem({}, point(random.uniform() - 0.5, random.uniform() - 0.5, 0.3 * random.normal()), {0, 0, 0},
+                                500 + static_cast<std::uint64_t>(k));
+    const Index n = p.observed.size();
+    const VectorXd together = VectorXd::Ones(n);
+    const MatrixXd correlated = 0.3 * MatrixXd::Identity(n, n) + 0.7 * together * together.transpose();
+    p.observed += 0.7 * (together * random.normal() + 0.3 * random.normals(n));  // beside the independent noise that it has
+    p.noise = {1.5 * MatrixXd::Identity(n, n), MatrixXd::Identity(n, n) + 0.5 * correlated};
+    p.covariance = 0.5 * (p.noise[0] + p.noise[1]);
+    alarms += name_physics(p, quick(240)).best >= 0 ? 1 : 0;
+  }
+  CHECK(alarms <= 6);
+}
+
+TEST_CASE("many candidates pay for their number") {
+  Problem p = made_up_problem({}, point(0, 0, 0), {0, 0, 0}, 8);
+  const Naming n = name_physics(p, quick());
+  for (const Judged& j : n.judged) CHECK(j.p_family >= j.p - 1e-12);
+  const Naming strong = name_physics(made_up_problem({}, point(0, 0, 0), {1, 0, 0}, 9), quick());
+  CHECK(strong.judged[0].p_family > strong.judged[0].p);
 }
 
 TEST_CASE("draws do not depend on the number of threads") {
