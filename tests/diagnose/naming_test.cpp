@@ -78,7 +78,8 @@ TEST_CASE("what friction imitates is concealed, what does nothing is undetectabl
 }
 
 TEST_CASE("a filling beyond its prior is a nuisance, not physics") {
-  const Problem p = made_up_problem({}, point(0.1, 0.1, 0.95), {0, 0, 0}, 5);
+  Problem p = made_up_problem({}, point(0.1, 0.1, 0.95), {0, 0, 0}, 5);
+  p.data.theta[2].prior_sigma = 0.2;
   const Naming n = name_physics(p, quick());
   REQUIRE(n.best == 3);
   CHECK_THAT(n.judged[3].theta[2].value, WithinAbs(0.95, 0.25));
