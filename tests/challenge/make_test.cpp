@@ -1,0 +1,116 @@
+// One tiny make: two sets of a small mill, half a second each.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
+
+#include "studies/challenge/answer.hpp"
+#include "studies/challenge/make.hpp"
+#include "studies/challenge/run.hpp"
+#include "studies/recording/recording.hpp"
+#include "tests/scratch.hpp"
+
+using namespace millscope;
+using namespace millscope::challenge;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kStudy = R"(
+base: )" MILLSCOPE_SOURCE_DIR R"(/configs/demo.yaml
+conditions:
+  fast:
+    set: {beads.glass5.diameter: 10 mm, geometry.liner.length: 40 mm, fill.vessel.length: 40 mm, domain.periodic.z: [0, 40 mm], time.analyze_from_s: 0.05}
+    recording: still_to_be_made.yaml
+    role: fit
+parameters:
+  pairs.glass~glass.static_friction: {name: bead_friction, range: [0.1, 0.6]}
+nuisances:
+  fill.filling: {name: filling, range: [38 %, 42 %], mean: 39.5 %, sigma: 0.4 %}
+hypotheses: {lifter_wear: {}}
+)";
+
+const std::string kChallenge = R"(
+study: study.yaml
+camera: camera.yaml
+seed: 4
+truth: {set: {contact.law.cap: sum, stiffness_factor: 0.001}}
+beads: 6
+seconds: 0.4
+sets: [{kind: none}, {kind: effect, hypothesis: lifter_wear, strength: [0.5, 0.9]}]
+)";
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+struct Made {
+  testing::Scratch folder;
+  host::Registry registry;
+  Challenge challenge;
+  fs::path sets = folder / "sets";
+
+  Made() {
+    std::ofstream(folder / "study.yaml") << kStudy;
+    std::ofstream(folder / "camera.yaml")
+        << "observations: {rate: {kind: sampling, rate: 300 Hz}, noise: {kind: noise, white: [0.4, 0.4, 0.4, mm]}}\n";
+    std::ofstream(folder / "c.yaml") << kChallenge;
+    challenge = read_challenge(folder / "c.yaml");
+  }
+  void make_sets() {
+    MakeOptions options{sets, {}, {}};
+    options.campaign.program = fs::path(MILLSCOPE_BINARY_DIR) / "bin" / "millscope";
+    options.campaign.quiet = true;
+    make(challenge, question_of(challenge, registry), registry, options);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("sets are recordings of drawn mills, and tell nothing of what was drawn") {
+  Made made;
+  made.make_sets();
+  const std::vector<Answer> answers = open_answers(made.sets);
+  REQUIRE(answers.size() == 2);
+  int effects = 0;
+  for (const Answer& a : answers) {
+    effects += a.kind == Kind::effect ? 1 : 0;
+    CHECK(a.theta[0].second > 0.1 + 0.15 * 0.5 - 1e-3);
+    CHECK(a.theta[0].second < 0.6 - 0.15 * 0.5 + 1e-3);
+    const fs::path recording = made.sets / a.set / "r_fast.yaml";
+    const studies::Recording r = studies::read_recording(recording);
+    CHECK(r.runs.size() == 6);
+    CHECK(*r.condition.filling == Approx(0.395));  // as believed
+    CHECK(r.condition.geometry.empty());
+    CHECK(r.condition.power->value == Approx(a.made.at("fast").at("measured_power_W").get<double>()));
+    for (const auto& file : fs::directory_iterator(made.sets / a.set)) {
+      const std::string text = read(file.path());
+      for (const char* word : {"lifter", "seed", "cache", "friction", "stiffness", "answers"}) CHECK(text.find(word) == std::string::npos);
+    }
+  }
+  CHECK(effects == 1);
+  CHECK_NOTHROW(diagnose::read_question(made.sets / "set_001" / "study.yaml", {}, made.registry));
+  CHECK(testing::refusal([&] { made.make_sets(); }).find("holds sealed sets already") != std::string::npos);
+}
+
+TEST_CASE("a set whose diagnosis throws is noted, and the others are tried") {
+  Made made;
+  seal(made.sets, {{"set_001", Kind::none, "", {}, {}, {}}, {"set_002", Kind::none, "", {}, {}, {}}}, made.folder / "study.yaml");
+  const RunCount count = run(made.sets, made.registry, {}, {});
+  CHECK(count.failed == 2);
+  CHECK(read(made.sets / "set_002" / "diagnosis" / "failed.txt").find("study.yaml: no such file") != std::string::npos);
+  fs::create_directories(made.sets / "set_001" / "diagnosis");
+  std::ofstream(made.sets / "set_001" / "diagnosis" / "diagnosis.json") << "{}";
+  CHECK(run(made.sets, made.registry, {}, {}).known == 1);
+}
+
+TEST_CASE("hypotheses that the study does not have are refused") {
+  Made made;
+  made.challenge.sets[1].hypotheses = {"lifter_waer"};
+  CHECK(testing::refusal([&] { question_of(made.challenge, made.registry); }).find("'lifter_waer' is no hypothesis of the study") !=
+        std::string::npos);
+  made.challenge.sets[1].hypotheses = {"lifter_wear"};
+  made.challenge.sets[1].low = -0.5;
+  CHECK(testing::refusal([&] { question_of(made.challenge, made.registry); }).find("leaves its range") != std::string::npos);
+}

@@ -1,0 +1,150 @@
+// The score's arithmetic on diagnoses that were made up, against numbers worked out by hand.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "studies/challenge/page.hpp"
+
+using namespace millscope::challenge;
+using Catch::WithinAbs;
+
+namespace {
+
+TrueEffect rolling(double share) { return {"rolling", share, "mu_r", 0.2 * share, 0, 0.2}; }
+TrueEffect bridge(double share) { return {"bridge", share, "gamma", 10 * share, 0, 10}; }
+
+Answer answer(const std::string& set, Kind kind, std::vector<TrueEffect> effects = {}) {
+  return {set, kind, kind == Kind::outside ? "soft" : "", std::move(effects), {{"friction", 0.3}}, {}};
+}
+
+Found found(const std::string& verdict, std::vector<std::string> named) {
+  Found f;
+  f.verdict = verdict;
+  f.named = std::move(named);
+  return f;
+}
+
+/// Ten sets: three with nothing, one of them rightly; four with one effect, one of which failed; two at once; one outside; one to come.
+std::vector<Marked> ten_sets() {
+  Found right = found("no_mismatch", {});
+  right.hypotheses = {{"rolling", "not needed", 80, Interval{0.02, 0.02, 0.02}}};
+  right.retuned = {{"friction", {0.3, 0.28, 0.32}}};
+  Found alarm = found("named", {"rolling"});
+  alarm.retuned = {{"friction", {0.15, 0.1, 0.2}}};
+  Found rejected = found("outside_library", {});
+  rejected.retuned = {{"friction", {0.1, 0.1, 0.1}}};
+  Found named = found("named", {"rolling"});
+  named.hypotheses = {{"rolling", "best", 80, Interval{0.11, 0.09, 0.13}}, {"bridge", "rejected", 10, Interval{1, 1, 1}}};
+  named.retuned = {{"friction", {0.4, 0.38, 0.42}}};
+  named.unmasked = {{"friction", {0.32, 0.31, 0.35}}};
+  named.gains = {{"slow", "retuned to power", {1.5, 0.5, 2.5}}};
+  Found ambiguous = found("ambiguous", {"bridge", "rolling"});
+  ambiguous.hypotheses = {{"rolling", "not rejected", 80, Interval{0.17, 0.17, 0.17}}, {"bridge", "best", 10, Interval{9, 8, 10}}};
+  Found missed = found("no_mismatch", {});
+  missed.hypotheses = {{"bridge", "not needed", 10, Interval{1, 1, 1}}};
+  Found half = found("named", {"rolling"});
+  half.hypotheses = {{"rolling", "best", 40, Interval{0.1, 0.1, 0.1}}};
+  Found failed;
+  failed.failure = "no camera";
+  return {{answer("s1", Kind::none), right},
+          {answer("s2", Kind::none), alarm},
+          {answer("s3", Kind::none), rejected},
+          {answer("s4", Kind::effect, {rolling(0.5)}), named},
+          {answer("s5", Kind::effect, {rolling(1)}), ambiguous},
+          {answer("s6", Kind::effect, {bridge(0.4)}), missed},
+          {answer("s7", Kind::two, {rolling(0.5), bridge(0.5)}), half},
+          {answer("s8", Kind::outside), found("outside_library", {})},
+          {answer("s9", Kind::effect, {rolling(0.7)}), failed},
+          {answer("s10", Kind::none), std::nullopt}};
+}
+
+void check(const Count& count, int hits, int of) {
+  CHECK(count.hits == hits);
+  CHECK(count.of == of);
+}
+
+}  // namespace
+
+TEST_CASE("bounds of Clopper and Pearson") {
+  CHECK_THAT(upper_bound({0, 59}, 0.95), WithinAbs(1 - std::pow(0.05, 1.0 / 59), 1e-9));
+  CHECK(upper_bound({0, 59}, 0.95) < 0.05);
+  CHECK_THAT(lower_bound({59, 59}, 0.95), WithinAbs(std::pow(0.05, 1.0 / 59), 1e-9));
+  CHECK_THAT(upper_bound({1, 2}, 0.95), WithinAbs(std::sqrt(0.95), 1e-9));
+  CHECK_THAT(lower_bound({1, 2}, 0.95), WithinAbs(1 - std::sqrt(0.95), 1e-9));
+  CHECK(upper_bound({3, 3}, 0.95) == 1);
+  CHECK(lower_bound({0, 3}, 0.95) == 0);
+  CHECK(upper_bound({}, 0.95) == 1);
+}
+
+TEST_CASE("hits, misses and abstentions are counted") {
+  const Score s = score(ten_sets());
+  CHECK(s.sets == 10);
+  CHECK(s.diagnosed == 9);
+  CHECK(s.failed == 1);
+  check(s.false_alarms, 2, 3);
+  check(s.false_names, 1, 3);
+  check(s.named_alone, 1, 4);
+  check(s.best_right, 1, 4);
+  check(s.in_class, 2, 4);
+  check(s.in_class_of_two, 2, 4);
+  check(s.abstained_on_effect, 0, 4);
+  CHECK(s.mean_class == 1.5);
+  check(s.two_both, 0, 1);
+  check(s.two_one, 1, 1);
+  check(s.outside_abstained, 1, 1);
+  check(s.outside_named, 0, 1);
+  check(s.outside_missed, 0, 1);
+}
+
+TEST_CASE("strengths, parameters, power and gains") {
+  const Score s = score(ten_sets());
+  check(s.strength, 1, 1);
+  REQUIRE(s.theta.size() == 1);
+  check(s.theta[0].second, 1, 3);
+  REQUIRE(s.recovery.size() == 1);
+  CHECK_THAT(s.recovery[0].retuned, WithinAbs(0.1, 1e-12));
+  CHECK_THAT(s.recovery[0].unmasked, WithinAbs(0.02, 1e-12));
+  REQUIRE(s.doses.size() == 3);  // 0.5 → 0.55, 1 → 0.85, 0.4 → 0.1
+  CHECK_THAT(s.line.slope, WithinAbs(0.645 / 0.62, 1e-9));
+  CHECK_THAT(s.line.intercept, WithinAbs((1.5 - 1.9 * 0.645 / 0.62) / 3, 1e-9));
+  REQUIRE(s.at_zero.size() == 1);
+  CHECK_THAT(s.at_zero[0], WithinAbs(0.1, 1e-12));
+  check(s.power[0].named, 0, 1);  // λ 1.6
+  check(s.power[1].named, 0, 0);
+  check(s.power[2].named, 2, 2);  // λ 20 and 10
+  check(s.power[3].named, 1, 1);  // λ 80
+  REQUIRE(s.gains.size() == 1);
+  check(s.gains[0].surely, 1, 1);
+  CHECK(s.gains[0].median == 1.5);
+}
+
+TEST_CASE("every diagnosed set stands in the confusion matrix once") {
+  const Score s = score(ten_sets());
+  int sum = 0;
+  for (const auto& row : s.confusion) {
+    for (const int count : row) sum += count;
+  }
+  CHECK(sum == 9);
+  CHECK(s.truths == std::vector<std::string>{"bridge", "none", "outside: soft", "rolling", "rolling + bridge"});
+  CHECK(s.answers == std::vector<std::string>{"ambiguous: bridge, rolling", "failed", "named: rolling", "no_mismatch", "outside_library"});
+  CHECK(s.confusion[3] == std::vector<int>{1, 1, 1, 0, 0});
+}
+
+TEST_CASE("the page says what was missed") {
+  const std::vector<Marked> sets = ten_sets();
+  const Score s = score(sets);
+  const std::string text = page_text({sets, s, "millscope challenge score sets", "cafe"});
+  for (const char* part :
+       {"False alarms: 2 of 3", "`cafe`", "    millscope challenge score sets", "| s9 | rolling | 0.70 | failed: no camera |",
+        "| s6 | bridge | 0.40 | no_mismatch |", "| s10 | none |  | not diagnosed yet |", "1 of 4 (25 %"}) {
+    CAPTURE(part);
+    CHECK(text.find(part) != std::string::npos);
+  }
+  CHECK(score_json({sets, s, "", "cafe"}).at("top_1").at("hits") == 1);
+}
+
+TEST_CASE("a score of nothing is said to be one") {
+  const Score s = score({});
+  CHECK(s.false_alarms.of == 0);
+  CHECK(std::isnan(s.line.slope));
+  CHECK(page_text({{}, s, "", ""}).find("none tried") != std::string::npos);
+}

@@ -1,0 +1,93 @@
+// Sealed answers: what was changed, or is missing, is not scored.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
+
+#include "studies/challenge/score.hpp"
+#include "tests/scratch.hpp"
+
+using namespace millscope::challenge;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void write(const fs::path& file, const std::string& text) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+std::vector<Answer> two_answers() {
+  Answer none{"set_001", Kind::none, "", {}, {{"friction", 0.3}}, {}};
+  Answer worn{"set_002", Kind::effect, "", {{"wear", 0.5, "height", 0.004, 0.005, 0.003}}, {{"friction", 0.2}}, {}};
+  return {none, worn};
+}
+
+const std::string kDiagnosis = R"({"verdict": "named", "named": ["wear"],
+  "hypotheses": [{"name": "wear", "class": "best", "lambda": 40,
+                  "parameters": {"height": {"value": 0.0041, "low90": 0.0039, "high90": 0.0043, "unit": "m", "vanishes_at": 0.005}}}],
+  "contact_parameters": {"retuned": {"friction": {"value": 0.4, "low90": 0.3, "high90": 0.5}},
+                         "unmasked": {"friction": {"value": 0.2, "low90": 0.1, "high90": null}}},
+  "held_out": [{"condition": "slow", "models": [{"model": "corrected"},
+    {"model": "retuned base", "improvement_of_corrected": {"value": 1, "low90": -1, "high90": 3}}]}]})";
+
+}  // namespace
+
+TEST_CASE("sealed answers come back as they were") {
+  const testing::Scratch folder;
+  write(folder / "study.yaml", "base: x");
+  seal(folder.path, two_answers(), folder / "study.yaml");
+  const std::vector<Answer> back = open_answers(folder.path);
+  REQUIRE(back.size() == 2);
+  CHECK(back[1].kind == Kind::effect);
+  CHECK(back[1].effects[0].far == 0.003);
+  CHECK(back[1].theta == two_answers()[1].theta);
+  const std::string hash = manifest_hash(folder.path);
+  seal(folder.path, two_answers(), folder / "study.yaml");
+  CHECK(manifest_hash(folder.path) != hash);  // another salt
+}
+
+TEST_CASE("an answer that was changed afterwards is refused") {
+  const testing::Scratch folder;
+  write(folder / "study.yaml", "base: x");
+  seal(folder.path, two_answers(), folder / "study.yaml");
+  const fs::path file = folder.path / "answers" / "set_002.json";
+  std::string text = read(file);
+  text.replace(text.find("0.004"), 5, "0.003");
+  write(file, text);
+  const std::string message = testing::refusal([&] { read_sets(folder.path); });
+  CHECK(message.find("set_002.json: is not the answer that manifest.json has the hash of") != std::string::npos);
+  fs::remove(file);
+  CHECK(testing::refusal([&] { read_sets(folder.path); }).find("is missing") != std::string::npos);
+}
+
+TEST_CASE("diagnoses are read as they were written; failures with their reason") {
+  const testing::Scratch folder;
+  write(folder / "study.yaml", "base: x");
+  seal(folder.path, two_answers(), folder / "study.yaml");
+  write(folder.path / "set_001" / "diagnosis" / "failed.txt", "the disk was on fire\n");
+  write(folder.path / "set_002" / "diagnosis" / "diagnosis.json", kDiagnosis);
+  const std::vector<Marked> sets = read_sets(folder.path);
+  CHECK(sets[0].found->failure == "the disk was on fire");
+  const Found& f = *sets[1].found;
+  CHECK(f.best()->strength->low90 == 0.0039);
+  CHECK_FALSE(f.unmasked.at("friction").worked_out());  // its end is not a number
+  CHECK(f.gains.size() == 1);
+  const Score s = score(sets);
+  CHECK(s.best_right.hits == 1);
+  CHECK(s.strength.hits == 1);
+  CHECK(s.doses[0].estimate == Approx(0.45));
+  CHECK(s.gains[0].surely.hits == 0);
+  write(folder.path / "set_002" / "diagnosis" / "diagnosis.json", "{}");
+  CHECK(testing::refusal([&] { read_sets(folder.path); }).find("is no diagnosis that can be scored") != std::string::npos);
+}
+
+TEST_CASE("a folder without a manifest is none of sets") {
+  const testing::Scratch folder;
+  CHECK(testing::refusal([&] { read_sets(folder.path); }).find("has no manifest.json") != std::string::npos);
+}
