@@ -146,6 +146,7 @@ HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) {
   for (std::size_t k = 1; k < out.scores.size(); ++k) {
     judge.compare(out.scores[0], out.scores[k], r.seed + k);
     out.improves = out.improves && out.scores[k].low90 > 0;
+    out.contradicts = out.contradicts || out.scores[k].high90 < 0;
   }
   return out;
 }

@@ -34,7 +34,8 @@ struct HeldOut {
   std::vector<Score> scores;  ///< corrected first, where there is one
   double base_p = 1;          ///< that a recording of the refitted base looks as bad
   std::vector<std::string> failures;
-  bool improves = false;  ///< the interval against every rival lies above 0
+  bool improves = false;     ///< the interval against every rival lies above 0
+  bool contradicts = false;  ///< that against some rival lies below 0
 };
 
 /// θ that matches the powers of the fit conditions, nuisances at their priors, as near the middle of the ranges as that allows: the

@@ -87,8 +87,14 @@ std::string to_see(const Workshop& workshop, const Diagnosis& d, double noise_un
          fmt::format("; about {:.2g} times the {:.0f} s recorded would bring it to {:.0f}.", longer, seconds(workshop, d.fit), noise_units);
 }
 
-bool held_out_improves(const Diagnosis& d) {
-  return !d.held_out.empty() && std::all_of(d.held_out.begin(), d.held_out.end(), [](const HeldOut& h) { return h.improves; });
+bool is_nuisance(const Diagnosis& d) { return d.problem.rivals[static_cast<std::size_t>(d.naming.best)].candidate < 0; }
+
+/// Physics has to predict better than every rival. A nuisance beyond its prior and the base refitted to everything differ by the prior
+/// alone, so that both predict alike: there it is enough that no rival predicts surely better.
+bool held_out_confirms(const Diagnosis& d) {
+  return !d.held_out.empty() && std::all_of(d.held_out.begin(), d.held_out.end(), [nuisance = is_nuisance(d)](const HeldOut& h) {
+    return nuisance ? h.failures.empty() && !h.contradicts : h.improves;
+  });
 }
 
 /// What limits the verdict, whatever it is.
@@ -177,7 +183,7 @@ void conclude(const Question& q, const Workshop& workshop, double level, double 
     d.next_experiment = to_separate(q, workshop, d, noise_units);
     return;
   }
-  if (!held_out_improves(d)) {
+  if (!held_out_confirms(d)) {
     d.verdict = Verdict::ambiguous;
     d.sentence =
         fmt::format("{} explains the fitted conditions (family-wise p = {:.2g}), but {}: it is not counted as found.", name, best.p_family,
@@ -188,8 +194,9 @@ void conclude(const Question& q, const Workshop& workshop, double level, double 
     return;
   }
   d.verdict = Verdict::named;
-  d.sentence = fmt::format("{} ({}; family-wise p = {:.2g}; every rival is rejected and the held-out conditions are predicted better.)",
-                           meaning(q, d, d.naming.best), name, best.p_family);
+  d.sentence =
+      fmt::format("{} ({}; family-wise p = {:.2g}; every rival is rejected and the held-out conditions {}.)", meaning(q, d, d.naming.best),
+                  name, best.p_family, is_nuisance(d) ? "do not contradict" : "are predicted better");
 }
 
 }  // namespace millscope::diagnose
