@@ -12,13 +12,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What the study chose besides.
+std::string choices_text(const Question& q) {
+  const calibrate::Observing& o = q.study.observing;
+  std::string out = fmt::format("\nobserve: {{camera: {}, beads: {}, draws: {}", nlohmann::json(o.camera).dump(), o.beads, o.draws);
+  if (o.z_low && o.z_high) fmt::format_to(std::back_inserter(out), ", z: [{:.6g}, {:.6g}]", *o.z_low, *o.z_high);
+  fmt::format_to(std::back_inserter(out), "}}\nbank: {{base: {}, each: {}, first: {}}}\npower_error: {:.6g}\n", q.bank.base, q.bank.each,
+                 q.bank.first, q.power_error);
+  if (!q.study.objective.without.empty())
+    fmt::format_to(std::back_inserter(out), "objective: {{without: [{}]}}\n", fmt::join(q.study.objective.without, ", "));
+  if (!q.study.constraints.empty()) out += "constraints:\n";
+  for (const calibrate::Constraint& c : q.study.constraints)
+    fmt::format_to(std::back_inserter(out), "  - {}\n", nlohmann::json(c.text).dump());
+  return out;
+}
+
 std::string study_text(const Told& t, const fs::path& folder) {
   std::string out = fmt::format("# The study {} on the corrected case.\nschema_version: 1\nbase: case.yaml\n\nconditions:\n",
                                 t.question.study.file.filename().string());
   for (const calibrate::Condition& c : t.question.study.conditions) {
-    fmt::format_to(std::back_inserter(out), "  {}:\n    recording: {}\n    role: {}\n    set:\n", c.name,
+    fmt::format_to(std::back_inserter(out), "  {}:\n    recording: {}\n    role: {}\n{}", c.name,
                    nlohmann::json(fs::absolute(c.recording).lexically_proximate(fs::absolute(folder)).string()).dump(),
-                   c.role == calibrate::Role::fit ? "fit" : "held_out");
+                   c.role == calibrate::Role::fit ? "fit" : "held_out", c.settings.empty() ? "" : "    set:\n");
     for (const std::string& s : c.settings)
       fmt::format_to(std::back_inserter(out), "      {}: {}\n", s.substr(0, s.find('=')), s.substr(s.find('=') + 1));
   }
@@ -30,7 +45,7 @@ std::string study_text(const Told& t, const fs::path& folder) {
   for (const Nuisance& n : t.question.nuisances)
     fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], mean: {:.6g}, sigma: {:.6g}}}\n", n.path, n.name,
                    n.low, n.high, n.mean, n.sigma);
-  return out;
+  return out + choices_text(t.question);
 }
 
 }  // namespace

@@ -43,6 +43,18 @@ std::string class_of(const Diagnosis& d, std::size_t j) {
   return d.naming.judged[j].undetectable ? "undetectable" : d.naming.best >= 0 ? "rejected" : "not needed";
 }
 
+/// Part of the mill that an observable of a fitted condition looks at: names of regional ones are "speed toe".
+std::string region_of(const Told& t, std::size_t condition, Index observable) {
+  Index first = 0;
+  for (const std::size_t c : t.diagnosis.fit) {
+    if (c == condition) break;
+    first += t.workshop.recorded[c].value.size();
+  }
+  const calibrate::Observable& o = t.workshop.recorded[condition].observables[static_cast<std::size_t>(observable - first)];
+  const bool regional = o.group == "occupancy" || o.group == "region_speed";
+  return regional ? o.name.substr(o.name.find(' ') + 1) : "whole mill";
+}
+
 Json hypotheses(const Told& t) {
   Json out = Json::array();
   const Diagnosis& d = t.diagnosis;
@@ -133,6 +145,7 @@ Json diagnosis_json(const Told& t) {
   for (const Mismatch& m : d.naming.mismatch) {
     const auto c = static_cast<std::size_t>(d.problem.data.condition[static_cast<std::size_t>(m.observable)]);
     mismatch.push_back({{"observable", observable_name(t, m.observable)},
+                        {"region", region_of(t, c, m.observable)},
                         {"number", m.observable + 1},
                         {"condition", t.question.study.conditions[c].name},
                         {"z", m.z},
