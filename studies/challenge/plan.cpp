@@ -18,7 +18,6 @@ constexpr int kMostSets = 999;
 constexpr int kMostBeads = 100000;
 
 std::string value_text(const Node& node) {
-  if (node.is_null()) return "~";
   if (node.is_scalar()) return node.text();
   std::string out;
   for (const Node& item : node.items()) out += (out.empty() ? "" : ", ") + item.text();

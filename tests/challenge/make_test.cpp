@@ -54,7 +54,7 @@ struct Made {
   Made() {
     std::ofstream(folder / "study.yaml") << kStudy;
     std::ofstream(folder / "camera.yaml")
-        << "observations: {rate: {kind: sampling, rate: 300 Hz}, noise: {kind: noise, white: [0.4, 0.4, 0.4, mm]}}\n";
+        << "schema_version: 1\nobservations: {rate: {kind: sampling, rate: 300 Hz}, noise: {kind: noise, white: [0.4, 0.4, 0.4, mm]}}\n";
     std::ofstream(folder / "c.yaml") << kChallenge;
     challenge = read_challenge(folder / "c.yaml");
   }
@@ -75,7 +75,7 @@ TEST_CASE("sets are recordings of drawn mills, and tell nothing of what was draw
   REQUIRE(answers.size() == 2);
   int effects = 0;
   for (const Answer& a : answers) {
-    effects += a.kind == Kind::effect ? 1 : 0;
+    effects += a.kind == challenge::Kind::effect ? 1 : 0;
     CHECK(a.theta[0].second > 0.1 + 0.15 * 0.5 - 1e-3);
     CHECK(a.theta[0].second < 0.6 - 0.15 * 0.5 + 1e-3);
     const fs::path recording = made.sets / a.set / "r_fast.yaml";
@@ -96,7 +96,8 @@ TEST_CASE("sets are recordings of drawn mills, and tell nothing of what was draw
 
 TEST_CASE("a set whose diagnosis throws is noted, and the others are tried") {
   Made made;
-  seal(made.sets, {{"set_001", Kind::none, "", {}, {}, {}}, {"set_002", Kind::none, "", {}, {}, {}}}, made.folder / "study.yaml");
+  seal(made.sets, {{"set_001", challenge::Kind::none, "", {}, {}, {}}, {"set_002", challenge::Kind::none, "", {}, {}, {}}},
+       made.folder / "study.yaml");
   const RunCount count = run(made.sets, made.registry, {}, {});
   CHECK(count.failed == 2);
   CHECK(read(made.sets / "set_002" / "diagnosis" / "failed.txt").find("study.yaml: no such file") != std::string::npos);

@@ -20,7 +20,7 @@ const std::string kText =
     "  - {kind: none, count: 3}\n"
     "  - {kind: effect, hypothesis: wear, strength: [50 %, 1]}\n"
     "  - {kind: two, hypotheses: [wear, rolling]}\n"
-    "  - {kind: outside, name: soft, set: {pairs.glass~glass.restitution: 0.3, geometry.liner.motion: ~}}\n";
+    "  - {kind: outside, name: soft, set: {pairs.glass~glass.restitution: 0.3, contact.law.cap: sum}}\n";
 
 std::filesystem::path write(const testing::Scratch& folder, const std::string& text) {
   std::ofstream(folder / "study.yaml") << "base: x\n";
@@ -54,22 +54,23 @@ TEST_CASE("a challenge reads as it is written") {
   CHECK(c.sets[0].count == 3);
   CHECK(c.sets[1].low == 0.5);
   CHECK(c.sets[2].hypotheses == std::vector<std::string>{"wear", "rolling"});
-  CHECK(c.sets[3].settings == std::vector<std::string>{"pairs.glass~glass.restitution=0.3", "geometry.liner.motion=~"});
+  CHECK(c.sets[3].settings == std::vector<std::string>{"pairs.glass~glass.restitution=0.3", "contact.law.cap=sum"});
 }
 
 TEST_CASE("challenges that cannot work are refused with their place") {
-  CHECK(begins(refused("kind: none", "kind: nothing"), "c.yaml:8: 'kind' "));
+  CHECK(begins(refused("kind: none", "kind: nothing"), "c.yaml:8: 'sets.0.kind' "));
   CHECK(begins(refused("count: 3", "count: 0"), "c.yaml:8: "));
   CHECK(begins(refused("count: 3", "hypothesis: wear"), "c.yaml:8: "));
-  CHECK(begins(refused("[50 %, 1]", "[0.5]"), "c.yaml:9: 'strength' has 1 values"));
-  CHECK(begins(refused("[50 %, 1]", "[1, 0.5]"), "c.yaml:9: 'strength' has its lower end above"));
+  CHECK(begins(refused("[50 %, 1]", "[0.5]"), "c.yaml:9: 'sets.1.strength' has 1 values"));
+  CHECK(begins(refused("[50 %, 1]", "[1, 0.5]"), "c.yaml:9: 'sets.1.strength' has its lower end above"));
   CHECK(begins(refused("[50 %, 1]", "[0.5, 2]"), "c.yaml:9: "));
-  CHECK(begins(refused("[wear, rolling]", "[wear, wear]"), "c.yaml:10: 'hypotheses' is no list of two"));
+  CHECK(begins(refused("[wear, rolling]", "[wear, wear]"), "c.yaml:10: 'sets.2.hypotheses' is no list of two"));
   CHECK(begins(refused("name: soft, ", ""), "c.yaml:11: "));
   CHECK(begins(refused("study: study.yaml", "study: other.yaml"), "c.yaml:1: 'study' is 'other.yaml': no such file"));
   CHECK(begins(refused("camera: camera.yaml", "camera: eye.yaml"), "c.yaml:2: 'camera' is 'eye.yaml': no such file"));
   CHECK(begins(refused("seed: 4", "seed: -4"), "c.yaml:3: "));
-  CHECK(begins(refused("truth: {set: {stiffness_factor: 0.01, contact.law.cap: sum}}", "truth: {set: 3}"), "c.yaml:4: 'set' is no map"));
+  CHECK(begins(refused("truth: {set: {stiffness_factor: 0.01, contact.law.cap: sum}}", "truth: {set: 3}"),
+               "c.yaml:4: 'truth.set' is no map"));
   CHECK(begins(refused("beads: 7", "bead: 7"), "c.yaml:5: "));
   CHECK(begins(refused("500 ms", "0 s"), "c.yaml:6: "));
 }

@@ -66,7 +66,7 @@ TEST_CASE("an answer that was changed afterwards is refused") {
   CHECK(testing::refusal([&] { read_sets(folder.path); }).find("is missing") != std::string::npos);
 }
 
-TEST_CASE("diagnoses are read as they were written; failures with their reason") {
+TEST_CASE("diagnoses are read as they were written, failures with their reason") {
   const testing::Scratch folder;
   write(folder / "study.yaml", "base: x");
   seal(folder.path, two_answers(), folder / "study.yaml");
