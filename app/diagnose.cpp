@@ -37,14 +37,14 @@ int diagnose_study(const Arguments& arguments) {
   options.add()("draws", po::value<int>()->value_name("N"), "pseudo-recordings behind every p-value (default: 2016)");
   if (!options.parse(arguments)) return kDone;
   const fs::path output = options.text("output");
+  diagnose::NamingOptions naming;
+  if (options.has("draws")) naming.draws = options.integer("draws");
+  if (naming.draws < 100) throw UserError(fmt::format("--draws {}: give 100 or more", naming.draws));
   const host::Registry registry = options.registry();
   const diagnose::Question question = diagnose::read_question(options.text("STUDY.yaml"), options.list("set"), registry);
   const calibrate::SessionOptions session_of = study_session(options, output);
   calibrate::Session session(question.study, registry, session_of);
-  diagnose::NamingOptions naming;
   naming.say = session_of.say;
-  if (options.has("draws")) naming.draws = options.integer("draws");
-  if (naming.draws < 100) throw UserError(fmt::format("--draws {}: give 100 or more", naming.draws));
   const diagnose::Workshop workshop = diagnose::workshop_of(session, session_of.say);
   const diagnose::Diagnosis found = diagnose::diagnose(question, workshop, naming);
   diagnose::write_outputs({question, workshop, found}, output);

@@ -116,6 +116,17 @@ std::string resolved(const calibrate::Study& study, const std::vector<std::strin
   return config::resolved_yaml(c, descriptors);
 }
 
+/// The parameters in the middle of their ranges must give a case that can be run.
+void check_parameters(const Question& q, const host::Registry& registry) {
+  try {
+    std::vector<std::string> settings;
+    for (const calibrate::Parameter& p : q.study.parameters) settings.push_back(fmt::format("{}={:.6g}", p.path, 0.5 * (p.low + p.high)));
+    resolved(q.study, settings, registry);
+  } catch (const config::UserError& e) {
+    throw config::UserError(q.study.parameters.front().where, fmt::format("parameters in the middle of their ranges: {}", e.what()));
+  }
+}
+
 void check_nuisance(const Question& q, const Nuisance& n, const host::Registry& registry) {
   for (const calibrate::Parameter& p : q.study.parameters) {
     if (p.path == n.path || p.name == n.name)
@@ -198,6 +209,7 @@ Question read_question(const std::filesystem::path& file, const std::vector<std:
     const config::Case at = config::read_case(q.study.base.string(), c.settings);
     q.speed.push_back(at.mill ? std::fabs(at.mill->speed) : 0.0);
   }
+  check_parameters(q, registry);
   for (const Nuisance& n : q.nuisances) check_nuisance(q, n, registry);
   const Library library = library_of(base, registry);
   q.left_out = library.left_out;

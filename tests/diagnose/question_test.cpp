@@ -77,7 +77,7 @@ TEST_CASE("a question reads as it is written") {
   CHECK(theta[2].nuisance());
 }
 
-TEST_CASE("without a map of hypotheses all that apply are asked, in alphabetical order; standards are those of the documentation") {
+TEST_CASE("without a map of hypotheses all that apply are asked, in alphabetical order, with the standards of the documentation") {
   const Scratch folder;
   const Question q = question_of(folder, "");
   CHECK(q.candidates.size() >= 8);
@@ -157,6 +157,14 @@ TEST_CASE("what no value of the case stands behind is refused before anything is
              StartsWith("study.yaml:10: hypothesis 'own'") && Contains("1.8"));
   CHECK_THAT(refused("nuisances:\n  fill.fillin: {range: [30 %, 32 %], sigma: 1 %}\n"),
              StartsWith("study.yaml:10: nuisance 'fillin'") && Contains("filling"));
+}
+
+TEST_CASE("a parameter that gives no case is refused before anything is simulated") {
+  const Scratch folder;
+  const std::filesystem::path file = write_study(folder, "");
+  const auto message = [&](const std::string& setting) { return testing::refusal([&] { read_question(file, {setting}, registry()); }); };
+  CHECK_THAT(message("parameters.pairs.glass~glass.restitution.range=[0.5, 3]"),
+             Contains("parameters in the middle of their ranges") && Contains("1.75"));
 }
 
 TEST_CASE("a bank and an error of power that cannot be are refused at their line") {
