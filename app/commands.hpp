@@ -27,6 +27,7 @@ int design_of_experiments(const Arguments& arguments);
 int calibrate_study(const Arguments& arguments);
 int validate(const Arguments& arguments);
 int diagnose_study(const Arguments& arguments);
+int bank(const Arguments& arguments);
 int challenge_sets(const Arguments& arguments);
 int run_campaign(const Arguments& arguments);
 int campaign_task(const Arguments& arguments);

@@ -28,6 +28,7 @@ constexpr Command kCommands[] = {
     {"calibrate", "contact parameters from recordings", calibrate_study},
     {"validate", "whether what was calibrated holds elsewhere", validate},
     {"diagnose", "which physics a base case has left out", diagnose_study},
+    {"bank", "the simulations that diagnose answers from", bank},
     {"challenge", "sets with hidden physics, made, diagnosed and scored", challenge_sets},
     {"campaign", "run many simulations, each once", run_campaign},
     {"campaign-task", nullptr, campaign_task},

@@ -23,6 +23,15 @@ void add_study_options(Options& options) {
   options.with_plugins();
 }
 
+std::vector<std::string> words_of(const std::vector<std::string>& texts) {
+  std::vector<std::string> words;
+  for (const std::string& text : texts) {
+    std::istringstream in(text);
+    for (std::string word; in >> word;) words.push_back(word);
+  }
+  return words;
+}
+
 calibrate::SessionOptions study_session(const Options& options, const fs::path& output) {
   calibrate::SessionOptions s;
   s.output = output;
@@ -33,10 +42,7 @@ calibrate::SessionOptions study_session(const Options& options, const fs::path& 
     if (s.slots < 1) throw UserError(fmt::format("--slots {}: give 1 or more", s.slots));
   }
   for (const std::string& directory : options.list("plugin-dir")) s.plugin_directories.emplace_back(directory);
-  for (const std::string& text : options.list("slurm")) {
-    std::istringstream words(text);
-    for (std::string word; words >> word;) s.slurm_options.push_back(word);
-  }
+  s.slurm_options = words_of(options.list("slurm"));
   s.quiet = options.has("quiet");
   s.retry_failed = options.has("retry-failed");
   if (!s.quiet) {

@@ -9,6 +9,8 @@
 namespace millscope::app {
 
 void add_study_options(Options& options);
+/// "--partition=long --time=60" → words.
+std::vector<std::string> words_of(const std::vector<std::string>& texts);
 calibrate::SessionOptions study_session(const Options& options, const std::filesystem::path& output);
 
 }  // namespace millscope::app
