@@ -11,7 +11,6 @@ namespace millscope::diagnose {
 namespace {
 
 constexpr Index kObservables = 16;
-constexpr double kRunNoise = 0.3;
 
 VectorXd direction(std::uint64_t number) {
   emulate::Random random(4711, number);
@@ -78,7 +77,7 @@ calibrate::Observation MadeUpMill::observation(std::size_t condition, const std:
     if (found != settings.end())
       y += p.size * (std::stod(found->second) - p.null_value) / (p.far - p.null_value) * direction(p.direction.at(condition));
   }
-  emulate::Random random(std::hash<std::string>{}(key), condition);
+  emulate::Random random(std::hash<std::string>{}(key) + seed, condition);
   y += noise * random.normals(kObservables);
   y[0] += 50;  // W: powers are above 0
   calibrate::Observation o;
@@ -105,7 +104,7 @@ Workshop MadeUpMill::workshop() {
     }
     return outcomes;
   };
-  w.observe = [this](std::size_t condition, const campaign::Outcome& o) { return observation(condition, o.key, kRunNoise); };
+  w.observe = [this](std::size_t condition, const campaign::Outcome& o) { return observation(condition, o.key, run_noise); };
   for (std::size_t c = 0; c < conditions_; ++c)
     w.recorded.push_back(observation(c, fmt::format("{}", fmt::join(truth_, "\n")), recording_noise_));
   return w;

@@ -34,6 +34,8 @@ class MadeUpMill {
 
   Workshop workshop();
   int computed() const { return static_cast<int>(cache_.size()); }            ///< simulations, each once
+  double run_noise = 0.3;                                                     ///< of the bank's simulations
+  std::uint64_t seed = 0;                                                     ///< of all noise
   std::function<bool(const std::map<std::string, std::string>&)> fails = {};  ///< of a simulation's settings; empty: none
 
  private:

@@ -1,0 +1,147 @@
+// What a diagnosis leaves: figures for programs, a page for people, a corrected case to go on with.
+#include "studies/diagnose/outputs.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "kernel/config/writer.hpp"
+#include "made_up_study.hpp"
+
+using namespace millscope;
+using namespace millscope::diagnose;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+using Catch::Matchers::Contains;
+using testing::Scratch;
+
+namespace {
+
+const std::string kRolling = "pairs.glass~glass.rolling_friction";
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A diagnosis of recordings made with `truth`, written to folder/out.
+nlohmann::json written(const Scratch& folder, const std::vector<std::string>& truth) {
+  const Question q = question_of(folder,
+                                 "nuisances: {fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %, name: filling}}\n"
+                                 "hypotheses: {rolling_resistance: {}, lifter_wear: {}}\n"
+                                 "observe: {beads: 300}\n");
+  MadeUpMill mill(q, {{kRolling, 0, 0.2, 3, {21, 22, 23}}, {"geometry.liner.lifter_height", 0.005, 0.003, 3, {41, 42, 43}}}, truth);
+  NamingOptions options;
+  options.draws = 240, options.rival_draws = 160;
+  const Workshop workshop = mill.workshop();
+  const Diagnosis d = diagnose::diagnose(q, workshop, options);
+  write_outputs({q, workshop, d}, folder / "out");
+  return nlohmann::json::parse(text_of(folder / "out/diagnosis.json"));
+}
+
+const std::vector<std::string> kBase{"pairs.glass~glass.static_friction=0.3", "pairs.glass~liner.static_friction=0.4",
+                                     "fill.filling=0.313"};
+
+std::vector<std::string> with_rolling() {
+  std::vector<std::string> truth = kBase;
+  truth.push_back(kRolling + "=0.12");
+  return truth;
+}
+
+bool is_interval(const nlohmann::json& j) {
+  return j.contains("value") && j.contains("low90") && j.contains("high90") && j["low90"] <= j["high90"];
+}
+
+}  // namespace
+
+TEST_CASE("diagnosis.json has every figure that is promised") {
+  const Scratch folder;
+  const nlohmann::json j = written(folder, with_rolling());
+  CHECK(j["schema_version"] == 1);
+  CHECK(j["verdict"] == "named");
+  CHECK(j["named"] == nlohmann::json({"rolling_resistance"}));
+  CHECK(j["next_experiment"] == "");
+  REQUIRE(j["hypotheses"].size() == 3);
+  for (const auto& h : j["hypotheses"]) {
+    INFO(h.dump());
+    for (const char* key : {"name", "p_value", "delta_q", "kappa", "lambda", "parameters", "class"}) CHECK(h.contains(key));
+    CHECK(h["p_value"] > 0);
+    CHECK(h["p_value"] <= 1);
+    CHECK(h["kappa"] <= 1);
+    for (const auto& [name, value] : h["parameters"].items()) CHECK(is_interval(value));
+  }
+  const auto& rolling = j["hypotheses"][0];
+  CHECK(rolling["name"] == "rolling_resistance");
+  CHECK(rolling["class"] == "best");
+  CHECK_THAT(rolling["parameters"]["rolling_friction"]["value"].get<double>(), WithinAbs(0.12, 0.03));
+  CHECK(j["hypotheses"][1]["class"] == "rejected");
+  CHECK(j["hypotheses"][2]["kind"] == "nuisance");
+  REQUIRE(j["mismatch"].size() == 32);
+  for (const char* key : {"observable", "region", "condition", "z", "p_value", "sentence"}) CHECK(j["mismatch"][0].contains(key));
+  CHECK(std::fabs(j["mismatch"][0]["z"].get<double>()) >= std::fabs(j["mismatch"][31]["z"].get<double>()));
+  for (const char* part : {"retuned", "unmasked"}) {
+    REQUIRE(j["contact_parameters"][part].size() == 3);
+    for (const auto& [name, value] : j["contact_parameters"][part].items()) CHECK(is_interval(value));
+  }
+  REQUIRE(j["per_speed_friction"].size() == 3);
+  CHECK(is_interval(j["per_speed_friction"][0]["before"]["bead_friction"]));
+  CHECK(is_interval(j["per_speed_friction"][0]["after"]["bead_friction"]));
+  const auto& held = j["held_out"][0];
+  CHECK(held["condition"] == "speed50");
+  CHECK(held["improves_on_every_rival"] == true);
+  CHECK(held["observables"].size() == 16);
+  for (const char* key : {"recorded", "corrected", "retuned to power"}) CHECK(held["observables"][0].contains(key));
+  for (std::size_t k = 1; k < held["models"].size(); ++k) CHECK(is_interval(held["models"][k]["improvement_of_corrected"]));
+  CHECK(j["bank"]["failures"].empty());
+}
+
+TEST_CASE("diagnosis.md tells the verdict, every candidate, the figures and the pictures, which are there") {
+  const Scratch folder;
+  const nlohmann::json j = written(folder, with_rolling());
+  const std::string page = text_of(folder / "out/diagnosis.md");
+  CHECK_THAT(page, Contains("**named**") && Contains(j["sentence"].get<std::string>()));
+  for (const auto& h : j["hypotheses"]) CHECK_THAT(page, Contains(h["name"].get<std::string>()));
+  CHECK_THAT(page, Contains("retuned to power") && Contains("Gaussian-process discrepancy") && Contains("placebo"));
+  CHECK_THAT(page, Contains(j["mismatch"][0]["sentence"].get<std::string>()));
+  CHECK_THAT(page, !Contains("nan") && !Contains("inf"));
+  int pictures = 0;
+  for (const char* name : {"mismatch", "alone_1", "alone_2", "held_out_3"}) {
+    CHECK(std::filesystem::file_size(folder / ("out/pictures/" + std::string(name) + ".svg")) > 1000);
+    CHECK(std::filesystem::file_size(folder / ("out/pictures/" + std::string(name) + ".png")) > 1000);
+    pictures += page.find("pictures/" + std::string(name) + ".svg") != std::string::npos ? 1 : 0;
+  }
+  CHECK(pictures == 4);
+}
+
+TEST_CASE("corrected/ is a case with the physics on, and a study that can be diagnosed again") {
+  const Scratch folder;
+  const nlohmann::json j = written(folder, with_rolling());
+  const std::filesystem::path file = folder / "out/corrected/case.yaml";
+  const config::Case c = config::read_case(file.string());
+  REQUIRE(c.contact.interactions.size() == 1);
+  CHECK(c.contact.interactions[0].kind == "rolling_epsd");
+  const std::vector<const Descriptor*> descriptors = registry().descriptors();
+  config::finish(c, descriptors);
+  const std::string resolved = config::resolved_yaml(c, descriptors);
+  CHECK_THAT(resolved, Contains("rolling_friction"));
+  const double friction = std::stod(c.pairs.section().at("glass~glass").at("static_friction").text());
+  CHECK_THAT(friction, WithinRel(j["contact_parameters"]["unmasked"]["bead_friction"]["value"].get<double>(), 1e-3));
+  const Question again = read_question(folder / "out/corrected/study.yaml", {}, registry());
+  CHECK(again.study.conditions.size() == 3);
+  CHECK(again.study.conditions[0].settings == std::vector<std::string>{"mill.speed=75 %critical"});
+  CHECK(again.study.conditions[2].role == calibrate::Role::held_out);
+  CHECK(again.study.parameters[1].name == "wall_friction");
+  CHECK(again.study.observing.beads == 300);
+  REQUIRE(again.nuisances.size() == 1);
+  CHECK_THAT(again.nuisances[0].sigma, WithinRel(0.00313, 1e-6));
+  CHECK(std::none_of(again.candidates.begin(), again.candidates.end(), [](const Candidate& k) { return k.name == "rolling_resistance"; }));
+}
+
+TEST_CASE("where nothing was found there is no corrected case, an older one goes") {
+  const Scratch folder;
+  std::filesystem::create_directories(folder / "out/corrected");
+  const nlohmann::json j = written(folder, kBase);
+  CHECK(j["verdict"] == "no_mismatch");
+  CHECK_FALSE(j["contact_parameters"].contains("unmasked"));
+  CHECK_FALSE(std::filesystem::exists(folder / "out/corrected"));
+  CHECK(j["hypotheses"][0]["class"] == "not needed");
+}

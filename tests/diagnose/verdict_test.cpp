@@ -1,0 +1,196 @@
+// Diagnoses end to end on a mill that is a formula: every verdict, where it belongs.
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "made_up_study.hpp"
+#include "studies/diagnose/diagnosis.hpp"
+
+using namespace millscope;
+using namespace millscope::diagnose;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+using Catch::Matchers::Contains;
+using testing::Scratch;
+
+namespace {
+
+const std::string kSections =
+    "nuisances: {fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %, name: filling}}\n"
+    "hypotheses: {rolling_resistance: {}, capillary_bridge: {}, lifter_wear: {}}\n"
+    "bank: {base: 24, each: 10}\n";
+const std::string kRolling = "pairs.glass~glass.rolling_friction", kBridge = "pairs.glass~glass.surface_tension",
+                  kHeight = "geometry.liner.lifter_height";
+const std::vector<std::string> kTheta{"pairs.glass~glass.static_friction=0.3", "pairs.glass~liner.static_friction=0.4",
+                                      "fill.filling=0.313"};
+
+/// Three effects, each with a signature of its own in every condition.
+std::vector<Physics> usual() {
+  return {{kRolling, 0, 0.2, 3, {21, 22, 23}}, {kBridge, 0, 0.08, 3, {31, 32, 33}}, {kHeight, 0.005, 0.003, 3, {41, 42, 43}}};
+}
+
+std::vector<std::string> with(const std::string& more) {
+  std::vector<std::string> truth = kTheta;
+  truth.push_back(more);
+  return truth;
+}
+
+NamingOptions quick() {
+  NamingOptions o;
+  o.draws = 240, o.rival_draws = 160;
+  return o;
+}
+
+const Judged& judged(const Diagnosis& d, const std::string& name) {
+  for (std::size_t j = 0; j < d.problem.rivals.size(); ++j) {
+    if (d.problem.rivals[j].name == name) return d.naming.judged[j];
+  }
+  throw std::runtime_error("not judged: " + name);
+}
+
+Diagnosis diagnosed(const std::vector<Physics>& physics, const std::vector<std::string>& truth, double recording_noise = 1) {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  MadeUpMill mill(q, physics, truth, recording_noise);
+  return diagnose::diagnose(q, mill.workshop(), quick());
+}
+
+}  // namespace
+
+TEST_CASE("nothing is missing: no mismatch, and nothing is named") {
+  const Diagnosis d = diagnosed(usual(), kTheta);
+  CHECK(d.verdict == Verdict::no_mismatch);
+  CHECK(d.named.empty());
+  CHECK(d.naming.base_p > 0.05);
+  CHECK(d.naming.mismatch.front().p > 0.05);
+  CHECK_THAT(d.sentence, Contains("look like the base with its parameters retuned"));
+  REQUIRE(d.held_out.size() == 1);
+  CHECK(d.held_out[0].scores.size() == 2);  // there is nothing to hold against the base
+}
+
+TEST_CASE("what is missing is named, with its strength, the friction behind it and a gain on what was held out") {
+  const Diagnosis d = diagnosed(usual(), with(kRolling + "=0.12"));
+  INFO(d.sentence);
+  CHECK(d.verdict == Verdict::named);
+  REQUIRE(d.named == std::vector<std::string>{"rolling_resistance"});
+  CHECK_THAT(d.sentence, Contains("Rolling is resisted"));
+  CHECK(d.next_experiment.empty());
+  const Judged& found = judged(d, "rolling_resistance");
+  CHECK(found.p_family < 0.05);
+  CHECK(found.share.low90 < 0.6);
+  CHECK(found.share.high90 > 0.6);
+  CHECK(found.theta[0].low90 < 0.3);
+  CHECK(found.theta[0].high90 > 0.3);
+  REQUIRE(d.held_out.size() == 1);
+  const HeldOut& held = d.held_out[0];
+  CHECK(held.improves);
+  CHECK(held.scores[0].prediction.name == "corrected");
+  std::vector<std::string> rivals;
+  for (std::size_t k = 1; k < held.scores.size(); ++k) {
+    rivals.push_back(held.scores[k].prediction.name);
+    CHECK(held.scores[k].misfit > held.scores[0].misfit);
+    CHECK(held.scores[k].low90 > 0);
+    CHECK(held.scores[k].low90 < held.scores[k].improvement);
+  }
+  CHECK(rivals == std::vector<std::string>{"effect removed", "retuned to power", "retuned to all observables", "placebo",
+                                           "Gaussian-process discrepancy"});
+  REQUIRE(d.alone.size() == 3);
+  for (const Alone& a : d.alone) REQUIRE(a.after.size() == 3);
+  // Friction fitted to each condition alone agrees once the effect is in.
+  for (const Alone& a : d.alone) CHECK_THAT(a.after[0].value, WithinAbs(0.3, 0.06));
+}
+
+TEST_CASE("two candidates with one effect are a class, and the condition that would separate them is said") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  std::vector<Physics> physics = usual();
+  physics[1].direction = {21, 22, 33};  // the bridge does what rolling does, but at 50 %
+  const std::set<std::string> both{"rolling_resistance", "capillary_bridge"};
+  int classes = 0, holding_truth = 0;
+  const int sets = 12;
+  for (int k = 0; k < sets; ++k) {
+    MadeUpMill mill(q, physics, with(kRolling + "=0.12"));
+    mill.seed = static_cast<std::uint64_t>(k);
+    const Diagnosis d = diagnose::diagnose(q, mill.workshop(), quick());
+    const std::set<std::string> named(d.named.begin(), d.named.end());
+    holding_truth += named.count("rolling_resistance") > 0 ? 1 : 0;
+    if (named != both) continue;
+    ++classes;
+    CHECK(d.verdict == Verdict::ambiguous);
+    CHECK_THAT(d.sentence, Contains("cannot choose between"));
+    CHECK_THAT(d.next_experiment, Contains("'speed50' separates") && Contains("rolling_resistance") && Contains("capillary_bridge"));
+  }
+  CHECK(holding_truth >= 10);
+  CHECK(classes >= 8);
+}
+
+TEST_CASE("a recording that is far too noisy cannot tell, and the length that would is said") {
+  const Diagnosis d = diagnosed(usual(), with(kRolling + "=0.12"), 60);
+  INFO(d.sentence);
+  CHECK(d.verdict == Verdict::undetectable);
+  CHECK(d.named.empty());
+  for (const Judged& j : d.naming.judged) CHECK(j.undetectable);
+  CHECK_THAT(d.next_experiment, Contains("times the 200 s recorded"));
+}
+
+TEST_CASE("an effect that no candidate has is outside the library") {
+  std::vector<Physics> physics = usual();
+  physics.push_back({"stiffness_factor", 0, 1, 4, {91, 92, 93}});
+  const Diagnosis d = diagnosed(physics, with("stiffness_factor=1"));
+  INFO(d.sentence);
+  CHECK(d.verdict == Verdict::outside_library);
+  CHECK(d.named.empty());
+  CHECK(d.naming.base_p < 0.05);
+  CHECK(std::fabs(d.naming.mismatch.front().z) > 3);
+}
+
+TEST_CASE("a filling beyond its prior is named as that, and as no physics") {
+  std::vector<std::string> truth = kTheta;
+  truth[2] = "fill.filling=0.3218";  // 2.8 standard deviations
+  const Diagnosis d = diagnosed(usual(), truth, 0.3);
+  INFO(d.sentence);
+  REQUIRE_FALSE(d.named.empty());
+  CHECK(d.named == std::vector<std::string>{"filling"});
+  CHECK(d.verdict == Verdict::named);
+  CHECK_THAT(d.sentence, Contains("'filling' is 0.32"));
+  CHECK_THAT(judged(d, "filling").theta[2].value, WithinAbs(0.3218, 0.002));
+}
+
+TEST_CASE("two effects at once are found by forward selection") {
+  std::vector<std::string> truth = with(kRolling + "=0.16");
+  truth.push_back(kBridge + "=0.06");
+  const Diagnosis d = diagnosed(usual(), truth);
+  INFO(d.sentence);
+  CHECK(std::set<std::string>(d.named.begin(), d.named.end()) == std::set<std::string>{"rolling_resistance", "capillary_bridge"});
+  REQUIRE(d.naming.pairs.size() == 1);
+  CHECK(d.naming.pairs[0].p < 0.05);
+  CHECK(d.naming.pairs[0].p_first < 0.05);
+}
+
+TEST_CASE("a candidate whose every simulation fails is left out and said, the diagnosis goes on") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  MadeUpMill mill(q, usual(), with(kRolling + "=0.12"));
+  mill.fails = [](const auto& s) { return s.count(kBridge) > 0; };
+  const Diagnosis d = diagnose::diagnose(q, mill.workshop(), quick());
+  CHECK(d.named == std::vector<std::string>{"rolling_resistance"});
+  CHECK(judged(d, "capillary_bridge").undetectable);
+  REQUIRE_FALSE(d.notes.empty());
+  CHECK_THAT(d.notes[0], Contains("simulations of the bank failed") && Contains("capillary_bridge_0_speed75: a bead ran away"));
+}
+
+TEST_CASE("candidates that cannot matter get their first simulations alone") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  std::vector<Physics> physics = usual();
+  physics[2].size = 0.01;
+  MadeUpMill mill(q, physics, kTheta);
+  mill.run_noise = 0.05;
+  std::vector<std::string> said;
+  Workshop w = mill.workshop();
+  w.say = [&](const std::string& line) { said.push_back(line); };
+  const Diagnosis d = diagnose::diagnose(q, w, quick());
+  CHECK(d.bank.points.size() == 24 + 10 + 10 + 4);
+  CHECK(std::any_of(said.begin(), said.end(), [](const std::string& s) {
+    return s.rfind("lifter_wear: at its strongest", 0) == 0 && s.find("cannot matter here") != std::string::npos;
+  }));
+}
