@@ -87,14 +87,13 @@ studies::Recording film(const BeadPaths& paths, const studies::Camera& camera, c
   return studies::read_recording(folder / "film.yaml");
 }
 
-/// Power and mass of the whole simulated charge over the analysed time, from the run's own summary.
-PowerFigure whole_charge_power(const fs::path& run, double mass, double recorded_mass) {
+/// Power of the whole simulated charge over the analysed time, from the run's own summary, times `factor`.
+PowerFigure whole_charge_power(const fs::path& run, double factor) {
   const Json j = read_json(run / "summary.json");
   const auto power = j.is_object() && j.contains("power_W") ? j["power_W"] : Json{};
   if (!power.is_object() || !power.contains("com") || !power["com"].is_number()) {
     throw UserError(fmt::format("{}: its summary.json tells no power; the run has not come to its end", run.string()));
   }
-  const double factor = recorded_mass / mass;
   const double sem = power.contains("com_sem") && power["com_sem"].is_number() ? power["com_sem"].get<double>() : 0.0;
   return {factor * power["com"].get<double>(), factor * sem,
           fmt::format("whole simulated charge, times {:.4g} for the recorded mass", factor)};
@@ -119,6 +118,9 @@ struct Observer::Impl {
   fs::path cache;
   int threads;
   std::vector<RecordedCondition> recorded;
+  /// kg, of the charge that the study's case has in each condition. A slice is scaled to the recorded mill by it; a run whose filling is
+  /// varied keeps what that does to the power.
+  std::vector<double> case_mass = {};
 
   /// The run's beads through the recording's camera and the same processing, turned to the recording's sense.
   studies::ResultSet seen(std::size_t condition, const BeadPaths& paths, const fs::path& scratch, const Processing& how) const {
@@ -145,9 +147,8 @@ struct Observer::Impl {
     const studies::ResultSet results = seen(condition, paths, scratch, {study, registry, threads});
     Observation o = summarise(results, r.summaries);
     o.bead_seconds = paths.seconds() * static_cast<double>(paths.size());
-    const double mass = paths.mill().context.charge_mass;
     if (r.measured_power) {
-      set_power(o, whole_charge_power(run, mass, r.mass));
+      set_power(o, whole_charge_power(run, r.mass / case_mass[condition]));
     } else {
       const studies::ResultArray* specific = results.find("power", "specific_power_gravity");
       o.power = {r.mass * specific->value.at(0), r.mass * specific->sem.at(0),
@@ -160,10 +161,11 @@ struct Observer::Impl {
 
 Observer::Observer(const Study& study, const host::Registry& registry, fs::path cache, int threads,
                    std::function<void(const std::string&)> say)
-    : impl_(new Impl{study, registry, std::move(cache), threads, {}}) {
+    : impl_(new Impl{study, registry, std::move(cache), threads, {}, {}}) {
   for (std::size_t c = 0; c < study.conditions.size(); ++c) {
     if (say) say(fmt::format("looking at the recording of condition '{}'", study.conditions[c].name));
     impl_->recorded.push_back(look_at_recording(c, {study, registry, threads}, impl_->cache));
+    impl_->case_mass.push_back(studies::read_mill_of_case(study.base, registry, study.conditions[c].settings).context.charge_mass);
   }
 }
 
@@ -172,7 +174,7 @@ Observer::~Observer() = default;
 const Observation& Observer::recorded(std::size_t condition) const { return impl_->recorded[condition].observation; }
 
 Observation Observer::simulated(std::size_t condition, const fs::path& run, const std::string& key) const {
-  const std::string id = key + "-" + impl_->recorded[condition].identity;
+  const std::string id = key + "-" + hash_of({impl_->recorded[condition].identity, fmt::format("{:.17g}", impl_->case_mass[condition])});
   const fs::path file = impl_->cache / ("simulation-" + id + ".json");
   if (fs::exists(file)) {
     const Json known = read_json(file);
