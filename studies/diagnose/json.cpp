@@ -101,6 +101,7 @@ Json held_out(const Told& t) {
     }
     out.push_back({{"condition", t.question.study.conditions[h.condition].name},
                    {"recorded_power_W", recorded.power.value},
+                   {"p_base", h.base_p},
                    {"improves_on_every_rival", h.improves},
                    {"models", scores},
                    {"observables", names}});
@@ -166,6 +167,7 @@ Json diagnosis_json(const Told& t) {
           {"verdict", name_of(d.verdict)},
           {"sentence", d.sentence},
           {"named", d.named},
+          {"named_together", d.two_effects},
           {"next_experiment", d.next_experiment},
           {"base", {{"p_value", d.naming.base_p}, {"q", d.naming.base.q}, {"observables", d.problem.observed.size()}}},
           {"hypotheses", hypotheses(t)},

@@ -46,7 +46,7 @@ double separation(const Question& q, const Workshop& workshop, const Diagnosis& 
   return (w * (at(a) - at(b))).squaredNorm();
 }
 
-std::string to_separate(const Question& q, const Workshop& workshop, const Diagnosis& d, double noise_units) {
+std::string to_separate(const Question& q, const Workshop& workshop, const Diagnosis& d) {
   const int best = d.naming.best;
   const int other = *std::max_element(d.naming.kept.begin() + 1, d.naming.kept.end(), [&](int a, int b) {
     return d.naming.judged[static_cast<std::size_t>(a)].against_best_p < d.naming.judged[static_cast<std::size_t>(b)].against_best_p;
@@ -180,7 +180,7 @@ void conclude(const Question& q, const Workshop& workshop, double level, double 
     d.verdict = Verdict::ambiguous;
     d.sentence = fmt::format("Something is missing (family-wise p = {:.2g}); these data cannot choose between {}.", best.p_family,
                              fmt::join(d.named, ", "));
-    d.next_experiment = to_separate(q, workshop, d, noise_units);
+    d.next_experiment = to_separate(q, workshop, d);
     return;
   }
   if (!held_out_confirms(d)) {
