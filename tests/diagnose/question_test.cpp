@@ -146,7 +146,7 @@ TEST_CASE("hypotheses that cannot be are refused at their line") {
   CHECK_THAT(hypothesis("own: {sentence: S., path: a.b, without: 0, range: [0.2, 1]}"), Contains("does not hold 0"));
   CHECK_THAT(hypothesis("own: {sentence: S., set: {a.b: 1}, range: [0, 1]}"),
              StartsWith("study.yaml:10: ") && Contains("has no 'path' that takes its values"));
-  CHECK_THAT(hypothesis("location_blur: {}"), StartsWith("study.yaml:10: ") && Contains("does not apply: a camera's effect"));
+  CHECK_THAT(hypothesis("location_blur: {}"), StartsWith("study.yaml:10: ") && Contains("does not apply: an effect of the camera"));
   CHECK_THAT(refused("hypotheses: all\n"), StartsWith("study.yaml:9: 'hypotheses'"));
 }
 
