@@ -16,6 +16,10 @@ constexpr double kNormal90 = 1.645;
 struct Side {
   studies::ResultSet set;
   const studies::ResultArray& of(const char* name) const { return *set.find(kName, name); }
+  /// Too few visits give no error that a p could rest on.
+  bool sure(const char* name, std::size_t i) const {
+    return (of(name).flags[i] & (studies::kFewBlocks | studies::kOftenUndefined | studies::kNoUncertainty)) == 0;
+  }
 };
 
 /// Value of the recording less the mean of the simulations, with its error; NaN where one of them lacks it.
@@ -27,7 +31,11 @@ struct Difference {
 
 Difference difference(const Side& recorded, const std::vector<Side>& simulated, const char* name, std::size_t i) {
   const auto runs = static_cast<double>(simulated.size());
+  if (!recorded.sure(name, i)) return {};
   double mean = 0, variance = 0;
+  for (const Side& s : simulated) {
+    if (!s.sure(name, i)) return {};
+  }
   for (const Side& s : simulated) mean += s.of(name).value[i] / runs, variance += std::pow(s.of(name).sem[i] / runs, 2);
   return {recorded.of(name).value[i] - mean, std::sqrt(variance + std::pow(recorded.of(name).sem[i], 2))};
 }
