@@ -20,7 +20,7 @@ TEST_CASE("every case in configs is read") {
     const std::string name = entry.path().filename().string();
     const bool part =
         name.find("common") != std::string::npos || name == "study.yaml" || entry.path().parent_path().filename() == "materials";
-    if (entry.path().extension() != ".yaml" || part || !load_document(entry.path().string()).has("materials")) continue;
+    if (entry.path().extension() != ".yaml" || part || !load_document_with_paths(entry.path().string()).has("materials")) continue;
     INFO(entry.path());
     const Case c = read_case(entry.path().string());
     CHECK(bead_count(c) > 500);
