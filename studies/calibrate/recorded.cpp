@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <string_view>
 
 #include "kernel/output/summary.hpp"
 #include "studies/analysis/open_source.hpp"
@@ -42,8 +43,11 @@ std::string identity(const studies::Recording& recording, const Processing& how,
   if (const auto own = study.root.valid() ? study.root.find("analyzers") : std::nullopt) parts.push_back(dump(*own));
   const auto& settings = study.conditions[condition].settings;
   parts.insert(parts.end(), settings.begin(), settings.end());
+  // A plugin that is not asked changes nothing; a study with analyzers of its own may ask any.
+  const bool own_analyzers = !study.objective.terms.empty() || (study.root.valid() && study.root.has("analyzers"));
   for (const host::PluginRecord& r : how.registry.records()) {
-    if (r.kind == "analyzer" || r.kind == "observation") parts.push_back(r.name + r.file_hash);
+    const bool asked = own_analyzers || std::string_view(kAnalyzers).find(r.name + ":") != std::string_view::npos;
+    if (r.kind == "observation" || (r.kind == "analyzer" && asked)) parts.push_back(r.name + r.file_hash);
   }
   return hash_of(parts);
 }
