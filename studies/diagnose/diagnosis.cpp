@@ -26,8 +26,7 @@ std::vector<BankPoint> screened(const Question& question, const Workshop& worksh
       points.push_back(std::move(p));
   }
   const Problem problem = problem_of(question, workshop, fill_bank(question, workshop, points, fit), fit);
-  const Features features(problem.data);
-  const Surrogate surrogate(problem.data, features, std::vector<bool>(problem.data.rows.size(), true));
+  const Surrogate surrogate(problem.data);
   const MatrixXd whitening = whitener(problem.covariance + surrogate.residual_covariance());
   const FitResult base = Model(problem.data, surrogate, whitening, {}, {}).fit(problem.observed);
   for (std::size_t j = 0; j < question.candidates.size(); ++j) {

@@ -104,6 +104,12 @@ Score score(const Judge& judge, Prediction prediction) {
   return s;
 }
 
+/// What the best candidate switches on.
+std::vector<Effect> best_effects(const HeldOutRequest& r) {
+  const auto best = static_cast<std::size_t>(r.naming.best);
+  return effects_of(r.problem.rivals[best], r.naming.judged[best].fit);
+}
+
 }  // namespace
 
 HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) {
@@ -124,7 +130,7 @@ HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) {
   const bool named = r.naming.best >= 0;
   if (named) {
     const Judged& best = r.naming.judged[static_cast<std::size_t>(r.naming.best)];
-    const std::vector<Effect> effects = rivals.effects(r.naming.best, best.fit);
+    const std::vector<Effect> effects = best_effects(r);
     add(simulate(r, best.fit.coded, effects, condition, "corrected"), "with the best candidate, all parameters fitted together");
     if (!effects.empty()) add(simulate(r, best.fit.coded, {}, condition, "effect removed"), "the corrected parameters without the effect");
   }
@@ -153,26 +159,22 @@ HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) {
 
 std::vector<Alone> fit_alone(const HeldOutRequest& r) {
   std::vector<Alone> out;
-  const bool named = r.naming.best >= 0;
+  const std::vector<Effect> effects = r.naming.best < 0 ? std::vector<Effect>{} : best_effects(r);
   for (const std::size_t condition : r.bank.conditions) {
-    Problem one;
-    add_recorded(r.question, r.workshop, r.bank, {condition}, one);
-    one.data = data_of(r.question, r.bank, {condition});
-    for (std::size_t i = 0; i < one.data.theta.size(); ++i) one.data.theta[i].logarithmic = r.problem.data.theta[i].logarithmic;
-    const Features features(one.data);
-    const Surrogate surrogate(one.data, features, std::vector<bool>(one.data.rows.size(), true));
+    const Problem one = problem_alone(r.question, r.workshop, r.bank, condition, r.problem.data);
+    const Surrogate surrogate(one.data);
     const MatrixXd w = whitener(one.covariance + surrogate.residual_covariance());
-    const auto fit = [&](const std::vector<Effect>& effects) {
+    const auto fit = [&](const std::vector<Effect>& on) {
       std::vector<ShareRange> ranges(static_cast<std::size_t>(one.data.candidates));
       std::vector<int> active;
-      for (const Effect& e : effects) active.push_back(e.candidate), ranges[static_cast<std::size_t>(e.candidate)] = {e.share, e.share};
+      for (const Effect& e : on) active.push_back(e.candidate), ranges[static_cast<std::size_t>(e.candidate)] = {e.share, e.share};
       const FitResult found = Model(one.data, surrogate, w, active, ranges).fit(one.observed);
       const Index d = found.coded.size();
       MatrixXd information = MatrixXd::Zero(d, d), tangent(w.rows(), d);
       for (Index i = 0; i < d; ++i) {
         VectorXd up = found.coded, down = found.coded;
         up[i] += 0.5, down[i] -= 0.5;
-        tangent.col(i) = w * (surrogate.at(up, effects) - surrogate.at(down, effects));
+        tangent.col(i) = w * (surrogate.at(up, on) - surrogate.at(down, on));
         const Coordinate& c = one.data.theta[static_cast<std::size_t>(i)];
         if (c.nuisance()) information(i, i) = std::pow(0.5 * (c.high - c.low) / c.prior_sigma, 2);
       }
@@ -187,10 +189,7 @@ std::vector<Alone> fit_alone(const HeldOutRequest& r) {
       return theta;
     };
     Alone alone{condition, fit({}), {}};
-    if (named && r.problem.rivals[static_cast<std::size_t>(r.naming.best)].candidate >= 0) {
-      const Judged& best = r.naming.judged[static_cast<std::size_t>(r.naming.best)];
-      alone.after = fit({{r.problem.rivals[static_cast<std::size_t>(r.naming.best)].candidate, best.fit.shares.front()}});
-    }
+    if (!effects.empty()) alone.after = fit(effects);
     out.push_back(std::move(alone));
   }
   return out;

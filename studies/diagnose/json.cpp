@@ -26,9 +26,7 @@ Json strength(const Told& t, std::size_t j) {
   }
   const Candidate& c = t.question.candidates[static_cast<std::size_t>(rival.candidate)];
   if (c.on_or_off()) return {{"share", interval(judged.share)}};
-  Interval value{c.value(judged.share.value), c.value(judged.share.low90), c.value(judged.share.high90)};
-  if (value.low90 > value.high90) std::swap(value.low90, value.high90);
-  Json out = interval(value);
+  Json out = interval(strength_of(c, judged.share));
   out["unit"] = c.unit;
   out["vanishes_at"] = c.null_value;
   return {{c.parameter, out}};

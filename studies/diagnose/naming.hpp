@@ -27,6 +27,11 @@ struct Rival {
   std::vector<std::string> excludes;
 };
 
+/// What a fit with this rival alone switches on; nothing for a nuisance.
+inline std::vector<Effect> effects_of(const Rival& rival, const FitResult& fit) {
+  return rival.candidate < 0 ? std::vector<Effect>{} : std::vector<Effect>{{rival.candidate, fit.shares.front()}};
+}
+
 struct Problem {
   BankData data;
   std::vector<Rival> rivals;

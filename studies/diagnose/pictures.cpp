@@ -26,8 +26,7 @@ struct Drawer {
 /// Standardised differences of every observable, the retuned base and the best candidate.
 void mismatch(const Told& t, Drawer& drawer) {
   const Diagnosis& d = t.diagnosis;
-  const Features features(d.problem.data);
-  const Surrogate s(d.problem.data, features, std::vector<bool>(d.problem.data.rows.size(), true));
+  const Surrogate s(d.problem.data);
   const auto curve = [&](const char* label, const VectorXd& model) {
     Curve c{label, {}, {}, {}, {}};
     for (Index i = 0; i < model.size(); ++i) {
@@ -44,9 +43,7 @@ void mismatch(const Told& t, Drawer& drawer) {
   if (d.naming.best >= 0) {
     const Judged& best = d.naming.judged[static_cast<std::size_t>(d.naming.best)];
     const Rival& rival = d.problem.rivals[static_cast<std::size_t>(d.naming.best)];
-    const std::vector<Effect> effects =
-        rival.candidate < 0 ? std::vector<Effect>{} : std::vector<Effect>{{rival.candidate, best.fit.shares.front()}};
-    p.curves.push_back(curve(("with " + rival.name).c_str(), s.at(best.fit.coded, effects)));
+    p.curves.push_back(curve(("with " + rival.name).c_str(), s.at(best.fit.coded, effects_of(rival, best.fit))));
   }
   drawer.curves(p, "mismatch");
 }

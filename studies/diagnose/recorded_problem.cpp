@@ -59,6 +59,14 @@ Problem problem_of(const Question& question, const Workshop& workshop, const Ban
   return p;
 }
 
+Problem problem_alone(const Question& question, const Workshop& workshop, const Bank& bank, std::size_t condition, const BankData& like) {
+  Problem p;
+  p.data = data_of(question, bank, {condition});
+  for (std::size_t i = 0; i < p.data.theta.size(); ++i) p.data.theta[i].logarithmic = like.theta[i].logarithmic;
+  add_recorded(question, workshop, bank, {condition}, p);
+  return p;
+}
+
 std::vector<Rival> rivals_of(const Question& question) {
   std::vector<Rival> rivals;
   for (std::size_t j = 0; j < question.candidates.size(); ++j) {

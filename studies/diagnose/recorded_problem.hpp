@@ -18,6 +18,9 @@ void add_recorded(const Question& question, const Workshop& workshop, const Bank
 /// Bank and recordings of some conditions, with the rivals of the question.
 Problem problem_of(const Question& question, const Workshop& workshop, const Bank& bank, const std::vector<std::size_t>& conditions);
 
+/// Bank and recording of one condition, each coordinate on the scale that `like` has chosen; without rivals.
+Problem problem_alone(const Question& question, const Workshop& workshop, const Bank& bank, std::size_t condition, const BankData& like);
+
 /// Candidates of the question and nuisances that may leave their prior.
 std::vector<Rival> rivals_of(const Question& question);
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -29,9 +30,7 @@ std::string strength(const Told& t, std::size_t j) {
   if (rival.freed >= 0) return fmt::format("{} = {}", rival.name, text(judged.theta[static_cast<std::size_t>(rival.freed)]));
   const Candidate& c = t.question.candidates[static_cast<std::size_t>(rival.candidate)];
   if (c.on_or_off()) return fmt::format("share {}", text(judged.share));
-  Interval value{c.value(judged.share.value), c.value(judged.share.low90), c.value(judged.share.high90)};
-  if (value.low90 > value.high90) std::swap(value.low90, value.high90);
-  return fmt::format("{} = {}{}", c.parameter, text(value), c.unit.empty() || c.unit == "1" ? "" : " " + c.unit);
+  return fmt::format("{} = {}{}", c.parameter, text(strength_of(c, judged.share)), c.unit.empty() || c.unit == "1" ? "" : " " + c.unit);
 }
 
 void where_it_differs(const Told& t, std::string& out) {
@@ -123,6 +122,11 @@ void missing(const Told& t, std::string& out) {
 }
 
 }  // namespace
+
+Interval strength_of(const Candidate& c, const Interval& share) {
+  const auto [low, high] = std::minmax({c.value(share.low90), c.value(share.high90)});
+  return {c.value(share.value), low, high};
+}
 
 std::string observable_name(const Told& t, Index observable) {
   Index at = 0;

@@ -42,14 +42,10 @@ VectorXd retuned_to_power(const BankData& data, const Surrogate& surrogate, cons
 }
 
 RivalModels::RivalModels(const HeldOutRequest& request, std::size_t held)
-    : r_(request), held_(held), held_data_(data_of(request.question, request.bank, {held})) {
-  for (std::size_t i = 0; i < held_data_.theta.size(); ++i) held_data_.theta[i].logarithmic = r_.problem.data.theta[i].logarithmic;
-  const auto all = [](const BankData& d) { return std::vector<bool>(d.rows.size(), true); };
-  features_ = std::make_unique<Features>(r_.problem.data);
-  held_features_ = std::make_unique<Features>(held_data_);
-  surrogate_ = std::make_unique<Surrogate>(r_.problem.data, *features_, all(r_.problem.data));
-  held_surrogate_ = std::make_unique<Surrogate>(held_data_, *held_features_, all(held_data_));
-}
+    : r_(request),
+      held_(held),
+      surrogate_(request.problem.data),
+      held_surrogate_(problem_alone(request.question, request.workshop, request.bank, held, request.problem.data).data) {}
 
 VectorXd RivalModels::power_only() const {
   std::vector<Index> powers;
@@ -58,13 +54,7 @@ VectorXd RivalModels::power_only() const {
     if (observables[i].group == "power") powers.push_back(static_cast<Index>(i));
   }
   if (powers.empty()) return {};
-  return retuned_to_power(r_.problem.data, *surrogate_, r_.problem.observed, r_.naming.covariance, powers);
-}
-
-std::vector<Effect> RivalModels::effects(int rival, const FitResult& fit) const {
-  const int candidate = r_.problem.rivals[static_cast<std::size_t>(rival)].candidate;
-  if (candidate < 0) return {};
-  return {{candidate, fit.shares.front()}};
+  return retuned_to_power(r_.problem.data, surrogate_, r_.problem.observed, r_.naming.covariance, powers);
 }
 
 Index RivalModels::partner(Index i, std::size_t fitted) const {
@@ -97,18 +87,18 @@ Prediction RivalModels::placebo(const Prediction& base) const {
       at += r_.workshop.recorded[c].value.size();
     }
     // θ and the placebo's size in turn: the problem is nearly linear.
-    const Model model(r_.problem.data, *surrogate_, whitening, {}, {});
+    const Model model(r_.problem.data, surrogate_, whitening, {}, {});
     const VectorXd v = whitening * fitted;
     double size = 0;
     FitResult fit = r_.naming.base;
     for (int turn = 0; turn < 6; ++turn) {
-      const VectorXd residual = whitening * (r_.problem.observed - surrogate_->at(fit.coded));
+      const VectorXd residual = whitening * (r_.problem.observed - surrogate_.at(fit.coded));
       size = v.squaredNorm() > 0 ? v.dot(residual) / v.squaredNorm() : 0;
       fit = model.fit(r_.problem.observed - size * fitted);
     }
     if (fit.q >= least) continue;
     least = fit.q;
-    moved = held_surrogate_->at(fit.coded) - held_surrogate_->at(r_.naming.base.coded) + size * held;
+    moved = held_surrogate_.at(fit.coded) - held_surrogate_.at(r_.naming.base.coded) + size * held;
   }
   Prediction p = base;
   p.name = "placebo", p.simulated = false;
@@ -126,7 +116,7 @@ Prediction RivalModels::discrepancy(const Prediction& base) const {
   const double here = r_.question.speed[held_];
   const double range = std::max(1e-9, std::max(speed.maxCoeff(), here) - std::min(speed.minCoeff(), here));
   const auto kernel = [range](double a, double b) { return std::exp(-0.5 * std::pow((a - b) / range, 2)); };
-  const VectorXd residual = r_.problem.observed - surrogate_->at(r_.naming.base.coded);
+  const VectorXd residual = r_.problem.observed - surrogate_.at(r_.naming.base.coded);
   Prediction p = base;
   p.name = "Gaussian-process discrepancy", p.simulated = false;
   for (Index i = 0; i < p.value.size(); ++i) {

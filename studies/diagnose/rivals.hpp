@@ -1,7 +1,6 @@
 // What the practice would do instead of naming physics; for the files of this room.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "studies/diagnose/held_out.hpp"
@@ -19,7 +18,6 @@ class RivalModels {
   Prediction placebo(const Prediction& base) const;
   /// The base's prediction with the residuals of the fitted conditions, carried over by kriging in the speed of the mill.
   Prediction discrepancy(const Prediction& base) const;
-  std::vector<Effect> effects(int rival, const FitResult& fit) const;
 
  private:
   /// Observable of the fitted condition that stands for number i of the held-out one: the same group, the same place in it; −1: none.
@@ -27,9 +25,7 @@ class RivalModels {
 
   const HeldOutRequest& r_;
   std::size_t held_;
-  BankData held_data_;
-  std::unique_ptr<Features> features_, held_features_;
-  std::unique_ptr<Surrogate> surrogate_, held_surrogate_;
+  Surrogate surrogate_, held_surrogate_;
 };
 
 }  // namespace millscope::diagnose

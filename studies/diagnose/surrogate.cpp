@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "kernel/config/error.hpp"
 #include "studies/calibrate/observation.hpp"
@@ -98,17 +99,19 @@ VectorXd Features::all(const VectorXd& u, const std::vector<Effect>& effects) co
   return x;
 }
 
-Surrogate::Surrogate(const BankData& data, const Features& features, const std::vector<bool>& used) : features_(&features) {
+Surrogate::Surrogate(const BankData& data) : Surrogate(data, Features(data), std::vector<bool>(data.rows.size(), true)) {}
+
+Surrogate::Surrogate(const BankData& data, Features features, const std::vector<bool>& used) : features_(std::move(features)) {
   const auto rows = static_cast<Index>(std::count(used.begin(), used.end(), true));
-  if (rows <= features.size()) {
+  if (rows <= features_.size()) {
     throw config::UserError(fmt::format("the bank has {} finished runs, its model {} coefficients; extend the bank (bank.base, bank.each)",
-                                        rows, features.size()));
+                                        rows, features_.size()));
   }
-  MatrixXd x(rows, features.size()), y(rows, data.value.cols());
+  MatrixXd x(rows, features_.size()), y(rows, data.value.cols());
   Index k = 0;
   for (std::size_t r = 0; r < data.rows.size(); ++r) {
     if (!used[r]) continue;
-    x.row(k) = features.all(data.coded(data.rows[r].theta), data.rows[r].effects).transpose();
+    x.row(k) = features_.all(data.coded(data.rows[r].theta), data.rows[r].effects).transpose();
     y.row(k++) = data.value.row(static_cast<Index>(r));
   }
   const Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr(x);
@@ -122,21 +125,21 @@ Surrogate::Surrogate(const BankData& data, const Features& features, const std::
 }
 
 VectorXd Surrogate::at(const VectorXd& coded, const std::vector<Effect>& effects) const {
-  VectorXd y = coefficients_.topRows(features_->base_size()).transpose() * features_->base(coded);
+  VectorXd y = coefficients_.topRows(features_.base_size()).transpose() * features_.base(coded);
   for (const Effect& e : effects) {
-    const Index n = features_->count(e.candidate);
-    if (n > 0) y += coefficients_.middleRows(features_->first(e.candidate), n).transpose() * features_->block(e.candidate, coded, e.share);
+    const Index n = features_.count(e.candidate);
+    if (n > 0) y += coefficients_.middleRows(features_.first(e.candidate), n).transpose() * features_.block(e.candidate, coded, e.share);
   }
   return y;
 }
 
 double Surrogate::leverage(const VectorXd& coded, const std::vector<Effect>& effects) const {
-  const VectorXd x = features_->all(coded, effects);
+  const VectorXd x = features_.all(coded, effects);
   return x.dot(inverse_ * x);
 }
 
 double Surrogate::leverage_of(const VectorXd& coded, const std::vector<Effect>& effects) const {
-  const VectorXd x = features_->all(coded, effects) - features_->all(coded, {});
+  const VectorXd x = features_.all(coded, effects) - features_.all(coded, {});
   return x.dot(inverse_ * x);
 }
 
@@ -149,8 +152,7 @@ MatrixXd Surrogate::residual_covariance() const {
 
 void choose_scales(BankData& data) {
   const auto press = [&] {
-    const Features features(data);
-    const Surrogate s(data, features, std::vector<bool>(data.rows.size(), true));
+    const Surrogate s(data);
     const MatrixXd centred = data.value.rowwise() - data.value.colwise().mean();
     double sum = 0;
     for (Index i = 0; i < centred.cols(); ++i) sum += s.left_out().col(i).squaredNorm() / std::max(1e-300, centred.col(i).squaredNorm());

@@ -32,7 +32,9 @@ class Features {
 class Surrogate {
  public:
   /// Least squares on the rows where `used` is true. Throws config::UserError when they are fewer than the coefficients.
-  Surrogate(const BankData& data, const Features& features, const std::vector<bool>& used);
+  Surrogate(const BankData& data, Features features, const std::vector<bool>& used);
+  /// On all rows, with all features that they support.
+  explicit Surrogate(const BankData& data);
 
   VectorXd at(const VectorXd& coded, const std::vector<Effect>& effects = {}) const;
   /// Variance of the prediction over that of one run's residual.
@@ -40,7 +42,7 @@ class Surrogate {
   /// The same of the difference that effects make.
   double leverage_of(const VectorXd& coded, const std::vector<Effect>& effects) const;
   const MatrixXd& coefficients() const { return coefficients_; }  ///< features × observables
-  const Features& features() const { return *features_; }
+  const Features& features() const { return features_; }
   Index degrees() const { return degrees_; }  ///< rows − coefficients
   /// Row residuals, each from a fit without that row: (y − m)/(1 − h).
   const MatrixXd& left_out() const { return left_out_; }
@@ -48,7 +50,7 @@ class Surrogate {
   MatrixXd residual_covariance() const;
 
  private:
-  const Features* features_;
+  Features features_;
   MatrixXd coefficients_, inverse_, residual_, left_out_;
   Index degrees_ = 0;
 };

@@ -31,17 +31,12 @@ double seconds(const Workshop& workshop, const std::vector<std::size_t>& conditi
 
 /// Squared distance, in noise units, between the predictions of two fitted candidates in one condition.
 double separation(const Question& q, const Workshop& workshop, const Diagnosis& d, std::size_t condition, int a, int b) {
-  Problem one;
-  add_recorded(q, workshop, d.bank, {condition}, one);
-  one.data = data_of(q, d.bank, {condition});
-  for (std::size_t i = 0; i < one.data.theta.size(); ++i) one.data.theta[i].logarithmic = d.problem.data.theta[i].logarithmic;
-  const Features features(one.data);
-  const Surrogate s(one.data, features, std::vector<bool>(one.data.rows.size(), true));
+  const Problem one = problem_alone(q, workshop, d.bank, condition, d.problem.data);
+  const Surrogate s(one.data);
   const MatrixXd w = whitener(one.covariance + s.residual_covariance());
   const auto at = [&](int rival) {
     const FitResult& fit = d.naming.judged[static_cast<std::size_t>(rival)].fit;
-    const int candidate = d.problem.rivals[static_cast<std::size_t>(rival)].candidate;
-    return candidate < 0 ? s.at(fit.coded) : s.at(fit.coded, {{candidate, fit.shares.front()}});
+    return s.at(fit.coded, effects_of(d.problem.rivals[static_cast<std::size_t>(rival)], fit));
   };
   return (w * (at(a) - at(b))).squaredNorm();
 }
@@ -64,8 +59,7 @@ std::string to_separate(const Question& q, const Workshop& workshop, const Diagn
 
 /// λ of a candidate if the recordings were longer by a factor; what the surrogate cannot follow stays.
 double lambda_if(const Diagnosis& d, int rival, double longer) {
-  const Features features(d.problem.data);
-  const Surrogate s(d.problem.data, features, std::vector<bool>(d.problem.data.rows.size(), true));
+  const Surrogate s(d.problem.data);
   const MatrixXd w = whitener(d.problem.covariance / longer + s.residual_covariance());
   return Visibility(d.problem, s, w, d.naming.base.coded, rival).lambda();
 }
