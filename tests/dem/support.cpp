@@ -180,4 +180,21 @@ Vector cross(const Vector& a, const Vector& b) { return {a[1] * b[2] - a[2] * b[
 double effective_young(double stiffness_factor) { return 63.96e9 * stiffness_factor / (2 * (1 - 0.23 * 0.23)); }
 double bead_mass(double radius, double density) { return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius * density; }
 
+Book shaken_box(Setup s) {
+  s.fill = "{count: 200, settle_s: 0.05}";
+  s.geometry =
+      "{box: {kind: box, low: [0, 0, 0], high: [30 mm, 60 mm, 30 mm], material: wall, "
+      "motion: {translation: {oscillation: {amplitude: [0, 4 mm, 2 mm], frequency: 20 Hz}}}}}";
+  s.domain = "{}";
+  s.run = "{partitions: 4}";
+  Assembly a = assembled(s);
+  run::insert_beads(a);
+  run::begin(a);
+  advance(a, a.settle_steps + std::llround(0.15 / a.time_step));
+  const Energy first = observed(a);
+  advance(a, std::llround(0.4 / a.time_step));
+  const Energy last = observed(a);
+  return {last.wall_work - first.wall_work, last.dissipated - first.dissipated, last.stored() - first.stored()};
+}
+
 }  // namespace dem_test
