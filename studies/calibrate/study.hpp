@@ -129,6 +129,9 @@ Study read_study(const std::filesystem::path& file, const std::vector<std::strin
 /// refuses, recordings of another mill. Throws config::UserError.
 void check_study(const Study& study, const host::Registry& registry);
 
+/// Leaves of a map as "path=value", as `--set` takes them, paths below the map; a list is one value.
+std::vector<std::string> settings_below(const config::Node& map);
+
 const char* name_of(Method method);
 const char* name_of(ObjectiveKind kind);
 

@@ -48,7 +48,7 @@ Condition read_condition(const Node& node) {
   Condition condition;
   condition.name = node.name();
   condition.where = node.where();
-  if (const auto set = node.find("set")) collect_settings(*set, set->path().size() + 1, condition.settings);
+  if (const auto set = node.find("set")) condition.settings = settings_below(*set);
   const Node recording = node.at("recording", "recording.yaml of this condition");
   condition.recording = config::resolve_file(recording);
   if (!std::filesystem::exists(condition.recording)) {
@@ -173,6 +173,12 @@ Term read_term(const Node& node) {
 }
 
 }  // namespace
+
+std::vector<std::string> settings_below(const Node& map) {
+  std::vector<std::string> settings;
+  collect_settings(map, map.path().size() + 1, settings);
+  return settings;
+}
 
 std::vector<Condition> read_conditions(const Node& section) {
   std::vector<Condition> conditions;

@@ -17,27 +17,9 @@ using config::Node;
 constexpr int kMostSets = 999;
 constexpr int kMostBeads = 100000;
 
-std::string value_text(const Node& node) {
-  if (node.is_scalar()) return node.text();
-  std::string out;
-  for (const Node& item : node.items()) out += (out.empty() ? "" : ", ") + item.text();
-  return "[" + out + "]";
-}
-
-/// Leaves of a map as "path=value", paths below it.
-void collect_settings(const Node& node, std::size_t prefix, std::vector<std::string>& out) {
-  if (!node.is_map()) {
-    out.push_back(node.path().substr(prefix) + "=" + value_text(node));
-    return;
-  }
-  for (const std::string& key : node.keys()) collect_settings(node.at(key), prefix, out);
-}
-
 std::vector<std::string> settings_of(const Node& set) {
-  std::vector<std::string> out;
   if (!set.is_map()) set.fail("is no map; write e.g. {stiffness_factor: 0.01}");
-  collect_settings(set, set.path().size() + 1, out);
-  return out;
+  return calibrate::settings_below(set);
 }
 
 Kind read_kind(const Node& node) {

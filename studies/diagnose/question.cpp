@@ -49,14 +49,6 @@ void collect_nuisances(const Node& node, std::size_t prefix, std::vector<Nuisanc
   out.push_back(std::move(n));
 }
 
-void collect_settings(const Node& node, std::size_t prefix, std::vector<std::string>& out) {
-  if (!node.is_map()) {
-    out.push_back(node.path().substr(prefix) + "=" + (node.is_null() ? "~" : node.text()));
-    return;
-  }
-  for (const std::string& key : node.keys()) collect_settings(node.at(key), prefix, out);
-}
-
 /// A hypothesis of a plugin that needs values besides, which 'set' may give; else an empty one.
 Candidate incomplete(const Library& library, const std::string& name) {
   for (const Candidate& c : library.incomplete) {
@@ -86,7 +78,9 @@ Candidate read_candidate(const Node& node, const Library& library) {
   if (c.sentence.empty()) node.fail("has no 'sentence' that says what it means, e.g. The lifters are worn.");
   if (node.has("equation")) c.equation = node.at("equation").text();
   if (node.has("citation")) c.citation = node.at("citation").text();
-  if (node.has("set")) collect_settings(node.at("set"), node.at("set").path().size() + 1, c.set);
+  if (node.has("set")) {
+    for (std::string& setting : calibrate::settings_below(node.at("set"))) c.set.push_back(std::move(setting));
+  }
   if (node.has("path")) {
     c.paths = {node.at("path").text()};
     c.parameter = c.paths[0].substr(c.paths[0].rfind('.') + 1);
