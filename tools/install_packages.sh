@@ -15,6 +15,9 @@ fi
 
 missing=""
 for package in $wanted; do
+  # npm?npm: only where there is no such command; another Node.js than Debian's will do.
+  command=${package#*\?}
+  [ "$command" = "$package" ] || { package=${package%\?*}; ! command -v "$command" >/dev/null || continue; }
   case "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)" in
     installed) ;;
     *) missing="$missing $package" ;;
