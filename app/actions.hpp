@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/commands.hpp"
+#include "app/tables.hpp"
 #include "kernel/config/document.hpp"
 
 namespace millscope::app {
@@ -33,6 +34,13 @@ inline void print_actions(const ActionTable& table) {
 
 /// Calls the action that the first argument names; explains all without one and for --help. Throws UserError for a name of none.
 inline int call_action(const ActionTable& table, const Arguments& arguments) {
+  if (CommandTable* written = table_being_written()) {
+    written->usage = fmt::format("{} ACTION …", table.name);
+    written->page = table.what;
+    written->example = table.example;
+    for (const Action& a : table.actions) written->actions.push_back(table_of({a.name, a.what, a.call}));
+    return kDone;
+  }
   if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h") {
     print_actions(table);
     return arguments.empty() ? kBadInput : kDone;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <boost/program_options.hpp>
+#include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,7 +18,28 @@ inline constexpr int kBadInput = 2;     ///< something the user can put right
 inline constexpr int kInterrupted = 3;  ///< stopped by a signal after writing a checkpoint
 inline constexpr int kCannotWrite = 4;  ///< disk full, no permission
 
+struct ExitCode {
+  int code;
+  const char* means;
+};
+inline constexpr ExitCode kExitCodes[] = {
+    {kDone, "done"},
+    {kFailed, "internal error"},
+    {kBadInput, "bad input, the one line on stderr says what and how to put it right"},
+    {kInterrupted, "stopped by a signal after writing a checkpoint"},
+    {kCannotWrite, "the output cannot be written (disk full, no permission); what was written before is whole"},
+};
+
 using Arguments = std::vector<std::string>;
+
+struct Command {
+  const char* name;
+  const char* what;  ///< nullptr: not for people
+  int (*call)(const Arguments&);
+};
+
+/// All commands in the order of the overview, in main.cpp.
+std::span<const Command> all_commands();
 
 int run(const Arguments& arguments);
 int resume(const Arguments& arguments);
@@ -39,6 +62,9 @@ int plugins(const Arguments& arguments);
 int schema(const Arguments& arguments);
 int geometry(const Arguments& arguments);
 int plugin(const Arguments& arguments);
+int completion(const Arguments& arguments);
+int complete_line(const Arguments& arguments);
+int manual(const Arguments& arguments);
 
 /// One command's options: declared, parsed and explained in one place.
 class Options {
@@ -49,6 +75,8 @@ class Options {
   boost::program_options::options_description_easy_init add() { return visible_.add_options(); }
   /// A positional argument, in order; `last_takes_all` for lists.
   void positional(const std::string& name, const std::string& what, bool takes_all = false);
+  /// The words that an option or a positional argument may be, for completion and the manual; `parse` does not hold it to them.
+  void choices(const std::string& name, std::vector<std::string> words) { choices_[name] = std::move(words); }
   /// --plugin-dir, --instruction-set: what every command that loads plugins has.
   void with_plugins();
   /// --set path=value. `what`: what it replaces, with an example.
@@ -66,10 +94,13 @@ class Options {
 
  private:
   void print_help() const;
+  void note_down(struct CommandTable& table) const;
   std::string usage_, what_, example_;
   boost::program_options::options_description visible_, hidden_;
   boost::program_options::positional_options_description positions_;
   std::vector<std::pair<std::string, std::string>> position_help_;
+  std::map<std::string, std::vector<std::string>> choices_;
+  bool takes_all_ = false;  ///< the last positional argument
   boost::program_options::variables_map values_;
 };
 

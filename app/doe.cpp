@@ -152,6 +152,7 @@ int design(const Arguments& arguments) {
       "Plans runs as a table in natural units. Add a column for each response and hand it to 'doe analyze'.",
       "millscope doe design two-level --factor A=0.3:0.7 --factor B=0.3:0.7 --factor C=0.3:0.7 --factor D=0.3:0.7 --generators D=A*B*C");
   options.positional("KIND", "two-level, central-composite, latin-hypercube or sobol");
+  options.choices("KIND", {"two-level", "central-composite", "latin-hypercube", "sobol"});
   options.add()("factor,f", po::value<std::vector<std::string>>()->value_name("NAME=LOW:HIGH"),
                 "what is varied (once for each); LOW and HIGH are coded -1 and +1, axial runs may lie beyond");
   options.add()("generators", po::value<std::vector<std::string>>()->value_name("D=A*B*C"),

@@ -115,12 +115,13 @@ int geometry(const Arguments& arguments) {
       "triangles, box, area, open edges, degenerate and duplicate faces, orientation.",
       "millscope geometry export configs/crosscheck/slice_parametric.yaml -o liner.stl");
   options.positional("ACTION", "export or report");
+  options.choices("ACTION", {"export", "report"});
   options.positional("FILE", "a case (.yaml) or a mesh file");
   options.add()("output,o", po::value<std::string>()->value_name("FILE.stl"), "file to write");
   options.add()("force", "replace FILE.stl");
   options.add()("name", po::value<std::string>()->value_name("NAME"), "which geometry of the case");
   options.add()("binary", "write binary STL (names of solids are lost)");
-  options.add()("unit", po::value<std::string>()->value_name("UNIT")->default_value("mm"), "unit of a mesh file: mm, cm, m, inch");
+  options.add()("unit", po::value<std::string>()->value_name("mm|cm|m|inch")->default_value("mm"), "unit of a mesh file");
   options.with_overrides();
   options.with_plugins();
   if (!options.parse(arguments)) return kDone;

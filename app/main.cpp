@@ -15,12 +15,6 @@
 namespace millscope::app {
 namespace {
 
-struct Command {
-  const char* name;
-  const char* what;  ///< nullptr: not for people
-  int (*call)(const Arguments&);
-};
-
 constexpr Command kCommands[] = {
     {"run", "simulate a case", run},
     {"resume", "continue a run from its newest checkpoint", resume},
@@ -41,6 +35,9 @@ constexpr Command kCommands[] = {
     {"schema", "JSON Schema of case files, for editors", schema},
     {"geometry", "export a liner as STL, or report on one", geometry},
     {"plugin", "start a plugin of your own", plugin},
+    {"completion", "completion of commands and files for bash, zsh, fish", completion},
+    {"complete", nullptr, complete_line},
+    {"manual", nullptr, manual},
 };
 
 void print_help() {
@@ -49,8 +46,13 @@ void print_help() {
     if (c.what != nullptr) fmt::print("  {:<10} {}\n", c.name, c.what);
   }
   fmt::print("\n'millscope COMMAND --help' explains one, with an example.\n\nExample:\n  millscope run configs/demo.yaml -o demo-out\n\n"
-             "Exit codes: 0 done · 1 internal error · 2 bad input, the one line on stderr says what and how to put it right · 3 stopped by a signal after "
-             "writing a checkpoint · 4 the output cannot be written (disk full, no permission); what was written before is whole\n\nParticles are spheres; other shapes are not modelled yet.\n");
+             "Exit codes:");
+  const char* before = " ";
+  for (const ExitCode& e : kExitCodes) {
+    fmt::print("{}{} {}", before, e.code, e.means);
+    before = " · ";
+  }
+  fmt::print("\n\nParticles are spheres; other shapes are not modelled yet.\n");
 }
 
 int dispatch(const Arguments& all) {
@@ -71,6 +73,9 @@ int dispatch(const Arguments& all) {
 }
 
 }  // namespace
+
+std::span<const Command> all_commands() { return kCommands; }
+
 }  // namespace millscope::app
 
 int main(int count, char** words) {

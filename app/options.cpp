@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "app/commands.hpp"
+#include "app/tables.hpp"
 #include "kernel/config/document.hpp"
 
 namespace millscope::app {
@@ -22,6 +23,7 @@ void Options::positional(const std::string& name, const std::string& what, bool 
   hidden_.add_options()(name.c_str(), po::value<std::vector<std::string>>());
   positions_.add(name.c_str(), takes_all ? -1 : 1);
   position_help_.emplace_back(name, what);
+  takes_all_ = takes_all;
 }
 
 void Options::with_plugins() {
@@ -36,6 +38,10 @@ void Options::with_overrides(const char* what) {
 }
 
 bool Options::parse(const Arguments& arguments) {
+  if (CommandTable* table = table_being_written()) {
+    note_down(*table);
+    return false;
+  }
   po::options_description all;
   all.add(visible_).add(hidden_);
   try {
@@ -53,6 +59,24 @@ bool Options::parse(const Arguments& arguments) {
     return false;
   }
   return true;
+}
+
+void Options::note_down(CommandTable& table) const {
+  table.usage = usage_;
+  table.page = what_;
+  table.example = example_;
+  const auto words_of = [this](const std::string& name) {
+    const auto found = choices_.find(name);
+    return found == choices_.end() ? std::vector<std::string>{} : found->second;
+  };
+  for (const auto& option : visible_.options()) {
+    const std::string shown = option->format_name();  // "-o [ --output ]" or "--output"
+    const bool is_flag = option->semantic()->max_tokens() == 0;
+    table.options.push_back({option->long_name(), shown.starts_with("--") ? std::string() : shown.substr(1, 1),
+                             is_flag ? std::string() : option->semantic()->name(), option->description(), words_of(option->long_name())});
+  }
+  for (const auto& [name, what] : position_help_) table.positions.push_back({name, what, words_of(name)});
+  table.last_takes_all = takes_all_;
 }
 
 void Options::print_help() const {

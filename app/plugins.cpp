@@ -59,6 +59,10 @@ int plugin(const Arguments& arguments) {
   options.positional("ACTION", "new");
   options.positional("KIND", "contact_law, interaction, body_force, observation, analyzer");
   options.positional("NAME", "lower_case_words");
+  options.choices("ACTION", {"new"});
+  std::vector<std::string> kinds;
+  for (const Kind k : host::scaffold_kinds()) kinds.push_back(host::text(k));
+  options.choices("KIND", kinds);
   options.add()("directory", po::value<std::string>()->value_name("DIR")->default_value("."), "where to put it");
   if (!options.parse(arguments)) return kDone;
   if (options.text("ACTION") != "new") throw config::UserError(fmt::format("plugin {}: the only action is 'new'", options.text("ACTION")));
