@@ -1,0 +1,67 @@
+// What all charts share: axes with name and unit, numbers at ticks.
+import { named, number, superscript } from "../numbers.js";
+
+/** 0.00001 → "10⁻⁵" on logarithmic axes, short numbers elsewhere. */
+export const tick = (value, log = false) => {
+  const power = Math.log10(Math.abs(value));
+  if (value !== 0 && (power > (log ? 2.5 : 5) || power < (log ? -1.5 : -3.5)) && Math.abs(power - Math.round(power)) < 1e-9)
+    return `${value < 0 ? "−" : ""}10${superscript(Math.round(power))}`;
+  return number(value, 4);
+};
+
+/** An axis with numbers: {name, unit, log, min, max}. */
+export function axis(which, { name, unit, log, min, max, splits }, { colours, narrow }, more = {}) {
+  const vertical = which === "y";
+  return {
+    type: log ? "log" : "value", name: named(name, unit), nameLocation: "middle", nameGap: vertical ? (narrow ? 44 : 50) : 28, min, max,
+    nameTextStyle: { color: colours.text, fontSize: 12 }, scale: true, splitNumber: splits ?? (narrow && !vertical ? 4 : 6), logBase: 10,
+    axisLine: { show: true, onZero: false, lineStyle: { color: colours.faint } }, axisTick: { show: true, lineStyle: { color: colours.faint } },
+    axisLabel: { color: colours.text, fontSize: 11, formatter: (value) => tick(value, log), hideOverlap: true },
+    splitLine: { show: true, lineStyle: { color: colours.rule, width: 1 } }, minorTick: { show: false }, ...more,
+  };
+}
+
+export const legend = (names, { colours, narrow }) => ({
+  show: names.length > 1, data: names, top: 0, left: 0, right: 0, type: "plain", itemWidth: 18, itemHeight: 9, itemGap: narrow ? 8 : 14, icon: "roundRect",
+  textStyle: { color: colours.text, fontSize: 12 }, orient: "horizontal", inactiveColor: colours.rule, selectedMode: false,
+});
+
+/** Lines that a legend of these names needs at this width, by the length of its texts. */
+export function legendHeight(names, width) {
+  if (names.length < 2) return 12;
+  let lines = 1;
+  let used = 0;
+  for (const name of names) {
+    const wide = 38 + 6.6 * name.length;
+    if (used > 0 && used + wide > width) {
+      lines += 1;
+      used = 0;
+    }
+    used += wide;
+  }
+  return 12 + 22 * lines;
+}
+
+/** Round ends a little beyond all values. */
+export function range(values, share = 0.04) {
+  let low = Infinity;
+  let high = -Infinity;
+  for (const value of values) {
+    if (!Number.isFinite(value)) continue;
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  if (low > high) return [0, 1];
+  const beyond = (high - low || Math.abs(high) || 1) * share;
+  return [low >= 0 && low < beyond ? 0 : low - beyond, high <= 0 && -high < beyond ? 0 : high + beyond]; // amounts begin at zero, not below it
+}
+
+const STEPS = [1, 2, 2.5, 5, 10];
+/** [low, high] widened to a multiple of a round step. */
+export function roundRange([low, high], parts = 6) {
+  const rough = (high - low) / parts;
+  const size = 10 ** Math.floor(Math.log10(rough));
+  const step = STEPS.find((one) => one * size >= rough * 0.999) * size;
+  const tidy = (value) => Number(value.toPrecision(10));
+  return [tidy(Math.floor(low / step) * step), tidy(Math.ceil(high / step) * step)];
+}

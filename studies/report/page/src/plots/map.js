@@ -1,0 +1,140 @@
+// Maps over x and y of a mill: coloured cells, the shell, lifters, marked places. Equal scales on both axes.
+import { chart, hint } from "../chart.js";
+import { colourAt, line as colourOf } from "../colours.js";
+import { element, freshId, svg } from "../dom.js";
+import { named, number } from "../numbers.js";
+import { axis } from "./axes.js";
+
+const MARGIN = { left: 62, right: 14, top: 10, bottom: 46 };
+
+/** Height that gives the plot the shape of its ranges. */
+const heightFor = (x, y) => (width) =>
+  MARGIN.top + MARGIN.bottom + Math.min(760, ((width - MARGIN.left - MARGIN.right) * (y.max - y.min)) / (x.max - x.min));
+
+/** A plot may be narrower than its box where its height is limited; then it stays in the middle. */
+function gridFor({ width, height }, x, y) {
+  const inner = Math.min(width - MARGIN.left - MARGIN.right, ((height - MARGIN.top - MARGIN.bottom) * (x.max - x.min)) / (y.max - y.min));
+  return { left: MARGIN.left + (width - MARGIN.left - MARGIN.right - inner) / 2, top: MARGIN.top, width: inner,
+    height: height - MARGIN.top - MARGIN.bottom, outerBoundsMode: "none" };
+}
+
+/** Colours of an amount: ends of the bar, and the place of a value on it. Single cells far outside do not set the ends. */
+export function colouring(values, { signed } = {}) {
+  const known = values.filter(Number.isFinite).sort((a, b) => a - b);
+  if (known.length === 0) return null;
+  const at = (share) => known[Math.min(known.length - 1, Math.floor(share * known.length))];
+  const [least, most] = [known[0], known[known.length - 1]];
+  const isSigned = signed ?? (least < 0 && most > 0 && -least > 0.02 * most);
+  let low = Math.min(0, least);
+  let high = most;
+  if (isSigned) {
+    const common = Math.max(-at(0.01), at(0.99));
+    high = Math.max(-least, most) > 2 * common && common > 0 ? common : Math.max(-least, most);
+    low = -high;
+  } else {
+    low = least >= 0 && least > 0.5 * most ? least : low;
+    if (most > 2.5 * at(0.99) && at(0.99) > 0) high = at(0.99);
+  }
+  if (high === low) high = low + (Math.abs(low) || 1);
+  const name = isSigned ? "diverging" : "viridis";
+  return { name, low, high, least, most, colour: (value) => colourAt(name, (value - low) / (high - low)) };
+}
+
+/** The bar below a map that says what the colours mean; prints as it is. */
+export function colourBar(scale, { name, unit }) {
+  if (!scale) return null;
+  const id = freshId("ramp");
+  const stops = [...Array(11).keys()].map((step) =>
+    svg("stop", { offset: `${step * 10}%`, "stop-color": colourAt(scale.name, step / 10) }));
+  const beyond = scale.most > scale.high || scale.least < scale.low
+    ? ` (single values from ${number(scale.least, 3)} to ${number(scale.most, 3)})` : "";
+  const ends = [scale.low, (scale.low + scale.high) / 2, scale.high].map((value) => element("span", null, number(value, 3)));
+  return element("div", { class: "colour-bar" },
+    element("div", { class: "ramp" }, svg("svg", { "aria-hidden": "true", width: "100%", height: 12, preserveAspectRatio: "none" },
+      svg("defs", null, svg("linearGradient", { id }, stops)), svg("rect", { width: "100%", height: 12, fill: `url(#${id})` }))),
+    element("div", { class: "ramp-ends" }, ends), element("div", { class: "ramp-name" }, named(name, unit), beyond));
+}
+
+/** The key to a map of names. */
+export const colourKey = (entries) => element("ul", { class: "colour-key" },
+  entries.map(([colour, name]) => element("li", null, element("i", { style: `background:${colour}` }), name)));
+
+const shape = (draw) => ({
+  type: "custom", silent: true, clip: true, data: [[0, 0]], z: 4, tooltip: { show: false }, encode: { x: 0, y: 1 },
+  renderItem: (parameters, api) => ({ type: "group", children: draw(api) }),
+});
+
+/** Shell and lifters; shell: {radius, segments: [[x1, y1, x2, y2]]} in the units of the axes. */
+const shellShapes = (shell, { colours }) => shape((api) => {
+  const centre = api.coord([0, 0]);
+  const edge = api.coord([shell.radius, 0]);
+  const segments = (shell.segments ?? []).map(([x1, y1, x2, y2]) => {
+    const [from, to] = [api.coord([x1, y1]), api.coord([x2, y2])];
+    return { type: "line", shape: { x1: from[0], y1: from[1], x2: to[0], y2: to[1] }, style: { stroke: colours.text, lineWidth: 1.4 } };
+  });
+  return [{ type: "circle", shape: { cx: centre[0], cy: centre[1], r: edge[0] - centre[0] },
+    style: { fill: "transparent", stroke: colours.text, lineWidth: 1.6 } }, ...segments];
+});
+
+/** Marked places: {x, y, text, symbol} a point, {x, y, x2, y2, text} a line from the first to the second. */
+const markShapes = (marks, { colours, narrow }) => shape((api) => marks.flatMap((one, index) => {
+  const colour = one.colour ?? colourOf(index + 1);
+  const at = api.coord([one.x, one.y]);
+  const outline = { stroke: colours.back, lineWidth: 3.5 };
+  const label = (x, y, align) => ({ type: "text", style: { text: one.text, x, y, fill: colours.strong, stroke: colours.back, lineWidth: 3.5,
+    fontSize: narrow ? 10 : 11.5, fontWeight: 600, align, verticalAlign: "middle" } });
+  if (one.x2 === undefined)
+    return [{ type: "circle", shape: { cx: at[0], cy: at[1], r: 5 }, style: { fill: colour, ...outline, lineWidth: 2 } }, label(at[0] + 9, at[1] + (one.shift ?? 0), "left")];
+  const to = api.coord([one.x2, one.y2]);
+  const lines = [outline, { stroke: colour, lineWidth: 2 }].map((style) => ({ type: "line", shape: { x1: at[0], y1: at[1], x2: to[0], y2: to[1] }, style }));
+  const inward = [at[0] + (at[0] - to[0]) * 0.25, at[1] + (at[1] - to[1]) * 0.25];
+  return [...lines, label(inward[0], inward[1] + (one.shift ?? 0), "center")];
+}));
+
+/** Arrows: [{x, y, dx, dy, sure, text}] in the units of the axes; what is not sure is drawn thin. */
+const arrowShapes = (arrows, { colours }) => shape((api) => arrows.map((one) => {
+  const from = api.coord([one.x, one.y]);
+  const to = api.coord([one.x + one.dx, one.y + one.dy]);
+  const long = Math.hypot(to[0] - from[0], to[1] - from[1]);
+  const along = long > 0 ? [(to[0] - from[0]) / long, (to[1] - from[1]) / long] : [0, 0];
+  const head = Math.min(8, long * 0.5);
+  const side = (sign) => [to[0] - head * along[0] + sign * head * 0.45 * along[1], to[1] - head * along[1] - sign * head * 0.45 * along[0]];
+  const colour = one.sure ? colourOf(1) : colours.faint;
+  return { type: "group", children: [
+    { type: "line", shape: { x1: from[0], y1: from[1], x2: to[0], y2: to[1] }, style: { stroke: colour, lineWidth: one.sure ? 2.4 : 1.2 } },
+    { type: "polygon", shape: { points: [to, side(1), side(-1)] }, style: { fill: colour } }] };
+}));
+
+/**
+ * cells: {edgesX, edgesY, values (row-major, row of y by column of x), tell(index) → rows of the hint}; colour(value) → CSS colour;
+ * x, y: {name, unit, min, max}; shell, marks, arrows as above. All in the units of the axes.
+ */
+export function map(key, { label, x, y, cells, colour, shell, marks = [], arrows = [], title }) {
+  const option = (context) => {
+    const across = cells ? cells.edgesX.length - 1 : 0;
+    const data = [];
+    for (const [index, value] of cells ? cells.values.entries() : []) {
+      const [column, row] = [index % across, Math.floor(index / across)];
+      if (Number.isFinite(value)) data.push([cells.edgesX[column], cells.edgesX[column + 1], cells.edgesY[row], cells.edgesY[row + 1], index]);
+    }
+    const mosaic = {
+      type: "custom", name: title, data, encode: { x: [0, 1], y: [2, 3] }, z: 2, clip: true, progressive: 0,
+      renderItem(parameters, api) {
+        const low = api.coord([api.value(0), api.value(2)]);
+        const high = api.coord([api.value(1), api.value(3)]);
+        return { type: "rect", shape: { x: low[0], y: high[1], width: high[0] - low[0] + 0.4, height: low[1] - high[1] + 0.4 },
+          style: { fill: colour(cells.values[api.value(4)]) } };
+      },
+    };
+    const fixed = { splits: 6 };
+    return {
+      grid: { ...gridFor(context, x, y), show: true, backgroundColor: context.colours.empty, borderColor: "transparent" },
+      xAxis: axis("x", { ...x, ...fixed }, context, { splitLine: { show: false } }),
+      yAxis: axis("y", { ...y, ...fixed }, context, { splitLine: { show: false }, nameGap: 42 }),
+      series: [...(cells ? [mosaic] : []), ...(shell ? [shellShapes(shell, context)] : []), ...(arrows.length ? [arrowShapes(arrows, context)] : []),
+        ...(marks.length ? [markShapes(marks, context)] : [])],
+      tooltip: { trigger: "item", formatter: (found) => (found.value?.length === 5 && cells ? hint(title, cells.tell(found.value[4])) : "") },
+    };
+  };
+  return chart(key, { label, axes: [named(x.name, x.unit), named(y.name, y.unit)], height: heightFor(x, y), option });
+}

@@ -1,0 +1,1 @@
+export function analysis() { return { kind: "analysis" }; }

@@ -1,0 +1,1 @@
+export function calibration() { return { kind: "calibration" }; }

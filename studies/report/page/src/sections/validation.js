@@ -1,0 +1,1 @@
+export function validation() { return { kind: "validation" }; }
