@@ -1,6 +1,7 @@
 // JSON Schema of case files, for completion and checks in editors.
 #include <fmt/format.h>
 
+#include "kernel/config/schema_parts.hpp"
 #include "kernel/config/writer.hpp"
 
 namespace millscope::config {
@@ -208,7 +209,9 @@ json case_schema(std::span<const Descriptor* const> descriptors) {
                         {"domain", domain_schema()},
                         {"time", time_schema()},
                         {"output", output_schema()},
-                        {"run", run}});
+                        {"run", run}},
+                       {"schema_version", "materials", "beads", "fill", "contact", "pairs", "body_forces", "time"});
+  schema = with_parts(std::move(schema));
   schema["$schema"] = "http://json-schema.org/draft-07/schema#";
   schema["title"] = "millscope case";
   return schema;

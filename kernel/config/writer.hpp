@@ -18,7 +18,7 @@ std::string resolved_yaml(const Case& c, std::span<const Descriptor* const> desc
 /// A text as `resolved_yaml` writes it: in double quotes; JSON's quoting is also YAML's.
 std::string quoted(const std::string& text);
 
-/// JSON Schema (draft 7) of case files with the parameters of these plugins.
+/// JSON Schema (draft 7) of case files, and of files that cases include, with the parameters of these plugins.
 nlohmann::json case_schema(std::span<const Descriptor* const> descriptors);
 
 }  // namespace millscope::config

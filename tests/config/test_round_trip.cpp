@@ -66,13 +66,14 @@ TEST_CASE("without descriptors a plugin's keys are copied") {
 
 TEST_CASE("the schema holds the plugins' parameters") {
   const nlohmann::json schema = case_schema(kPlugins);
-  CHECK(schema["properties"]["contact"]["properties"]["law"]["oneOf"][0]["properties"]["kind"]["const"] == "springs");
-  CHECK(schema["properties"]["contact"]["properties"]["law"]["oneOf"][0]["properties"]["cap"]["enum"][1] == "sum");
+  CHECK(schema["properties"]["contact"]["properties"]["law"]["anyOf"][0]["properties"]["kind"]["const"] == "springs");
+  CHECK(schema["properties"]["contact"]["properties"]["law"]["anyOf"][0]["properties"]["cap"]["enum"][1] == "sum");
   CHECK(schema["properties"]["pairs"]["additionalProperties"]["properties"].contains("restitution"));
-  CHECK(schema["properties"]["geometry"]["additionalProperties"]["oneOf"][0]["properties"].contains("motion"));
-  CHECK(schema["properties"]["geometry"]["additionalProperties"]["oneOf"][0]["required"][0] == "kind");
+  CHECK(schema["properties"]["geometry"]["additionalProperties"]["anyOf"][0]["properties"].contains("motion"));
+  CHECK(schema["then"]["properties"]["geometry"]["additionalProperties"]["required"][0] == "kind");
   CHECK(schema["additionalProperties"] == false);
-  CHECK(schema["properties"]["contact"]["properties"]["interactions"]["additionalProperties"]["required"][0] == "kind");
-  CHECK(schema["properties"]["domain"]["properties"]["low"]["anyOf"].size() == 2);
+  CHECK(schema["then"]["properties"]["contact"]["properties"]["interactions"]["additionalProperties"]["required"][0] == "kind");
+  CHECK_FALSE(schema["properties"]["geometry"]["additionalProperties"]["anyOf"][0].contains("required"));
+  CHECK(schema["properties"]["domain"]["properties"]["low"]["anyOf"].size() == 3);  // a vector, sides, nothing
   CHECK(schema["properties"]["output"]["properties"]["vtk"]["anyOf"][0]["enum"][0] == "off");
 }
