@@ -28,7 +28,7 @@ bench: packages-test binary ## time against LIGGGHTS on the cross-check case (20
 verify: packages-test binary ## the long checks (hours), written to docs/validation.md; VERIFY="crosscheck memory" for some
 	tools/verify.py --build $(BUILD) $(VERIFY)
 
-install: binary ## build and install to PREFIX (command, plugins, SDK)
+install: binary ## build and install to PREFIX (command, plugins, SDK, completion, manual)
 	cmake --install $(BUILD) --prefix $(PREFIX)
 
 format: ## clang-format every source
@@ -57,7 +57,7 @@ packages:
 packages-test:
 	@tools/install_packages.sh test
 
-# The command and the plugins, no tests; a build directory that has tests keeps them.
+# The command, the plugins and what the command says of itself (share/), no tests; a build directory that has tests keeps them.
 binary: packages
 	@test -f $(BUILD)/build.ninja || cmake --preset release -DMILLSCOPE_TESTS=OFF $(CMAKE_OPTIONS)
-	cmake --build --preset release -j $(JOBS) --target millscope plugins/all geometry/all
+	cmake --build --preset release -j $(JOBS) --target millscope millscope_share plugins/all geometry/all
