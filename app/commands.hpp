@@ -46,6 +46,8 @@ int resume(const Arguments& arguments);
 int check(const Arguments& arguments);
 int analyze(const Arguments& arguments);
 int compare(const Arguments& arguments);
+int report_page(const Arguments& arguments);
+int watch(const Arguments& arguments);
 int design_of_experiments(const Arguments& arguments);
 int calibrate_study(const Arguments& arguments);
 int validate(const Arguments& arguments);

@@ -28,6 +28,8 @@ constexpr Command kCommands[] = {
     {"campaign-task", nullptr, campaign_task},
     {"analyze", "measure a simulation or a recording", analyze},
     {"compare", "what differs between two results of analyze", compare},
+    {"report", "one page of everything that was found", report_page},
+    {"watch", "the same page while a run goes on", watch},
     {"doe", "plan runs, and what planned runs tell", design_of_experiments},
     {"pept", "how good a recording of a tracer is", pept},
     {"describe", "what a plugin does and which parameters it takes", describe},

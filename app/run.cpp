@@ -5,6 +5,7 @@
 #include <csignal>
 
 #include "app/commands.hpp"
+#include "app/watching.hpp"
 #include "kernel/run/simulation.hpp"
 
 namespace millscope::app {
@@ -66,12 +67,14 @@ int run(const Arguments& arguments) {
   options.add()("output,o", po::value<std::string>()->value_name("OUT"),
                 "directory to make; an existing run is never overwritten unless --force");
   options.add()("force", "overwrite an earlier run in OUT");
+  options.add()("watch", "serve a page that follows the run, to this machine alone, and print its address");
   add_run_options(options);
   if (!options.parse(arguments)) return kDone;
   run::RunOptions r = run_options(options);
   const std::string case_file = options.text("CASE.yaml");
   r.output = options.text("output");
   r.force = options.has("force");
+  if (options.has("watch")) watch_beside(r.output, options);
   watch_signals();
   return report(run::run_case(case_file, options.registry(), r), r);
 }
@@ -81,10 +84,12 @@ int resume(const Arguments& arguments) {
                   "Continues an interrupted run from its newest checkpoint, bit for bit, or a finished one to a later --set time.end_s=….",
                   "millscope resume demo-out --set time.end_s=3");
   options.positional("OUT", "directory of the run");
+  options.add()("watch", "serve a page that follows the run, to this machine alone, and print its address");
   add_run_options(options);
   if (!options.parse(arguments)) return kDone;
   run::RunOptions r = run_options(options);
   r.output = options.text("OUT");
+  if (options.has("watch")) watch_beside(r.output, options);
   watch_signals();
   return report(run::resume_run(options.registry(), r), r);
 }

@@ -40,7 +40,7 @@ export function withError(value, error, unit) {
   const by = scale(unit, [value]);
   const decimals = decimalsFor(error * by.factor);
   if (decimals === null) return number(value * by.factor) + spaced(by.unit);
-  return `${plain(value * by.factor, decimals)} ± ${plain(error * by.factor, decimals)}${spaced(by.unit)}`;
+  return `${plain(value * by.factor, decimals)}\u00a0±\u00a0${plain(error * by.factor, decimals)}${spaced(by.unit)}`;
 }
 
 export function quantity(value, unit, digits = 4) {

@@ -9,12 +9,32 @@ export const tick = (value, log = false) => {
   return number(value, 4);
 };
 
-/** An axis with numbers: {name, unit, log, min, max}. */
-export function axis(which, { name, unit, log, min, max, splits }, { colours, narrow }, more = {}) {
+const LETTER = 6.4; // px: an average letter of an axis' name
+
+/** A long name in as many lines as it needs beside its axis. */
+function broken(text, room) {
+  const lines = [""];
+  for (const word of text.split(" ")) {
+    const last = lines.length - 1;
+    if (lines[last] !== "" && (lines[last].length + 1 + word.length) * LETTER > room) lines.push(word);
+    else lines[last] += (lines[last] === "" ? "" : " ") + word;
+  }
+  return lines;
+}
+
+/** px that a horizontal axis needs below the plot. */
+export const roomBelow = ({ name, unit }, room) => 32 + 14 * broken(named(name, unit), room).length;
+
+const decade = (value, round) => (value > 0 ? 10 ** round(Math.log10(value) + (round === Math.floor ? 1e-9 : -1e-9)) : undefined);
+
+/** An axis with numbers: {name, unit, log, min, max}; room: px along the axis. */
+export function axis(which, { name, unit, log, min, max, splits }, { colours, narrow }, room, more = {}) {
   const vertical = which === "y";
+  const lines = broken(named(name, unit), room ?? Infinity);
   return {
-    type: log ? "log" : "value", name: named(name, unit), nameLocation: "middle", nameGap: vertical ? (narrow ? 44 : 50) : 28, min, max,
-    nameTextStyle: { color: colours.text, fontSize: 12 }, scale: true, splitNumber: splits ?? (narrow && !vertical ? 4 : 6), logBase: 10,
+    type: log ? "log" : "value", name: lines.join("\n"), nameLocation: "middle", nameGap: (vertical ? (narrow ? 42 : 48) : 28),
+    min: log ? decade(min, Math.floor) : min, max: log ? decade(max, Math.ceil) : max,
+    nameTextStyle: { color: colours.text, fontSize: 12, lineHeight: 14, verticalAlign: vertical ? "bottom" : "top" }, scale: true, splitNumber: splits ?? (narrow && !vertical ? 4 : 6), logBase: 10,
     axisLine: { show: true, onZero: false, lineStyle: { color: colours.faint } }, axisTick: { show: true, lineStyle: { color: colours.faint } },
     axisLabel: { color: colours.text, fontSize: 11, formatter: (value) => tick(value, log), hideOverlap: true },
     splitLine: { show: true, lineStyle: { color: colours.rule, width: 1 } }, minorTick: { show: false }, ...more,

@@ -2,15 +2,15 @@
 import { chart, hint } from "../chart.js";
 import { line as colourOf } from "../colours.js";
 import { named, number } from "../numbers.js";
-import { axis, legend, legendHeight, range, roundRange } from "./axes.js";
+import { axis, legend, legendHeight, range, roomBelow, roundRange } from "./axes.js";
 
 const cut = (text, most) => (text.length > most ? `${text.slice(0, most - 1)}…` : text);
 
 /** Names of rows, broken into two lines where they are long. */
 const rowAxis = (rows, context, room) => ({
   type: "category", inverse: true, data: rows, axisTick: { show: false }, axisLine: { lineStyle: { color: context.colours.faint } },
-  axisLabel: { color: context.colours.text, fontSize: 11, width: room - 10, overflow: "break", interval: 0, lineHeight: 13,
-    formatter: (text) => cut(text, Math.floor((room - 10) / 5.4) * 2) },
+  axisLabel: { color: context.colours.text, fontSize: 11, width: room - 10, overflow: "break", interval: 0, lineHeight: 12,
+    formatter: (text) => cut(text, Math.floor((room - 10) / 5.6) * (context.narrow ? 3 : 2)) },
   splitLine: { show: true, lineStyle: { color: context.colours.rule, type: "dotted" } },
 });
 
@@ -20,12 +20,12 @@ const roomFor = (rows, width) => Math.min(width * 0.42, 16 + 6.4 * Math.max(4, .
  * rows: [name]; groups: [{name, colour, symbol, values: [{value, low, high, text} or null per row]}]; x: {name, unit, min, max};
  * zone: [low, high] is shaded; zero: where a vertical line stands.
  */
-export function intervals(key, { label, rows, groups, x, zero, zone, rowName, extra = 0 }) {
+export function intervals(key, { label, rows, groups, x, zero, zone }) {
   const names = groups.map((group) => group.name).filter(Boolean);
   const all = groups.flatMap((group) => group.values.filter(Boolean).flatMap((one) => [one.value, one.low, one.high]))
     .concat(zero ?? [], zone ?? []).filter(Number.isFinite);
   const [low, high] = roundRange(range(all));
-  const height = (width) => 58 + legendHeight(names, width) + rows.length * ((width < 480 ? 32 : 26) + extra + 8 * (groups.length - 1));
+  const height = (width) => 12 + legendHeight(names, width) + roomBelow(x, width - roomFor(rows, width) - 20) + rows.length * ((width < 480 ? 36 : 26) + 8 * (groups.length - 1));
   const option = (context) => {
     const { width, colours } = context;
     const room = roomFor(rows, width);
@@ -72,24 +72,24 @@ export function intervals(key, { label, rows, groups, x, zero, zone, rowName, ex
       return hint(rows[found.value[1]], [[found.color, group.name || x.name, text]]);
     };
     return {
-      grid: { left: room, right: 20, top: legendHeight(names, width), bottom: 46, outerBoundsMode: "none" },
+      grid: { left: room, right: 20, top: legendHeight(names, width), bottom: roomBelow(x, width - room - 20), outerBoundsMode: "none" },
       legend: legend(names, context), yAxis: rowAxis(rows, context, room),
-      xAxis: axis("x", { ...x, min: x.min ?? low, max: x.max ?? high }, context),
+      xAxis: axis("x", { ...x, min: x.min ?? low, max: x.max ?? high }, context, width - room - 20),
       series: [...shade, ...groups.map(item), ...origin], tooltip: { trigger: "item", formatter: tell },
     };
   };
-  return chart(key, { label, axes: [named(x.name, x.unit)].concat(rowName ?? []), height, option });
+  return chart(key, { label, axes: [named(x.name, x.unit)], height, option });
 }
 
 /** rows: [name]; groups: [{name, values: [number]}]; x: {name, unit}; stacked puts the groups of a row on top of each other. */
 export function bars(key, { label, rows, groups, x, stacked = false }) {
   const names = groups.map((group) => group.name).filter(Boolean);
-  const height = (width) => 58 + legendHeight(names, width) + rows.length * (stacked || groups.length === 1 ? 34 : 14 + 16 * groups.length);
+  const height = (width) => 12 + legendHeight(names, width) + roomBelow(x, width - roomFor(rows, width) - 24) + rows.length * (stacked || groups.length === 1 ? 34 : 14 + 16 * groups.length);
   const option = (context) => {
     const room = roomFor(rows, context.width);
     return {
-      grid: { left: room, right: 24, top: legendHeight(names, context.width), bottom: 46, outerBoundsMode: "none" },
-      legend: legend(names, context), yAxis: rowAxis(rows, context, room), xAxis: { ...axis("x", x, context), scale: false },
+      grid: { left: room, right: 24, top: legendHeight(names, context.width), bottom: roomBelow(x, context.width - room - 24), outerBoundsMode: "none" },
+      legend: legend(names, context), yAxis: rowAxis(rows, context, room), xAxis: { ...axis("x", x, context, context.width - room - 24), scale: false },
       series: groups.map((group, index) => ({ type: "bar", name: group.name, data: group.values, color: group.colour ?? colourOf(index),
         stack: stacked ? "all" : undefined, barMaxWidth: 20, emphasis: { disabled: true },
         itemStyle: { decal: undefined, borderColor: context.colours.back, borderWidth: stacked ? 1 : 0 } })),

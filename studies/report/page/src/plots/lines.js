@@ -2,7 +2,7 @@
 import { chart, hint } from "../chart.js";
 import { line as colourOf } from "../colours.js";
 import { named, number } from "../numbers.js";
-import { axis, legend, legendHeight } from "./axes.js";
+import { axis, legend, legendHeight, roomBelow } from "./axes.js";
 
 /** Values between edges as points of a staircase. */
 export function stairs(edges, values) {
@@ -31,6 +31,12 @@ function pieces(band) {
   return found.filter((piece) => piece.length > 1);
 }
 
+/** Ends of a logarithmic axis. */
+function ends(series, index) {
+  const values = series.flatMap((one) => one.points.filter((point) => point[1] !== null).map((point) => point[index])).filter((value) => value > 0);
+  return values.length ? { min: Math.min(...values), max: Math.max(...values) } : {};
+}
+
 const mark = ({ x, y, text, dashed = true }, { colours }) => ({
   type: "custom", silent: true, clip: true, z: 5, data: [[x ?? 0, y ?? 0]], encode: { x: -1, y: -1 }, tooltip: { show: false },
   renderItem(parameters, api) {
@@ -53,8 +59,12 @@ const mark = ({ x, y, text, dashed = true }, { colours }) => ({
 export function lines(key, { label, series, x, y, marks = [], height = 320, hover = "axis", describe }) {
   const names = series.filter((one) => one.name && !one.unlisted).map((one) => one.name);
   const colour = (one, index) => one.colour ?? colourOf(index);
+  const spread = (one, index) => (one.log && one.min === undefined ? { ...one, ...ends(series, index) } : one);
   const option = (context) => {
-    const { width, narrow, colours } = context;
+    const { width, height: tall, narrow, colours } = context;
+    const left = narrow ? 62 : 70;
+    const below = roomBelow(x, width - left - 18);
+    const above = legendHeight(names, width);
     const drawn = [];
     series.forEach((one, index) => {
       for (const piece of one.band ? pieces(one.band) : []) drawn.push(bandPolygon(piece, colour(one, index), 0.2));
@@ -74,8 +84,8 @@ export function lines(key, { label, series, x, y, marks = [], height = 320, hove
         once.map((one) => [one.color, one.seriesName || y.name, `${number(one.value[1])}${y.unit ? ` ${y.unit}` : ""}`]));
     };
     return {
-      grid: { left: narrow ? 62 : 70, right: 18, top: legendHeight(names, width), bottom: 46, outerBoundsMode: "none" },
-      legend: legend(names, context), xAxis: axis("x", x, context), yAxis: axis("y", y, context),
+      grid: { left, right: 18, top: above, bottom: below, outerBoundsMode: "none" }, legend: legend(names, context),
+      xAxis: axis("x", spread(x, 0), context, width - left - 18), yAxis: axis("y", spread(y, 1), context, tall - above - below),
       series: drawn.concat(marks.map((one) => mark(one, context))), tooltip: { trigger: hover, formatter: tell },
     };
   };

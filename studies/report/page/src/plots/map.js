@@ -7,12 +7,15 @@ import { axis } from "./axes.js";
 
 const MARGIN = { left: 62, right: 14, top: 10, bottom: 46 };
 
+const FREE = 300; // px: height of the plot where the axes have unlike units
+
 /** Height that gives the plot the shape of its ranges. */
-const heightFor = (x, y) => (width) =>
+const heightFor = (x, y, square) => (width) => !square ? FREE + MARGIN.top + MARGIN.bottom :
   MARGIN.top + MARGIN.bottom + Math.min(760, ((width - MARGIN.left - MARGIN.right) * (y.max - y.min)) / (x.max - x.min));
 
 /** A plot may be narrower than its box where its height is limited; then it stays in the middle. */
-function gridFor({ width, height }, x, y) {
+function gridFor({ width, height }, x, y, square) {
+  if (!square) return { ...MARGIN, outerBoundsMode: "none" };
   const inner = Math.min(width - MARGIN.left - MARGIN.right, ((height - MARGIN.top - MARGIN.bottom) * (x.max - x.min)) / (y.max - y.min));
   return { left: MARGIN.left + (width - MARGIN.left - MARGIN.right - inner) / 2, top: MARGIN.top, width: inner,
     height: height - MARGIN.top - MARGIN.bottom, outerBoundsMode: "none" };
@@ -107,9 +110,9 @@ const arrowShapes = (arrows, { colours }) => shape((api) => arrows.map((one) => 
 
 /**
  * cells: {edgesX, edgesY, values (row-major, row of y by column of x), tell(index) → rows of the hint}; colour(value) → CSS colour;
- * x, y: {name, unit, min, max}; shell, marks, arrows as above. All in the units of the axes.
+ * x, y: {name, unit, min, max}; shell, marks, arrows as above. All in the units of the axes; square: equal scales on both.
  */
-export function map(key, { label, x, y, cells, colour, shell, marks = [], arrows = [], title }) {
+export function map(key, { label, x, y, cells, colour, shell, marks = [], arrows = [], title, square = true }) {
   const option = (context) => {
     const across = cells ? cells.edgesX.length - 1 : 0;
     const data = [];
@@ -128,13 +131,13 @@ export function map(key, { label, x, y, cells, colour, shell, marks = [], arrows
     };
     const fixed = { splits: 6 };
     return {
-      grid: { ...gridFor(context, x, y), show: true, backgroundColor: context.colours.empty, borderColor: "transparent" },
-      xAxis: axis("x", { ...x, ...fixed }, context, { splitLine: { show: false } }),
-      yAxis: axis("y", { ...y, ...fixed }, context, { splitLine: { show: false }, nameGap: 42 }),
+      grid: { ...gridFor(context, x, y, square), show: true, backgroundColor: context.colours.empty, borderColor: "transparent" },
+      xAxis: axis("x", { ...x, ...fixed }, context, undefined, { splitLine: { show: false } }),
+      yAxis: axis("y", { ...y, ...fixed }, context, undefined, { splitLine: { show: false }, nameGap: 42 }),
       series: [...(cells ? [mosaic] : []), ...(shell ? [shellShapes(shell, context)] : []), ...(arrows.length ? [arrowShapes(arrows, context)] : []),
         ...(marks.length ? [markShapes(marks, context)] : [])],
       tooltip: { trigger: "item", formatter: (found) => (found.value?.length === 5 && cells ? hint(title, cells.tell(found.value[4])) : "") },
     };
   };
-  return chart(key, { label, axes: [named(x.name, x.unit), named(y.name, y.unit)], height: heightFor(x, y), option });
+  return chart(key, { label, axes: [named(x.name, x.unit), named(y.name, y.unit)], height: heightFor(x, y, square), option });
 }

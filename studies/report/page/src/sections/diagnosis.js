@@ -12,12 +12,16 @@ const FARTHEST = 12; // numbers shown at once
 
 const bare = (row) => (row.observable.startsWith(`${row.condition}: `) ? row.observable.slice(row.condition.length + 2) : row.observable);
 
-/** "(recording 0.8189, retuned base 0.7977 m/s)" out of a mismatch's sentence. */
-const both = (row) => /recording ([^,]+), retuned base ([^:]+):/.exec(row.sentence ?? "");
+/** ["0.8189", "0.7977", "m/s"] out of "… recording 0.8189, retuned base 0.7977 m/s: …". */
+function both(row) {
+  const found = /recording (\S+), retuned base (\S+) ?([^:]*):/.exec(row.sentence ?? "");
+  return found ? found.slice(1).map((text) => text.replace("-", "−")) : ["–", "–", ""];
+}
 
 const mismatchTable = (rows, caption) => table({ caption, rows, columns: [
   { label: "observable", value: bare }, { label: "condition", value: (row) => row.condition },
-  { label: "recording", number: true, value: (row) => both(row)?.[1] ?? "–" }, { label: "retuned base", number: true, value: (row) => both(row)?.[2] ?? "–" },
+  { label: "recording", number: true, value: (row) => both(row)[0] },
+  { label: "retuned base", number: true, value: (row) => both(row)[1] }, { label: "unit", value: (row) => both(row)[2] },
   { label: "z", number: true, value: (row) => signed(row.z, 2) }, { label: "p, all together", number: true, value: (row) => probability(row.p_value) }] });
 
 function mismatch({ mismatch: rows = [], base }, key) {
@@ -55,9 +59,9 @@ function tried({ hypotheses = [], notes = [] }, key) {
       { label: "candidate", value: (row) => words(row.name) }, { label: "kind", value: (row) => row.kind },
       { label: "judgement", value: (row) => row.class }, { label: "p, all candidates together", number: true, value: (row) => probability(row.p_value) },
       { label: "p alone", number: true, value: (row) => probability(row.p_value_alone) },
-      { label: "strength (90 %)", value: strength }, { label: "gain ΔQ", number: true, value: (row) => number(Math.abs(row.delta_q) < 1e-6 ? 0 : row.delta_q, 3) },
+      { label: "strength (90 %)", wide: true, value: strength }, { label: "gain ΔQ", number: true, value: (row) => number(Math.abs(row.delta_q) < 1e-6 ? 0 : row.delta_q, 3) },
       { label: "κ", number: true, value: (row) => number(row.kappa, 2) }, { label: "λ", number: true, value: (row) => number(row.lambda, 3) },
-      { label: "could be seen", value: canMatter }] }),
+      { label: "could be seen", wide: true, value: canMatter }] }),
   note("p, all candidates together: how often chance would bring one of them so far. κ: part of the effect that retuned friction cannot imitate (0: concealed wholly). "
     + "λ: the square of that part in noise units at the candidate's strongest; below 9 it cannot be seen."),
   untested.length ? disclosure(`${key}-untested`, `Not tested (${untested.length})`, () => list(untested.map((one) => one.replace(/^not tested: /, "")))) : null);

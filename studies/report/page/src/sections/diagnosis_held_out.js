@@ -30,7 +30,7 @@ function condition(held, key, index) {
       groups: [{ name: "", values: gained.map((model) => ({ value: gain(model).value, low: gain(model).low90, high: gain(model).high90 })) }],
       x: { name: "misfit of the rival less that of the corrected model" }, zero: 0 })) : null,
     table({ caption: `Predictions for ${held.condition}`, rows: models, classOf: (model) => (model.model === "corrected" ? "strong" : null), columns: [
-      { label: "model", value: (model) => model.model }, { label: "what it is", value: (model) => model.is },
+      { label: "model", value: (model) => model.model }, { label: "what it is", wide: true, value: (model) => model.is },
       { label: "simulated", value: (model) => (model.simulated ? "yes" : "computed from others") }, { label: "misfit", number: true, value: (model) => number(model.misfit, 3) },
       { label: "power (W)", number: true, value: (model) => number(model.power_W) }, { label: "error (%)", number: true, value: (model) => signed(model.power_percent, 2) },
       ...(gained.length ? [{ label: "gain of the corrected one (90 %)", number: true,

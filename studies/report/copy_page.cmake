@@ -1,0 +1,3 @@
+# copy_page.cmake: the page's own files from FROM to TO, beside the libraries that lie there.
+file(REMOVE_RECURSE ${TO}/src)
+file(COPY ${FROM}/ DESTINATION ${TO} PATTERN node_modules EXCLUDE PATTERN package.json EXCLUDE PATTERN package-lock.json EXCLUDE)

@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+#include <sys/file.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "studies/doe/table.hpp"
+#include "studies/report/one_section.hpp"
+
+namespace millscope::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether a process holds the folder's lock. A file that a killed run left behind is held by nobody.
+bool is_held(const fs::path& folder) {
+  const int lock = ::open((folder / ".lock").c_str(), O_RDONLY | O_CLOEXEC);
+  if (lock < 0) return false;
+  const bool held = ::flock(lock, LOCK_SH | LOCK_NB) != 0;
+  ::close(lock);
+  return held;
+}
+
+std::vector<fs::path> sorted_files(const fs::path& folder, const char* ending) {
+  std::vector<fs::path> files;
+  if (!fs::is_directory(folder)) return files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file() && entry.path().extension() == ending) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+Json table_json(const fs::path& file) {
+  const doe::Table table = doe::Table::read(file);
+  Json rows = Json::array();
+  for (std::size_t r = 0; r < table.rows(); ++r) {
+    Json row = Json::array();
+    for (std::size_t c = 0; c < table.names().size(); ++c) {
+      const std::string& cell = table.cell(r, c);
+      const Json number = Json::parse(cell, nullptr, false);
+      row.push_back(cell.empty() ? Json(nullptr) : number.is_number() ? number : Json(cell));
+    }
+    rows.push_back(row);
+  }
+  return {{"columns", table.names()}, {"rows", rows}};
+}
+
+/// A section that is one JSON file.
+Json from_file(const char* kind, const char* file, const fs::path& folder) {
+  Json section = begun(kind, folder.filename().empty() ? folder.parent_path().filename() : folder.filename(), folder);
+  section[kind] = read_json(folder / file);
+  return section;
+}
+
+}  // namespace
+
+Json begun(const char* kind, const std::string& title, const fs::path& folder) {
+  return {{"kind", kind}, {"title", title}, {"source", folder.lexically_normal().string()}, {"notes", Json::array()}};
+}
+
+Json read_json(const fs::path& file) {
+  std::ifstream in(file);
+  if (!in) throw config::UserError(fmt::format("{}: cannot be read", file.string()));
+  Json json = Json::parse(in, nullptr, false);
+  if (!json.is_object())
+    throw config::UserError(fmt::format("{}: is damaged: no JSON object; run the command that wrote it again", file.string()));
+  return json;
+}
+
+State state_of(const fs::path& folder, const char* done) {
+  if (is_held(folder)) return State::running;
+  return fs::exists(folder / done) ? State::done : State::stopped;
+}
+
+const char* text(State state) { return state == State::running ? "running" : state == State::done ? "done" : "stopped"; }
+
+Json comparison_section(const fs::path& folder) {
+  Json section = from_file("comparison", "comparison.json", folder);
+  section["pictures"] = Json::array();
+  for (const fs::path& file : sorted_files(folder / "pictures", ".svg")) {
+    std::stringstream svg;
+    svg << std::ifstream(file).rdbuf();
+    section["pictures"].push_back({{"name", file.stem().string()}, {"svg", svg.str()}});
+  }
+  return section;
+}
+
+Json calibration_section(const fs::path& folder) {
+  Json section = from_file("calibration", "calibration.json", folder);
+  section["runs"] = fs::exists(folder / "runs.csv") ? table_json(folder / "runs.csv") : Json(nullptr);
+  return section;
+}
+
+Json validation_section(const fs::path& folder) { return from_file("validation", "validation.json", folder); }
+
+Json diagnosis_section(const fs::path& folder) { return from_file("diagnosis", "diagnosis.json", folder); }
+
+Json challenge_section(const fs::path& folder) {
+  Json section = from_file("challenge", "score.json", folder);
+  section["score"] = section["challenge"];
+  section.erase("challenge");
+  return section;
+}
+
+}  // namespace millscope::report

@@ -1,0 +1,67 @@
+#include "studies/report/report.hpp"
+
+#include <fmt/chrono.h>
+
+#include <ctime>
+#include <stdexcept>
+#include <string_view>
+
+#include "kernel/output/file.hpp"
+#include "studies/report/packed.hpp"
+
+// The page that is built from page/, put into the program by page.S.
+extern "C" const char millscope_page_begin[];
+extern "C" const char millscope_page_end[];
+
+namespace millscope::report {
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '&':
+        out += "&amp;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+/// Appends `page` up to the mark and returns what follows it.
+std::string_view before(std::string_view page, std::string_view mark, std::string& out) {
+  const std::size_t at = page.find(mark);
+  if (at == std::string_view::npos) throw std::logic_error("the page has no " + std::string(mark));
+  out += page.substr(0, at);
+  return page.substr(at + mark.size());
+}
+
+}  // namespace
+
+nlohmann::ordered_json document_of(const std::string& title, const std::vector<nlohmann::ordered_json>& sections, bool live) {
+  return {{"schema_version", 1},          {"title", title}, {"made_utc", fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(std::time(nullptr)))},
+          {"version", MILLSCOPE_VERSION}, {"live", live},   {"sections", sections}};
+}
+
+std::string page_of(const nlohmann::ordered_json& document) {
+  std::string_view rest(millscope_page_begin, static_cast<std::size_t>(millscope_page_end - millscope_page_begin));
+  std::string out;
+  // The data's place is looked for after the title's, and what was put in is not looked at again.
+  rest = before(rest, "@TITLE@", out);
+  out += escaped(document.at("title").get<std::string>());
+  rest = before(rest, "@DATA@", out);
+  out += for_script(document);
+  return out.append(rest);
+}
+
+void write_page(const std::filesystem::path& file, const nlohmann::ordered_json& document) { output::write_file(file, page_of(document)); }
+
+}  // namespace millscope::report
