@@ -91,7 +91,6 @@ TrackContext BeadPaths::context(std::size_t i, std::uint64_t seed) const {
   context.mill_low = part ? place_.middle - half : mill_.context.mill_low;
   context.mill_high = part ? place_.middle + half : mill_.context.mill_high;
   context.omega = mill_.context.omega;
-  context.period = part ? 0 : mill_.period;
   context.period = part ? place_.high - place_.low : mill_.period;
   return context;
 }

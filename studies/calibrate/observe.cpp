@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -122,6 +123,12 @@ struct Observer::Impl {
   /// varied keeps what that does to the power.
   std::vector<double> case_mass = {};
 
+  /// A folder of its own for each look: several threads and processes may share the cache.
+  fs::path new_film() const {
+    static std::atomic<unsigned> count{0};
+    return cache / fmt::format("film-{}-{}", ::getpid(), ++count);
+  }
+
   /// The run's beads through the recording's camera and the same processing, turned to the recording's sense.
   studies::ResultSet seen(std::size_t condition, const BeadPaths& paths, const fs::path& scratch, const Processing& how) const {
     const RecordedCondition& r = recorded[condition];
@@ -180,7 +187,7 @@ Observation Observer::simulated(std::size_t condition, const fs::path& run, cons
     const Json known = read_json(file);
     if (!known.is_discarded()) return observation_from(known);
   }
-  const Observation o = impl_->simulated(condition, run, impl_->cache / fmt::format("film-{}-{}", id, ::getpid()));
+  const Observation o = impl_->simulated(condition, run, impl_->new_film());
   output::write_json(file, to_json(o));
   return o;
 }
@@ -190,7 +197,7 @@ studies::ResultSet Observer::results(std::size_t condition, const fs::path& run,
   const RecordedCondition& r = impl_->recorded[condition];
   if (run.empty()) return results_of_recording(condition, r, how);
   const BeadPaths paths(run, impl_->study.observing.beads, r.place, impl_->registry);
-  return impl_->seen(condition, paths, impl_->cache / fmt::format("film-{}-{}", hash_of({run.string()}), ::getpid()), how);
+  return impl_->seen(condition, paths, impl_->new_film(), how);
 }
 
 std::vector<std::string> observed_outputs() {

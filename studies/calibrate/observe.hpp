@@ -26,7 +26,8 @@ class Observer {
 
   /// What the recording of a condition shows.
   const Observation& recorded(std::size_t condition) const;
-  /// What a finished run shows, with exactly the same observables. `key`: of the run's cache entry. Throws config::UserError.
+  /// What a finished run shows, with exactly the same observables. `key`: of the run's cache entry. May be called from several threads.
+  /// Throws config::UserError.
   Observation simulated(std::size_t condition, const std::filesystem::path& run, const std::string& key) const;
   /// Results of other analyzers (as in analysis.yaml): of the recording where `run` is empty, else of a finished run seen in the same way.
   studies::ResultSet results(std::size_t condition, const std::filesystem::path& run, const std::string& analyzers) const;

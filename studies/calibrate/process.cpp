@@ -22,6 +22,9 @@ std::vector<AnalyzerInstance> instances(const Processing& how, const AnalyzerCon
   const config::Node own = config::parse_document(how.analyzers.empty() ? kAnalyzers : how.analyzers, "calibrate");
   std::vector<AnalyzerInstance> all = studies::choose_analyzers(own, true, {}, how.registry, context).instances;
   if (!how.analyzers.empty()) return all;
+  // Reading marks the keys that were read: several simulations may be looked at at once.
+  static std::mutex reading;
+  const std::lock_guard<std::mutex> hold(reading);
   const auto section = how.study.root.valid() ? how.study.root.find("analyzers") : std::nullopt;
   if (!section) return all;
   for (AnalyzerInstance& more : studies::choose_analyzers(how.study.root, true, {}, how.registry, context).instances) {

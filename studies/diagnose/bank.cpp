@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "studies/analysis/parallel.hpp"
 #include "studies/calibrate/observe.hpp"
 #include "studies/doe/doe.hpp"
 
@@ -101,21 +102,19 @@ Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoin
   const std::vector<campaign::Outcome> outcomes = workshop.run(simulations);
   if (workshop.say) workshop.say(fmt::format("looking at {} simulations through the recordings' cameras", outcomes.size()));
   Bank bank{std::move(points), std::move(conditions), {}, {}};
-  std::size_t next = 0;
-  for (std::size_t p = 0; p < bank.points.size(); ++p) {
-    bank.seen.emplace_back();
-    for (const std::size_t c : bank.conditions) {
-      const campaign::Outcome& outcome = outcomes[next];
-      bank.seen.back().emplace_back();
-      try {
-        if (outcome.state == campaign::State::failed) throw config::UserError(outcome.message);
-        bank.seen.back().back() = workshop.observe(c, outcome);
-      } catch (const config::UserError& e) {
-        bank.failures.push_back(fmt::format("{}: {}", simulations[next].label, e.what()));
-      }
-      ++next;
+  const std::size_t per_point = bank.conditions.size();
+  bank.seen.assign(bank.points.size(), std::vector<std::optional<calibrate::Observation>>(per_point));
+  std::vector<std::string> failures(outcomes.size());
+  // Whole simulations side by side: looking at one is half of it a single thread's work.
+  studies::for_each_item(outcomes.size(), studies::worker_count(0, outcomes.size()), [&](std::size_t i, std::size_t) {
+    try {
+      if (outcomes[i].state == campaign::State::failed) throw config::UserError(outcomes[i].message);
+      bank.seen[i / per_point][i % per_point] = workshop.observe(bank.conditions[i % per_point], outcomes[i]);
+    } catch (const config::UserError& e) {
+      failures[i] = fmt::format("{}: {}", simulations[i].label, e.what());
     }
-  }
+  });
+  std::copy_if(failures.begin(), failures.end(), std::back_inserter(bank.failures), [](const std::string& f) { return !f.empty(); });
   return bank;
 }
 

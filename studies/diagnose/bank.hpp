@@ -33,7 +33,7 @@ campaign::Simulation simulation_of(const Question& question, const BankPoint& po
 campaign::Simulation simulation_at(const Question& question, const VectorXd& theta, const std::vector<Effect>& effects,
                                    std::size_t condition, int replicate, const std::string& label);
 
-/// What runs and what looks; tests put their own in place.
+/// What runs and what looks; tests put their own in place. `observe` is called from several threads at once.
 struct Workshop {
   std::function<std::vector<campaign::Outcome>(std::span<const campaign::Simulation>)> run;
   std::function<calibrate::Observation(std::size_t condition, const campaign::Outcome&)> observe;
