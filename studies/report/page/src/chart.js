@@ -11,7 +11,7 @@ echarts.use([LineChart, BarChart, ScatterChart, CustomChart, GridComponent, Tool
 
 const PAPER = 660; // px: the width of charts on paper
 const NARROW = 480; // px: below it charts have less room for labels
-const FONT = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
+export const FONT = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
 
 const charts = new Map();
 const byElement = new WeakMap();

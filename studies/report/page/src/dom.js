@@ -48,7 +48,7 @@ export const facts = (pairs) => element("dl", { class: "facts" },
 const opened = new Map(); // by key: what the reader has opened, for when a live page is built anew
 
 /** Shut until it is opened; `fill` may be a function that makes the content at the first opening. */
-export function disclosure(key, summary, fill) {
+export function disclosure(key, summary, fill, openAtFirst = false) {
   const details = element("details", { "data-key": key }, element("summary", null, summary));
   let filled = typeof fill !== "function";
   if (filled) append(details, fill);
@@ -56,7 +56,7 @@ export function disclosure(key, summary, fill) {
     if (!filled) append(details, fill());
     filled = true;
   };
-  if (opened.get(key)) {
+  if (opened.get(key) ?? openAtFirst) {
     complete();
     details.open = true;
   }

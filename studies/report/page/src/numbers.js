@@ -14,12 +14,12 @@ function plain(value, decimals) {
   return (value < 0 && /[1-9]/.test(text) ? "−" : "") + text;
 }
 
-/** With so many significant digits; powers of ten beyond 0.001 … 1 000 000. */
+/** With so many significant digits; powers of ten beyond 0.0001 … 1 000 000. */
 export function number(value, digits = 4) {
   if (!isNumber(value)) return MISSING;
   if (value === 0) return "0";
   const size = Math.floor(Math.log10(Math.abs(value)) + 1e-12);
-  if (size < -3 || size > 6) {
+  if (size < -4 || size > 6) {
     const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
     return `${mantissa.replace("-", "−").replace(/\.?0+$/, "")} × 10${superscript(Number(exponent))}`;
   }
@@ -40,7 +40,7 @@ export function withError(value, error, unit) {
   const by = scale(unit, [value]);
   const decimals = decimalsFor(error * by.factor);
   if (decimals === null) return number(value * by.factor) + spaced(by.unit);
-  return `${plain(value * by.factor, decimals)}\u00a0±\u00a0${plain(error * by.factor, decimals)}${spaced(by.unit)}`;
+  return `${plain(value * by.factor, decimals)} ±\u00a0${plain(error * by.factor, decimals)}${spaced(by.unit)}`;
 }
 
 export function quantity(value, unit, digits = 4) {

@@ -2,7 +2,7 @@
 import { chart, hint } from "../chart.js";
 import { line as colourOf } from "../colours.js";
 import { named, number } from "../numbers.js";
-import { axis, legend, legendHeight, roomBelow } from "./axes.js";
+import { axis, legend, legendHeight, roomBelow, widthOfTicks } from "./axes.js";
 
 /** Values between edges as points of a staircase. */
 export function stairs(edges, values) {
@@ -59,10 +59,12 @@ const mark = ({ x, y, text, dashed = true }, { colours }) => ({
 export function lines(key, { label, series, x, y, marks = [], height = 320, hover = "axis", describe }) {
   const names = series.filter((one) => one.name && !one.unlisted).map((one) => one.name);
   const colour = (one, index) => one.colour ?? colourOf(index);
+  const tall = series.flatMap((one) => one.points.map((point) => point[1]).concat((one.band ?? []).flatMap((point) => [point[1], point[2]]))).filter(Number.isFinite);
+  const gap = widthOfTicks(y.min ?? Math.min(0, ...tall), y.max ?? Math.max(...tall), y.log);
   const spread = (one, index) => (one.log && one.min === undefined ? { ...one, ...ends(series, index) } : one);
   const option = (context) => {
-    const { width, height: tall, narrow, colours } = context;
-    const left = narrow ? 62 : 70;
+    const { width, height: full, colours } = context;
+    const left = gap + 24;
     const below = roomBelow(x, width - left - 18);
     const above = legendHeight(names, width);
     const drawn = [];
@@ -85,7 +87,7 @@ export function lines(key, { label, series, x, y, marks = [], height = 320, hove
     };
     return {
       grid: { left, right: 18, top: above, bottom: below, outerBoundsMode: "none" }, legend: legend(names, context),
-      xAxis: axis("x", spread(x, 0), context, width - left - 18), yAxis: axis("y", spread(y, 1), context, tall - above - below),
+      xAxis: axis("x", spread(x, 0), context, width - left - 18), yAxis: axis("y", { ...spread(y, 1), gap }, context, full - above - below),
       series: drawn.concat(marks.map((one) => mark(one, context))), tooltip: { trigger: hover, formatter: tell },
     };
   };

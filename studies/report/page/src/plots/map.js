@@ -1,5 +1,5 @@
 // Maps over x and y of a mill: coloured cells, the shell, lifters, marked places. Equal scales on both axes.
-import { chart, hint } from "../chart.js";
+import { chart, FONT, hint } from "../chart.js";
 import { colourAt, line as colourOf } from "../colours.js";
 import { element, freshId, svg } from "../dom.js";
 import { named, number } from "../numbers.js";
@@ -71,28 +71,35 @@ const shape = (draw) => ({
 const shellShapes = (shell, { colours }) => shape((api) => {
   const centre = api.coord([0, 0]);
   const edge = api.coord([shell.radius, 0]);
-  const segments = (shell.segments ?? []).map(([x1, y1, x2, y2]) => {
+  const draw = (stroke, lineWidth) => [{ type: "circle", shape: { cx: centre[0], cy: centre[1], r: edge[0] - centre[0] },
+    style: { fill: "transparent", stroke, lineWidth } }, ...(shell.segments ?? []).map(([x1, y1, x2, y2]) => {
     const [from, to] = [api.coord([x1, y1]), api.coord([x2, y2])];
-    return { type: "line", shape: { x1: from[0], y1: from[1], x2: to[0], y2: to[1] }, style: { stroke: colours.text, lineWidth: 1.4 } };
-  });
-  return [{ type: "circle", shape: { cx: centre[0], cy: centre[1], r: edge[0] - centre[0] },
-    style: { fill: "transparent", stroke: colours.text, lineWidth: 1.6 } }, ...segments];
+    return { type: "line", shape: { x1: from[0], y1: from[1], x2: to[0], y2: to[1] }, style: { stroke, lineWidth } };
+  })];
+  return [...draw(colours.back, 3.4), ...draw(colours.text, 1.5)]; // light beside dark: seen on every colour
 });
 
-/** Marked places: {x, y, text, symbol} a point, {x, y, x2, y2, text} a line from the first to the second. */
-const markShapes = (marks, { colours, narrow }) => shape((api) => marks.flatMap((one, index) => {
-  const colour = one.colour ?? colourOf(index + 1);
-  const at = api.coord([one.x, one.y]);
-  const outline = { stroke: colours.back, lineWidth: 3.5 };
-  const label = (x, y, align) => ({ type: "text", style: { text: one.text, x, y, fill: colours.strong, stroke: colours.back, lineWidth: 3.5,
-    fontSize: narrow ? 10 : 11.5, fontWeight: 600, align, verticalAlign: "middle" } });
-  if (one.x2 === undefined)
-    return [{ type: "circle", shape: { cx: at[0], cy: at[1], r: 5 }, style: { fill: colour, ...outline, lineWidth: 2 } }, label(at[0] + 9, at[1] + (one.shift ?? 0), "left")];
-  const to = api.coord([one.x2, one.y2]);
-  const lines = [outline, { stroke: colour, lineWidth: 2 }].map((style) => ({ type: "line", shape: { x1: at[0], y1: at[1], x2: to[0], y2: to[1] }, style }));
-  const inward = [at[0] + (at[0] - to[0]) * 0.25, at[1] + (at[1] - to[1]) * 0.25];
-  return [...lines, label(inward[0], inward[1] + (one.shift ?? 0), "center")];
-}));
+/** Marked places: {x, y, text, side: "left" or "right"} a point, {x, y, x2, y2, text} a line from the first to the second. */
+const markShapes = (marks, { colours, narrow }) => shape((api) => {
+  const [signs, labels] = [[], []];
+  marks.forEach((one, index) => {
+    const colour = one.colour ?? colourOf(index + 1);
+    const at = api.coord([one.x, one.y]);
+    const label = (x, y, align) => labels.push({ type: "text", style: { text: one.text, x, y, fill: colours.strong, stroke: colours.back, lineWidth: 3.5,
+      fontFamily: FONT, fontSize: narrow ? 10.5 : 12, fontWeight: 600, align, verticalAlign: "middle" } });
+    if (one.x2 === undefined) {
+      if (!one.hidden) signs.push({ type: "circle", shape: { cx: at[0], cy: at[1], r: 5.5 }, style: { fill: colour, stroke: colours.back, lineWidth: 2 } });
+      const away = one.hidden ? 6 : 10;
+      label(at[0] + (one.side === "left" ? -away : away), at[1] + (one.shift ?? 0), one.side === "left" ? "right" : "left");
+      return;
+    }
+    const to = api.coord([one.x2, one.y2]);
+    for (const style of [{ stroke: colours.back, lineWidth: 5 }, { stroke: colour, lineWidth: 2.6 }])
+      signs.push({ type: "line", shape: { x1: at[0], y1: at[1], x2: to[0], y2: to[1] }, style });
+    label(at[0] + (at[0] - to[0]) * 0.25, at[1] + (at[1] - to[1]) * 0.25 + (one.shift ?? 0), "center");
+  });
+  return [...signs, ...labels];
+});
 
 /** Arrows: [{x, y, dx, dy, sure, text}] in the units of the axes; what is not sure is drawn thin. */
 const arrowShapes = (arrows, { colours }) => shape((api) => arrows.map((one) => {
@@ -125,7 +132,8 @@ export function map(key, { label, x, y, cells, colour, shell, marks = [], arrows
       renderItem(parameters, api) {
         const low = api.coord([api.value(0), api.value(2)]);
         const high = api.coord([api.value(1), api.value(3)]);
-        return { type: "rect", shape: { x: low[0], y: high[1], width: high[0] - low[0] + 0.4, height: low[1] - high[1] + 0.4 },
+        const [left, right, above, below] = [low[0], high[0], high[1], low[1]].map(Math.round); // whole pixels leave no seams between cells
+        return { type: "rect", shape: { x: left, y: above, width: right - left, height: below - above },
           style: { fill: colour(cells.values[api.value(4)]) } };
       },
     };

@@ -47,13 +47,8 @@ function drawings(results, what, figureOf, key, shell, open) {
   const analyzers = [...new Set(results.map((result) => result.analyzer))];
   return analyzers.map((analyzer) => {
     const own = results.filter((result) => result.analyzer === analyzer);
-    const details = disclosure(`${key}-${what}-${analyzer}`, `${capital(words(analyzer))}: ${own.length} ${own.length === 1 ? what.slice(0, -1) : what}`,
-      () => element("div", { class: "halves" }, own.map((result) => figureOf(result, `${key}-${analyzer}-${result.name}`, shell))));
-    if (analyzer === open && !details.dataset.touched) {
-      details.complete();
-      details.open = true;
-    }
-    return details;
+    return disclosure(`${key}-${what}-${analyzer}`, `${capital(words(analyzer))}: ${own.length} ${own.length === 1 ? what.slice(0, -1) : what}`,
+      () => element("div", { class: "halves" }, own.map((result) => figureOf(result, `${key}-${analyzer}-${result.name}`, shell))), analyzer === open);
   });
 }
 

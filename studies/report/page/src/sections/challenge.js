@@ -1,1 +1,77 @@
-export function challenge() { return { kind: "challenge" }; }
+// How well diagnoses met sealed answers.
+import { block, element, figure, note, paragraph, table } from "../dom.js";
+import { isNumber, number, percent, words } from "../numbers.js";
+import { intervals } from "../plots/intervals.js";
+import { lines } from "../plots/lines.js";
+
+const COUNTS = [["false_alarms", "nothing hidden: something is said to be missing (false alarm)"], ["false_names", "nothing hidden: a name is given"],
+  ["named_alone", "one effect: named alone, and rightly"], ["top_1", "one effect: the best candidate is the truth"], ["in_class", "one effect: the truth is among those named"],
+  ["in_class_of_two", "one effect: named, alone or in a class of two"], ["abstained_on_effect", "one effect: said to lie outside the library (wrong)"],
+  ["two_both", "two effects: both named"], ["two_at_least_one", "two effects: at least one named"], ["outside_abstained", "physics outside the list: said to lie outside (right)"],
+  ["outside_named", "physics outside the list: something of the list named (wrong)"], ["outside_missed", "physics outside the list: not noticed"]];
+
+const share = (count) => (count?.of > 0 ? `${count.hits} of ${count.of}` : "none tried");
+const bounds = (count) => (count?.of > 0 ? `${percent(count.low95, 2)} … ${percent(count.high95, 2)}` : "–");
+const point = (count) => (count?.of > 0 ? { value: 100 * count.share, low: 100 * count.low95, high: 100 * count.high95, text: `${share(count)} (${bounds(count)})` } : null);
+const countTable = (caption, rows) => table({ caption, rows, columns: [{ label: "", wide: true, value: (row) => row[0] }, { label: "counted", number: true, value: (row) => share(row[1]) },
+  { label: "share", number: true, value: (row) => percent(row[1]?.of > 0 ? row[1].share : NaN) }, { label: "90 % interval", number: true, value: (row) => bounds(row[1]) }] });
+const SHARE = { unit: "%", min: 0, max: 100 };
+
+function power(score, key) {
+  const bins = (score.power ?? []).filter((bin) => bin.named?.of > 0);
+  if (bins.length === 0) return null;
+  const rows = bins.map((bin) => (isNumber(bin.lambda_to) ? `λ ${number(bin.lambda_from)} to ${number(bin.lambda_to)}` : `λ above ${number(bin.lambda_from)}`));
+  return block(`${key}-power`, "Power", figure("How often a hidden effect is named, alone or in a class of two, against its size λ (square of what friction cannot imitate, in noise units).",
+    intervals(`${key}-power`, { label: rows.map((row, index) => `${row}: ${share(bins[index].named)}`).join(", "), rows, groups: [{ name: "", values: bins.map((bin) => point(bin.named)) }],
+      x: { name: "named", ...SHARE } })));
+}
+
+function doses(score, key) {
+  const { doses: all = [], slope, intercept, shares_at_zero: zero = [] } = score.dose_response ?? {};
+  if (all.length === 0) return null;
+  const of = (named) => all.filter((dose) => dose.named === named).map((dose) => [100 * dose.truth, 100 * dose.estimate]);
+  const most = Math.max(100, ...all.map((dose) => 100 * Math.max(dose.truth, dose.estimate)));
+  const least = Math.min(0, ...all.map((dose) => 100 * Math.min(dose.truth, dose.estimate)));
+  const series = [{ name: "named", dots: true, points: of(true) }, { name: "not named", dots: true, outline: true, points: of(false) },
+    { name: "hidden = estimated", points: [[least, least], [most, most]], dashed: true, colour: "#7f7f7f", width: 1.2 }].filter((one) => one.points.length);
+  if (isNumber(slope) && isNumber(intercept)) series.push({ name: "least squares", points: [least, most].map((x) => [x, 100 * intercept + slope * x]), width: 1.4, colour: "#7f7f7f" });
+  return block(`${key}-doses`, "Dose and response", figure("Hidden against estimated strength, as shares of the prior range, whether the effect was named or not.",
+    lines(`${key}-doses`, { label: `${all.length} hidden strengths and their estimates`, series, hover: "item", x: { name: "hidden strength", unit: "%", min: Math.floor(least / 10) * 10, max: Math.ceil(most / 10) * 10 },
+      y: { name: "estimated strength", unit: "%" }, height: 340 })),
+  isNumber(slope) ? paragraph(`Least squares: estimate = ${number(100 * intercept, 3)} % + ${number(slope, 3)} × hidden.`) : null,
+  zero.length ? note(`Where nothing was hidden, the mean estimated strength is ${percent(zero.reduce((sum, value) => sum + value, 0) / zero.length)} of the range (${zero.length} estimates).`) : null);
+}
+
+function confusion({ confusion: found }, key) {
+  if (!found?.truths?.length) return null;
+  const rows = found.truths.map((truth, index) => ({ truth, counts: found.counts[index] }));
+  return block(`${key}-confusion`, "Confusion", table({ caption: "Hidden (rows) and said (columns), numbers of sets", rows, columns: [{ label: "hidden", value: (row) => words(row.truth) },
+    ...found.diagnoses.map((name, index) => ({ label: words(name), number: true, value: (row) => number(row.counts[index]) }))] }));
+}
+
+export function challenge(section, key) {
+  const { score } = section;
+  const alarms = score.false_alarms ?? {};
+  const todo = score.sets - score.diagnosed;
+  const coverage = [["strength", score.strength_coverage], ...Object.entries(score.parameter_coverage ?? {}).map(([name, count]) => [words(name), count])];
+  return {
+    kind: "Challenge", sentence: alarms.of > 0 ? `False alarms: ${share(alarms)}; with 95 % confidence the rate is below ${percent(alarms.high95)}.` : "No set with nothing hidden was diagnosed: false alarms are not known.",
+    headline: [["False alarms", share(alarms), alarms.of > 0 ? `below ${percent(alarms.high95)} with 95 % confidence` : null], ["Best candidate is the truth", share(score.top_1), bounds(score.top_1)],
+      ["Truth among those named", share(score.in_class), isNumber(score.mean_class_size) ? `${number(score.mean_class_size, 3)} named in the mean` : null],
+      ["Strength in its 90 % interval", share(score.strength_coverage), null], ["Sets", number(score.sets), `${number(score.diagnosed)} diagnosed${todo ? `, ${todo} to be diagnosed` : ""}${score.failed ? `, ${score.failed} failed` : ""}`]],
+    blocks: [
+      block(`${key}-counts`, "What was counted", countTable("Counts with 90 % intervals (Clopper & Pearson 1934)", COUNTS.map(([name, text]) => [text, score[name]]))),
+      power(score, key), doses(score, key), confusion(score, key),
+      block(`${key}-coverage`, "Intervals", countTable("How often the 90 % intervals hold the truth", coverage),
+        score.recovery?.length ? table({ caption: "Mean distance of parameters from the truth", rows: score.recovery, columns: [{ label: "parameter", value: (row) => words(row.parameter) },
+          { label: "sets", number: true, value: (row) => number(row.sets) }, { label: "retuned", number: true, value: (row) => number(row.error_retuned, 3) },
+          { label: "unmasked", number: true, value: (row) => number(row.error_unmasked, 3) }] }) : null),
+      score.held_out?.length ? block(`${key}-held-out`, "Held-out gain", table({ caption: "Where the best candidate is right: gain of the corrected model on each rival", rows: score.held_out, columns: [
+        { label: "against", value: (row) => row.against }, { label: "surely better", number: true, value: (row) => share(row.surely) }, { label: "90 % interval", number: true, value: (row) => bounds(row.surely) },
+        { label: "median gain in misfit", number: true, value: (row) => number(row.median_improvement, 3) }] })) : null,
+      score.every_set?.length ? block(`${key}-sets`, "Every set", element("div", { class: "tall" }, table({ caption: "What was hidden and what was said", rows: score.every_set, columns: [
+        { label: "set", value: (row) => row.set }, { label: "hidden", value: (row) => words(row.truth) },
+        { label: "diagnosis", wide: true, value: (row) => (row.failure ? element("span", { class: "fail" }, `failed: ${row.failure}`) : words(row.diagnosis ?? "not yet diagnosed")) }] }))) : null,
+      score.manifest_hash ? block(`${key}-seal`, "Seal", paragraph("Hash of the manifest of sealed answers: ", element("code", null, score.manifest_hash))) : null],
+  };
+}

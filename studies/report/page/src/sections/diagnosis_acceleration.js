@@ -37,7 +37,7 @@ function condition(found, key, sense) {
     return { x, y, dx: cell.x_m_per_s2.value * by, dy: cell.y_m_per_s2.value * by, sure: cell.p_value < SURE };
   });
   arrows.push({ x: -1.0 * radius, y: -1.04 * radius, dx: unit * perUnit, dy: 0, sure: false });
-  const marks = [{ x: -1.0 * radius + unit * perUnit, y: -1.04 * radius, text: `${number(unit, 1)} m/s²`, colour: "transparent" }];
+  const marks = [{ x: -1.0 * radius + unit * perUnit, y: -1.04 * radius, text: `${number(unit, 1)} m/s²`, hidden: true }];
   const sure = cells.filter((cell) => cell.p_value < SURE).length;
   const reach = { min: -1.1 * radius, max: 1.1 * radius };
   const speeds = found.by_speed ?? [];

@@ -1,1 +1,47 @@
-export function validation() { return { kind: "validation" }; }
+// A calibrated set held against recordings.
+import { block, disclosure, element, figure, table } from "../dom.js";
+import { interval, number, probability, quantity, signed, words } from "../numbers.js";
+import { intervals } from "../plots/intervals.js";
+import { scaleOf } from "./parameters.js";
+
+const mark = (row) => element("span", { class: row.pass ? "pass" : "fail" }, row.pass ? "pass" : "fail");
+
+const judged = (rows, caption) => table({ caption, rows, columns: [{ label: "observable", wide: true, value: (row) => row.name }, { label: "recorded", number: true, value: (row) => number(row.recorded) },
+  { label: "simulated", number: true, value: (row) => number(row.simulated) }, { label: "difference", number: true, value: (row) => signed(row.difference, 3) },
+  { label: "90 % interval", number: true, value: (row) => interval(row.low90, row.high90) }, { label: "unit", value: (row) => row.unit },
+  { label: "p", number: true, value: (row) => probability(row.p) }, { label: "", value: mark }] });
+
+function condition([name, found], key, index) {
+  const id = `${key}-condition-${index + 1}`;
+  if (found.failed) return block(id, name, element("p", { class: "missing" }, `The simulation failed: ${found.failed}`));
+  const rows = found.observables ?? [];
+  const passed = rows.filter((row) => row.pass).length;
+  const usable = rows.filter((row) => row.error > 0);
+  const values = usable.map((row) => ({ value: row.difference / row.error, low: row.low90 / row.error, high: row.high90 / row.error, hollow: row.pass,
+    text: `${signed(row.difference, 3)} ${row.unit} (${interval(row.low90, row.high90)}), p ${probability(row.p)}` }));
+  return block(id, `${name}: ${passed} of ${rows.length} pass`, figure(`${name} (${words(found.role)}): simulated less recorded in standard errors, with 90 % intervals. Hollow: passes; filled: fails. `
+    + "Shaded: nine of ten numbers lie there when nothing differs.", intervals(`${id}-dots`, { label: `${passed} of ${rows.length} numbers of ${name} pass`, rows: usable.map((row) => row.name),
+    groups: [{ name: "", values }], x: { name: "difference in standard errors" }, zero: 0, zone: [-1.645, 1.645] })),
+  disclosure(`${id}-table`, `All ${rows.length} numbers of ${name}`, () => judged(rows, `${name}: recorded and simulated`)));
+}
+
+export function validation(section, key) {
+  const { validation: found } = section;
+  const conditions = Object.entries(found.conditions ?? {});
+  const powers = conditions.filter((one) => one[1].power).map(([name, one]) => ({ condition: name, role: one.role, misfit: one.misfit, numbers: one.observables?.length, ...one.power }));
+  const failed = conditions.filter((one) => one[1].failed).length;
+  const told = Object.entries(found.parameters ?? {}).map(([name, value]) => [words(name), `${number(value * scaleOf(name).factor)}${scaleOf(name).unit ? ` ${scaleOf(name).unit}` : ""}`, "simulated value"]);
+  return {
+    kind: "Validation", sentence: `${found.passed} of ${found.judged} numbers pass${found.pass ? ": the calibrated set describes these recordings." : ": the calibrated set does not describe all of these recordings."}`
+      + (failed ? ` ${failed} ${failed === 1 ? "simulation" : "simulations"} failed.` : ""),
+    headline: [["Verdict", found.pass ? "pass" : "fail", `at ${number(100 * found.family_wise_level)} % for all together`],
+      ...powers.map((row) => [`Power at ${row.condition}`, `${signed(row.percent, 2)} %`, `${quantity(row.simulated, "W")}, recorded ${quantity(row.recorded, "W")}`]), ...told],
+    blocks: [
+      powers.length ? block(`${key}-power`, "Power", table({ caption: "Power of the recorded and of the simulated mill", rows: powers, columns: [{ label: "condition", value: (row) => row.condition },
+        { label: "role", value: (row) => words(row.role) }, { label: "recorded (W)", number: true, value: (row) => number(row.recorded) }, { label: "simulated (W)", number: true, value: (row) => number(row.simulated) },
+        { label: "difference (W)", number: true, value: (row) => signed(row.difference, 3) }, { label: "90 % interval (W)", number: true, value: (row) => interval(row.low90, row.high90) },
+        { label: "difference (%)", number: true, value: (row) => signed(row.percent, 2) }, { label: "p", number: true, value: (row) => probability(row.p) }, { label: "", value: mark },
+        { label: "misfit of all numbers", number: true, value: (row) => `${number(row.misfit, 3)} of ${row.numbers}` }] })) : null,
+      ...conditions.map((one, index) => condition(one, key, index))],
+  };
+}
