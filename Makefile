@@ -6,7 +6,7 @@ CMAKE_OPTIONS ?=
 SOURCES = $(shell git ls-files '*.cpp' '*.hpp')
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench verify install format tidy asan tsan clean packages packages-test binary
+.PHONY: help demo test bench verify docs install format tidy asan tsan clean packages packages-test binary
 
 help: ## list these targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -27,6 +27,11 @@ bench: packages-test binary ## time against LIGGGHTS on the cross-check case (20
 
 verify: packages-test binary ## the long checks (hours), written to docs/validation.md; VERIFY="crosscheck memory" for some
 	tools/verify.py --build $(BUILD) $(VERIFY)
+
+docs: ## the documentation as a site: build/docs/index.html
+	@tools/install_packages.sh docs
+	mkdocs build --strict --quiet
+	@echo "open build/docs/index.html"
 
 install: binary ## build and install to PREFIX (command, plugins, SDK, completion, manual)
 	cmake --install $(BUILD) --prefix $(PREFIX)

@@ -29,3 +29,8 @@ def on_page_markdown(markdown, page, config, files):
     if page.file.src_uri in PAGES:
         return INSIDE.sub("](", markdown)
     return OUTSIDE.sub(r"](\1", markdown)
+
+
+def on_page_content(html, page, config, files):
+    """A bar in code within a table is escaped in the page, as forges want it; here it is not."""
+    return re.sub(r"(?<!<pre>)<code>[^<\n]*</code>", lambda code: code.group().replace("\\|", "|"), html)

@@ -1,12 +1,14 @@
 #!/bin/sh
-# tools/install_packages.sh [test]: installs the Debian packages of packages.txt that are missing; without `test`, only what building needs.
+# tools/install_packages.sh [test|docs]: installs the Debian packages of packages.txt that are missing. Without a word, what building needs;
+# `test`: also what testing needs; `docs`: only what the documentation's site needs.
 set -eu
 list="$(dirname "$0")/../packages.txt"
-if [ "${1:-}" = test ]; then
-  wanted=$(grep -v '^#' "$list")
-else
-  wanted=$(sed '/\[test\]/,$d' "$list" | grep -v '^#')
-fi
+case "${1:-}" in
+  '') wanted=$(sed '/^# \[test\]/,$d' "$list" | grep -v '^#') ;;
+  test) wanted=$(sed '/^# \[docs\]/,$d' "$list" | grep -v '^#') ;;
+  docs) wanted=$(sed '1,/^# \[docs\]/d' "$list" | grep -v '^#') ;;
+  *) echo "millscope: tools/install_packages.sh knows no '$1'; give nothing, test or docs" >&2; exit 2 ;;
+esac
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   echo "millscope: this is no Debian, so nothing is installed; needed are:" $wanted >&2
