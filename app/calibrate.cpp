@@ -33,6 +33,16 @@ void print_found(const calibrate::Study& study, const calibrate::Calibration& c,
   fmt::print("results in {}: report.md, calibration.json, calibrated.yaml, runs.csv, pictures\n", output.string());
 }
 
+/// A study that may be one of `diagnose`, too.
+calibrate::Study study_of(const Options& options) {
+  calibrate::Study study = calibrate::read_study(options.text("STUDY.yaml"), options.list("set"), calibrate::kDiagnoseSections);
+  if (options.has("quiet")) return study;
+  for (const std::string_view section : calibrate::kDiagnoseSections) {
+    if (study.root.has(section)) fmt::print("section '{}' is for diagnose and is not used here\n", section);
+  }
+  return study;
+}
+
 }  // namespace
 
 int calibrate_study(const Arguments& arguments) {
@@ -43,7 +53,7 @@ int calibrate_study(const Arguments& arguments) {
   add_study_options(options);
   if (!options.parse(arguments)) return kDone;
   const fs::path output = options.text("output");
-  const calibrate::Study study = calibrate::read_study(options.text("STUDY.yaml"), options.list("set"));
+  const calibrate::Study study = study_of(options);
   const host::Registry registry = options.registry();
   calibrate::Session session(study, registry, study_session(options, output));
   const calibrate::Calibration found = calibrate::calibrate(session.evaluator());
@@ -63,7 +73,7 @@ int validate(const Arguments& arguments) {
   options.add()("all", "also the conditions that were fitted");
   if (!options.parse(arguments)) return kDone;
   const fs::path output = options.text("output"), file = options.text("calibration");
-  const calibrate::Study study = calibrate::read_study(options.text("STUDY.yaml"), options.list("set"));
+  const calibrate::Study study = study_of(options);
   const Eigen::VectorXd point = calibrate::calibrated_set(file, study);
   std::vector<std::size_t> conditions = study.with_role(calibrate::Role::held_out);
   if (options.has("all")) {

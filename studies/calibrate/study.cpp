@@ -55,7 +55,7 @@ void require_fit(const Study& study, const Node& conditions) {
 }  // namespace
 
 Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                 std::initializer_list<std::string_view> also) {
+                 std::span<const std::string_view> also) {
   const Node root = config::load_document_with_paths(file.string(), overrides);
   for (const std::string_view section : also) root.has(section);  // known from now on
   root.expect({"schema_version", "base", "conditions", "parameters", "constraints", "objective", "method", "design", "budget", "runner",

@@ -11,11 +11,14 @@
 //   budget: {simulations: 60, wall: 75 min}
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -121,9 +124,12 @@ struct Study {
 /// "path=value" for every parameter and what is tied to it.
 std::vector<std::string> settings_of(const Study& study, const Eigen::VectorXd& point);
 
+/// Sections of a study that `diagnose` reads and `calibrate` has no use for: one file may serve both.
+inline constexpr std::array<std::string_view, 4> kDiagnoseSections{"nuisances", "hypotheses", "bank", "power_error"};
+
 /// Reads the file alone; `also`: sections that another room reads from `Study::root`. Throws config::UserError with file:line.
 Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
-                 std::initializer_list<std::string_view> also = {});
+                 std::span<const std::string_view> also = {});
 
 /// Holds the study against the plugins, the base case and the recordings' conditions: unknown or idle parameters, values that a plugin
 /// refuses, recordings of another mill. Throws config::UserError.

@@ -195,7 +195,7 @@ std::vector<std::string> Question::settings(const VectorXd& theta, const std::ve
 
 Question read_question(const std::filesystem::path& file, const std::vector<std::string>& overrides, const host::Registry& registry) {
   Question q;
-  q.study = calibrate::read_study(file, overrides, {"nuisances", "hypotheses", "bank", "power_error"});
+  q.study = calibrate::read_study(file, overrides, calibrate::kDiagnoseSections);
   const Node& root = q.study.root;
   if (const auto node = root.find("nuisances")) collect_nuisances(*node, node->path().size() + 1, q.nuisances);
   const config::Case base = config::read_case(q.study.base.string(), q.study.conditions.front().settings);

@@ -46,6 +46,13 @@ class Calibrate(unittest.TestCase):
     def test_ranges_that_contradict(self):
         self.assertIn("is not below the upper one", self.refused("calibrate", "study.yaml", "-o", "out", "--set", "parameters.pairs.glass~glass.static_friction.range=[0.8, 0.1]"))
 
+    def test_sections_of_diagnose_are_known_and_said_to_be_unused(self):
+        (self.folder / "study.yaml").write_text(STUDY + "hypotheses: {rolling_resistance: {}}\nnuisances: {fill.filling: {range: [0.3, 0.4]}}\n")
+        done = subprocess.run([COMMAND, "calibrate", "study.yaml", "-o", "out"], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        self.assertIn("section 'hypotheses' is for diagnose and is not used here", done.stdout)
+        self.assertIn("section 'nuisances' is for diagnose", done.stdout)
+        self.assertIn("a mill diameter of 460 mm", done.stderr)
+
     def test_no_study_no_output_no_calibration(self):
         self.assertIn("no such file", self.refused("calibrate", "gone.yaml", "-o", "out"))
         self.assertIn("output", self.refused("calibrate", "study.yaml"))
