@@ -97,8 +97,14 @@ def hypothesis_of(h):
     return " ".join(text)
 
 
-def section(plugin, first_line):
-    says = re.search(r"\([a-z_]+; ([^,]*), version", first_line)  # when it acts, or what it gives: only the text has it
+def role_of(command, plugin):
+    """When it acts, or what it gives: only the text has it, and only these kinds."""
+    if plugin["kind"] not in ("interaction", "pair_parameter"):
+        return None
+    return re.search(r"\([a-z_]+; ([^,]*), version", ask(command, "describe", plugin["name"]).splitlines()[0])
+
+
+def section(plugin, says):
     lines = ["", f"### {plugin['name']}", "", plain(plugin["doc"]) + (f" It {says.group(1)}." if says else "")]
     if plugin["equation"]:
         lines += ["", "    " + plugin["equation"]]
@@ -128,7 +134,8 @@ def page_of(command):
     for kind, (heading, where) in KINDS.items():
         lines += ["", f"## {heading}", "", where]
         for name in [n for k, n in listed if k == kind]:
-            lines += section(json.loads(ask(command, "describe", name, "--json")), ask(command, "describe", name).splitlines()[0])
+            plugin = json.loads(ask(command, "describe", name, "--json"))
+            lines += section(plugin, role_of(command, plugin))
     return "\n".join(lines) + "\n"
 
 
