@@ -52,7 +52,9 @@ void score(const Study& study, const std::vector<Observation>& recorded, Trial& 
 
 }  // namespace
 
-Evaluator::Evaluator(const Study& study, Machinery machinery) : study_(study), machinery_(std::move(machinery)) {}
+Evaluator::Evaluator(const Study& study, Machinery machinery) : study_(study), machinery_(std::move(machinery)) {
+  for (Observation& recorded : machinery_.recorded) add_power_error(recorded, study_.power_error);
+}
 
 void Evaluator::say(const std::string& line) const {
   if (machinery_.say) machinery_.say(line);

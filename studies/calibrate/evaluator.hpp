@@ -23,9 +23,9 @@ namespace millscope::calibrate {
 struct Machinery {
   std::function<std::vector<campaign::Outcome>(std::span<const campaign::Simulation>)> run;
   std::function<Observation(std::size_t condition, const campaign::Outcome&)> observe;  ///< throws UserError: counts as failed
-  std::vector<Observation> recorded;                                                    ///< of every condition of the study
-  int slots = 1;                                                                        ///< simulations at once, for the wall budget
-  std::function<void(const std::string&)> say;                                          ///< one line of progress; may be empty
+  std::vector<Observation> recorded;            ///< of every condition of the study, as the data say
+  int slots = 1;                                ///< simulations at once, for the wall budget
+  std::function<void(const std::string&)> say;  ///< one line of progress; may be empty
 };
 
 /// A parameter set with what it gave.
@@ -45,6 +45,7 @@ struct Trial {
 
 class Evaluator {
  public:
+  /// To the recordings' uncertainty it adds the study's power error.
   Evaluator(const Study& study, Machinery machinery);
 
   struct Wanted {

@@ -33,6 +33,13 @@ Json to_json(const Observation& o) {
           {"notes", o.notes}};
 }
 
+void add_power_error(Observation& o, double relative) {
+  o.power.sem = std::hypot(o.power.sem, relative * o.power.value);
+  for (Eigen::Index i = 0; i < o.value.size(); ++i) {
+    if (o.observables[static_cast<std::size_t>(i)].group == "power") o.covariance(i, i) += std::pow(relative * o.value[i], 2);
+  }
+}
+
 Observation observation_from(const Json& j) {
   Observation o;
   const Json& observables = j.at("observables");

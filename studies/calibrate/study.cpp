@@ -34,6 +34,8 @@ void require_room(const Study& study, const Node& constraints) {
       fmt::format("leave nothing of the ranges ({} points were tried): they contradict each other; loosen one", kConstraintTrials));
 }
 
+constexpr double kMostPowerError = 0.5;
+
 void read_method(const Node& root, Study& study) {
   if (const auto node = root.find("method")) {
     const std::string method = config::read_choice(*node, "response_surface|emulator|cma_es");
@@ -43,6 +45,9 @@ void read_method(const Node& root, Study& study) {
   if (const auto node = root.find("design")) study.design = read_design(*node);
   if (const auto node = root.find("budget")) study.budget = read_budget(*node);
   if (const auto node = root.find("observe")) study.observing = read_observing(*node);
+  if (const auto node = root.find("power_error")) {
+    study.power_error = config::read_number(*node, "1", config::between(0, kMostPowerError, "it is a share of the power"));
+  }
   if (const auto node = root.find("runner")) study.runner = config::read_choice(*node, "local|slurm");
 }
 
@@ -54,12 +59,11 @@ void require_fit(const Study& study, const Node& conditions) {
 
 }  // namespace
 
-Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                 std::span<const std::string_view> also) {
+Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides, std::span<const std::string_view> also) {
   const Node root = config::load_document_with_paths(file.string(), overrides);
   for (const std::string_view section : also) root.has(section);  // known from now on
   root.expect({"schema_version", "base", "conditions", "parameters", "constraints", "objective", "method", "design", "budget", "runner",
-               "observe", "analyzers"});
+               "observe", "analyzers", "power_error"});
   if (const auto version = root.find("schema_version")) {
     if (config::read_integer(*version, config::between(1, 1e9)) != 1) version->fail("is not 1; this millscope reads version 1");
   }

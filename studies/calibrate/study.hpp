@@ -113,7 +113,8 @@ struct Study {
   Budget budget;
   std::string runner = "local";
   Observing observing;
-  config::Node root;  ///< for `analyzers`, which are chosen where they are needed
+  double power_error = 0.005;  ///< of the mill's speed and the power meter together, relative; 0 … 0.5
+  config::Node root;           ///< for `analyzers`, which are chosen where they are needed
 
   Eigen::VectorXd low() const;
   Eigen::VectorXd high() const;
@@ -125,7 +126,7 @@ struct Study {
 std::vector<std::string> settings_of(const Study& study, const Eigen::VectorXd& point);
 
 /// Sections of a study that `diagnose` reads and `calibrate` has no use for: one file may serve both.
-inline constexpr std::array<std::string_view, 4> kDiagnoseSections{"nuisances", "hypotheses", "bank", "power_error"};
+inline constexpr std::array<std::string_view, 3> kDiagnoseSections{"nuisances", "hypotheses", "bank"};
 
 /// Reads the file alone; `also`: sections that another room reads from `Study::root`. Throws config::UserError with file:line.
 Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},

@@ -54,7 +54,7 @@ struct Maker {
     random.next();  // the run's own seed
     const std::uint64_t camera_seed = random.next();
     const PowerOfRun power = power_of(outcome.folder);
-    const double measured = power.value * (1 + question.power_error * random.normal());
+    const double measured = power.value * (1 + question.study.power_error * random.normal());
     RecordingOf what{outcome.folder, folder, "r_" + question.study.conditions[condition].name, believed(question, condition, registry),
                      camera_seed};
     what.condition.power = studies::MeasuredPower{measured, power.sem};

@@ -18,7 +18,7 @@ std::string choices_text(const Question& q) {
   std::string out = fmt::format("\nobserve: {{camera: {}, beads: {}, draws: {}", nlohmann::json(o.camera).dump(), o.beads, o.draws);
   if (o.z_low && o.z_high) fmt::format_to(std::back_inserter(out), ", z: [{:.6g}, {:.6g}]", *o.z_low, *o.z_high);
   fmt::format_to(std::back_inserter(out), "}}\nbank: {{base: {}, each: {}, first: {}}}\npower_error: {:.6g}\n", q.bank.base, q.bank.each,
-                 q.bank.first, q.power_error);
+                 q.bank.first, q.study.power_error);
   if (!q.study.objective.without.empty())
     fmt::format_to(std::back_inserter(out), "objective: {{without: [{}]}}\n", fmt::join(q.study.objective.without, ", "));
   if (!q.study.constraints.empty()) out += "constraints:\n";

@@ -97,7 +97,9 @@ Workshop workshop_of(calibrate::Session& session, std::function<void(const std::
   const auto again = [&session](std::size_t condition, const std::filesystem::path& run, const std::string& analyzers) {
     return session.observer().results(condition, run, analyzers);
   };
-  return {m.run, m.observe, m.recorded, std::move(say), again};
+  std::vector<calibrate::Observation> recorded;
+  for (std::size_t c = 0; c < session.evaluator().study().conditions.size(); ++c) recorded.push_back(session.observer().recorded(c));
+  return {m.run, m.observe, std::move(recorded), std::move(say), again};
 }
 
 }  // namespace millscope::diagnose

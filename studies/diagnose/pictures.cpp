@@ -84,7 +84,7 @@ void held_out(const Told& t, Drawer& drawer) {
       for (Index i = 0; i < recorded.value.size(); ++i) {
         c.x.push_back(static_cast<double>(i + 1));
         const bool power = recorded.observables[static_cast<std::size_t>(i)].group == "power";
-        const double meter = power ? t.question.power_error * recorded.value[i] : 0;
+        const double meter = power ? t.question.study.power_error * recorded.value[i] : 0;
         c.value.push_back((recorded.value[i] - s.prediction.value[i]) /
                           std::sqrt(recorded.covariance(i, i) + s.prediction.covariance(i, i) + meter * meter));
       }

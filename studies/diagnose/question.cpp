@@ -14,7 +14,6 @@ namespace {
 
 using config::Node;
 
-constexpr double kMostPowerError = 0.5;
 
 double number(const Node& node) {
   const config::Quantity q = config::read_quantity(node);
@@ -219,8 +218,6 @@ Question read_question(const std::filesystem::path& file, const std::vector<std:
     };
     q.bank = {whole("base", 24, 8), whole("each", 10, 1), whole("first", 4, 1)};
   }
-  if (const auto node = root.find("power_error"))
-    q.power_error = config::read_number(*node, "1", config::between(0, kMostPowerError, "it is a share of the power"));
   return q;
 }
 

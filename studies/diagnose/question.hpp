@@ -40,7 +40,6 @@ struct Question {
   std::vector<Candidate> candidates;
   std::vector<std::string> left_out;  ///< hypotheses that do not apply, and why
   BankSize bank;
-  double power_error = 0.005;  ///< relative
   std::vector<double> speed;   ///< |Ω| of every condition, rad/s
 
   std::size_t dimensions() const { return study.parameters.size() + nuisances.size(); }

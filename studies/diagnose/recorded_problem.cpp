@@ -40,7 +40,7 @@ void add_recorded(const Question& question, const Workshop& workshop, const Bank
     MatrixXd own = o.covariance, simulated = deviation.asDiagonal() * correlation_of(bank, c, size) * deviation.asDiagonal();
     for (Index i = 0; i < size; ++i) {
       if (o.observables[static_cast<std::size_t>(i)].group != "power") continue;
-      const double variance = std::pow(question.power_error * o.value[i], 2);
+      const double variance = std::pow(question.study.power_error * o.value[i], 2);
       own(i, i) += variance, simulated(i, i) += variance;
     }
     problem.noise[0].block(at, at, size, size) = own;

@@ -66,3 +66,16 @@ TEST_CASE("an observation comes back from its file") {
   CHECK(back.x.percent == o.x.percent);
   CHECK(back.notes == o.notes);
 }
+
+TEST_CASE("a power error widens the power alone, by a share of it") {
+  Observation o;
+  o.observables = {{"power", "W", "power"}, {"x", "%", "x"}};
+  o.value = Eigen::Vector2d(8.0, 12.0);
+  o.covariance = Eigen::Vector2d(0.0009, 0.25).asDiagonal();
+  o.power = {8.0, 0.03, "measured"};
+  add_power_error(o, 0.005);
+  CHECK(o.covariance(0, 0) == Approx(0.0009 + 0.0016));
+  CHECK(o.power.sem == Approx(0.05));
+  CHECK(o.covariance(1, 1) == 0.25);
+  CHECK(o.covariance(0, 1) == 0);
+}

@@ -68,7 +68,7 @@ TEST_CASE("a question reads as it is written") {
   CHECK(q.bank.base == 30);
   CHECK(q.bank.each == 12);
   CHECK(q.bank.first == 3);
-  CHECK(q.power_error == 0.01);
+  CHECK(q.study.power_error == 0.01);
   REQUIRE(q.speed.size() == 3);
   CHECK_THAT(q.speed[2] / q.speed[0], WithinRel(50.0 / 75, 1e-9));
   const std::vector<Coordinate> theta = q.coordinates();
@@ -84,7 +84,7 @@ TEST_CASE("without a map of hypotheses all that apply are asked, in alphabetical
   CHECK(std::is_sorted(q.candidates.begin(), q.candidates.end(), [](const auto& a, const auto& b) { return a.name < b.name; }));
   CHECK(q.bank.base == 24);
   CHECK(q.bank.each == 10);
-  CHECK(q.power_error == 0.005);
+  CHECK(q.study.power_error == 0.005);
   CHECK_FALSE(q.left_out.empty());
 }
 
