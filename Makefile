@@ -12,9 +12,8 @@ help: ## list these targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
 	@echo "  Variables: JOBS=$(JOBS) PREFIX=$(PREFIX) CMAKE_OPTIONS="
 
-demo: binary ## install what is missing, build, run configs/demo.yaml, say what to open
-	@out=build/demo/$$(date +%Y%m%d-%H%M%S) && mkdir -p build/demo && \
-	$(BUILD)/bin/millscope run configs/demo.yaml -o $$out && tools/what_to_open.sh $$out
+demo: binary ## install what is missing, build, tell a whole story: recording, calibration, diagnosis, page (SEED=n for another)
+	@tools/demo.sh $(BUILD) build/demo/$$(date +%Y%m%d-%H%M%S)
 
 test: packages-test ## install what is missing, build, run every test
 	cmake --preset release -DMILLSCOPE_TESTS=ON $(CMAKE_OPTIONS)

@@ -27,6 +27,7 @@ void print_found(const calibrate::Study& study, const calibrate::Calibration& c,
     fmt::print("\n");
   }
   if (c.inference) {
+    for (const std::string& statement : c.inference->posterior.statements) fmt::print("{}\n", statement);
     for (const auto& m : c.inference->posterior.marginal) fmt::print("{}\n", m.statement);
   }
   for (const std::string& note : c.notes) fmt::print("note: {}\n", note);

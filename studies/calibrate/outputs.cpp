@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -201,6 +202,11 @@ std::string calibrated_yaml(const Study& study, const Eigen::VectorXd& best, con
                    study.base, settings_of(study, best), folder);
 }
 
+/// The power where it is not among the numbers that are compared: a column of its own.
+bool power_apart(const Observation& o) {
+  return std::none_of(o.observables.begin(), o.observables.end(), [](const Observable& what) { return what.name == "power"; });
+}
+
 std::string runs_csv(const Evaluator& evaluator) {
   const Study& study = evaluator.study();
   std::string out = "number,stage,replicate,state";
@@ -208,7 +214,7 @@ std::string runs_csv(const Evaluator& evaluator) {
   out += ",objective,chagas2015,chagas_power_W,chagas_x_percent,chagas_speed_percent,misfit,wall_s";
   const std::vector<std::size_t> conditions = study.with_role(Role::fit);
   for (const std::size_t c : conditions) {
-    out += "," + output::csv_cell(study.conditions[c].name + " power (W)");
+    if (power_apart(evaluator.machinery().recorded[c])) out += "," + output::csv_cell(study.conditions[c].name + " power (W)");
     for (const Observable& o : evaluator.machinery().recorded[c].observables)
       out += "," + output::csv_cell(study.conditions[c].name + " " + o.name + " (" + o.unit + ")");
   }
@@ -221,7 +227,7 @@ std::string runs_csv(const Evaluator& evaluator) {
     out += cell(evaluator.objective(t)) + cell(t.chagas.value()) + cell(t.chagas.power) + cell(t.chagas.x) + cell(t.chagas.speed) +
            cell(t.misfit) + "," + config::number_text(t.wall_s);
     for (std::size_t k = 0; k < conditions.size(); ++k) {
-      out += cell(t.failed ? 0 : t.observed[k].power.value);
+      if (power_apart(evaluator.machinery().recorded[conditions[k]])) out += cell(t.failed ? 0 : t.observed[k].power.value);
       for (Eigen::Index i = 0; i < evaluator.machinery().recorded[conditions[k]].value.size(); ++i)
         out += cell(t.failed ? 0 : t.observed[k].value[i]);
     }
