@@ -64,6 +64,7 @@ int plugins(const Arguments& arguments);
 int schema(const Arguments& arguments);
 int geometry(const Arguments& arguments);
 int plugin(const Arguments& arguments);
+int new_mill(const Arguments& arguments);
 int completion(const Arguments& arguments);
 int complete_line(const Arguments& arguments);
 int manual(const Arguments& arguments);

@@ -16,6 +16,7 @@ namespace millscope::app {
 namespace {
 
 constexpr Command kCommands[] = {
+    {"new", "start a mill of your own", new_mill},
     {"run", "simulate a case", run},
     {"resume", "continue a run from its newest checkpoint", resume},
     {"check", "check a case and predict its cost", check},
