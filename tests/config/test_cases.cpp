@@ -23,7 +23,7 @@ TEST_CASE("every case in configs is read") {
     if (entry.path().extension() != ".yaml" || part || !load_document_with_paths(entry.path().string()).has("materials")) continue;
     INFO(entry.path());
     const Case c = read_case(entry.path().string());
-    CHECK(bead_count(c) > 500);
+    CHECK(bead_count(c) > 200);  // the story's small mill holds 241
     CHECK(c.geometry.size() == 1);
     ++cases;
   }
