@@ -150,8 +150,8 @@ std::vector<std::string> joined_and_cut(const Arguments& arguments, std::string&
 int completion(const Arguments& arguments) {
   Options options("completion SHELL",
                   "Prints the script that completes commands, actions, options, plugins and files. 'make install' puts it where the shells "
-                  "look; by hand, for bash: add the example's line to ~/.bashrc.",
-                  "source <(millscope completion bash)");
+                  "look; without, for bash, write into ~/.bashrc: source <(millscope completion bash)",
+                  "millscope completion bash > millscope.bash");
   options.positional("SHELL", "bash, zsh or fish");
   options.choices("SHELL", {"bash", "zsh", "fish"});
   if (!options.parse(arguments)) return kDone;

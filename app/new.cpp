@@ -114,8 +114,8 @@ int new_mill(const Arguments& arguments) {
   const bool asking = !options.has("yes") && isatty(STDIN_FILENO) != 0;
   const new_mill::Mill mill = new_mill::ask_for_mill(answers_of(options, asking), registry);
   const new_mill::Choices choices = new_mill::choose(mill);
-  for (const std::string& warning : new_mill::warnings(mill, choices)) fmt::print(stderr, "millscope: warning: {}\n", warning);
   const new_mill::Found found = new_mill::write_folder(folder, mill, choices, registry);
+  for (const std::string& warning : new_mill::warnings(mill, choices)) fmt::print(stderr, "millscope: warning: {}\n", warning);
   fmt::print("wrote {0}: case.yaml, README.md, materials/{1}\n", folder.string(),
              mill.liner ? ", " + new_mill::liner_name(*mill.liner) : "");
   fmt::print("beads          {}  (spheres)\nsteps          {} of {:.3g} s\n", found.beads, found.steps, found.time_step);

@@ -90,11 +90,6 @@ std::vector<std::string> warnings(const Mill& m, const Choices& c) {
                     "(--ends periodic --length \"{}\")",
                     1e-6 * static_cast<double>(c.beads), std::ceil(1e-9 * 600 * static_cast<double>(c.beads)), millimetres(4 * m.bead.si)));
   }
-  if (!m.closed && m.length.si < 3 * m.bead.si) {
-    all.push_back(
-        fmt::format("a slice of {} is less than three beads long: beads touch their own images across the period; take {} or more",
-                    m.length.text, millimetres(4 * m.bead.si)));
-  }
   return all;
 }
 

@@ -19,7 +19,8 @@ using config::Node;
 using config::Range;
 using config::UserError;
 
-constexpr int kMeshDigits = 5;  // a mesh's coordinates are seldom better
+constexpr double kShortestSlice = 3.2;  // bead diameters: two reaches of a neighbour list, as the run itself demands
+constexpr int kMeshDigits = 5;          // a mesh's coordinates are seldom better
 
 /// A text as a value of a document, and errors with the option in the place of file and line.
 template <class Read>
@@ -98,7 +99,9 @@ void ask_for_size(const Answer& answer, Mill& m) {
   const Question length{"length", m.closed ? "inner length of the mill" : "length of the slice",
                         millimetres(own, m.liner ? kMeshDigits : 2)};
   answer(length, [&](const std::string& text) {
-    m.length = read_value(length, text, "m", {m.bead.si, 50, false, false, "from one bead to 50 m"});
+    const Range range = m.closed ? Range{m.bead.si, 50, false, false, "the mill holds one bead at least"}
+                                 : Range{kShortestSlice * m.bead.si, 50, false, false, "beads of a shorter slice meet their own images"};
+    m.length = read_value(length, text, "m", range);
     if (m.liner) hold_to_liner("length", m.length, own, "length");
   });
 }

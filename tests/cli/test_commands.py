@@ -9,7 +9,7 @@ import unittest
 
 from support import CASE, SOURCE, CliTest
 
-COMMANDS = ("run", "resume", "check", "campaign", "describe", "plugins", "schema", "geometry", "plugin")
+COMMANDS = ("new", "run", "resume", "check", "campaign", "describe", "plugins", "schema", "geometry", "plugin", "completion")
 
 
 class Help(CliTest):
@@ -52,7 +52,7 @@ class Help(CliTest):
 class Mistyped(CliTest):
     def test_unknown_command(self):
         self.assert_one_line(self.millscope("rnu", "case.yaml"), "'rnu' is no command", "did you mean 'run'")
-        self.assert_one_line(self.millscope("frobnicate"), "known: run, resume, check")
+        self.assert_one_line(self.millscope("frobnicate"), "known: new, run, resume, check")
 
     def test_unknown_option(self):
         self.assert_one_line(self.millscope("run", "case.yaml", "-o", "out", "--thread", "2"), "unknown option '--thread'", "did you mean '--threads'")
