@@ -46,7 +46,7 @@ sed -n 3p diagnosis/diagnosis.md
 
 chapter "The corrected mill, and the page"
 if [ -e diagnosis/corrected/case.yaml ]; then
-  quietly run diagnosis/corrected/case.yaml -o corrected-mill --set "mill.speed=55 %critical" --set "time={end_s: 3, analyze_from_s: 1}" \
+  quietly run diagnosis/corrected/case.yaml -o corrected-mill --set "name=The corrected mill at 55 %" --set "mill.speed=55 %critical" --set "time={end_s: 3, analyze_from_s: 1}" \
     --set "output.frames={every_s: 0.02, from_s: 0}" --set "output.vtk={every_s: 0.05}"
 fi
 for folder in corrected-mill as-recorded difference retuned retuned-at-55 diagnosis; do

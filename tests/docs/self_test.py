@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""The check of the documentation finds each kind of fault in a small tree, and nothing in a sound one."""
+
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import check_docs  # noqa: E402
+
+HELP = {
+    "": "usage: millscope COMMAND …\n\n  run        simulate a case\n  pept       recordings\n  geometry   liners\n  completion of words\n\n"
+        "'millscope COMMAND --help' explains one.\n\nExample:\n  millscope run a.yaml\n",
+    "completion": "usage: millscope completion SHELL\n\nOptions:\n  --help   this page\n",
+    "run": "usage: millscope run CASE.yaml -o OUT\n\nOptions:\n  --threads N   threads\n  --set a=b     replace\n",
+    "pept": "usage: millscope pept ACTION …\n\n  inspect      how good\n  camera       the camera\n",
+    "pept inspect": "usage: millscope pept inspect FILE\n\nOptions:\n  --json   print JSON\n",
+    "pept camera": "usage: millscope pept camera FILE\n\nOptions:\n  --force   overwrite\n",
+    "geometry": "usage: millscope geometry export|report FILE\n\n  ACTION       export or report\n\nOptions:\n  --unit U   unit\n",
+}
+
+SOUND = {
+    "README.md": "# Title\n\nSee [cases](docs/cases.md#numbers-and-files) and [a file](configs/demo.yaml), or [elsewhere](https://example.org/x).\n\n"
+                 "    millscope run configs/demo.yaml -o out --threads 2 && cmake --build b     # not --this\n"
+                 "    millscope geometry export configs/demo.yaml -o configs/made.stl\n    millscope pept inspect a.a \\\n        --json\n\n"
+                 "| `millscope run CASE.yaml` | simulates, `--threads N` |\n",
+    "docs/cases.md": "# Writing\n\n## Numbers and `files`\n\nUse `millscope pept inspect|camera FILE` with `--json`, `configs/{demo,other}.yaml`,\n"
+                     "`configs/made.stl` and `millscope frames`.\n\n```yaml\n# no heading\na: 1\n```\n",
+    "docs/commands.md": "# Commands\n\n| `run CASE` |\n| `geometry export`, `geometry report` |\n| `pept inspect` |\n| `completion` |\n",
+    "configs/demo.yaml": "a: 1\n",
+    "configs/other.yaml": "a: 1\n",
+    "mkdocs.yml": "nav:\n  - Cases: cases.md\n  - Commands: commands.md\n",
+}
+
+# (file, text that is added, part of the only message)
+WRONG = [
+    ("docs/cases.md", "[gone](gone.md)\n", "link to gone.md: there is no such file"),
+    ("README.md", "[up](../../etc/passwd)\n", "there is no such file"),
+    ("docs/cases.md", "![picture](picture.png)\n", "there is no such file"),
+    ("docs/cases.md", "[here](#not-here)\n", "has no such heading"),
+    ("README.md", "[there](docs/cases.md#no-heading)\n", "has no such heading"),
+    ("docs/cases.md", "# One — two\n\n[there](#one--two)\n", "differs between forge and site"),
+    ("docs/cases.md", "    millscope walk configs/demo.yaml\n", "'millscope walk' is no command; known: run, pept, geometry, completion"),
+    ("docs/cases.md", "Use `millscope pept erase FILE`.\n", "'millscope pept erase' is no action; known: inspect, camera"),
+    ("docs/cases.md", "Use `millscope geometry mend FILE`.\n", "'millscope geometry mend' is no action"),
+    ("docs/cases.md", "    millscope run a.yaml --treads 2\n", "'millscope run' has no --treads"),
+    ("docs/cases.md", "    millscope run a.yaml \\\n        --json\n", "'millscope run' has no --json"),
+    ("docs/cases.md", "    millscope pept inspect a.a --force\n", "'millscope pept' has no --force"),
+    ("docs/cases.md", "```sh\ncd x && build/release/bin/millscope run a.yaml --treads=2\n```\n", "'millscope run' has no --treads"),
+    ("docs/cases.md", "With `--treads 2`.\n", "no command of millscope has --treads"),
+    ("docs/cases.md", "| `run CASE.yaml` | `--json` |\n", "'millscope run' has no --json"),
+    ("docs/cases.md", "| `pept camera FILE` | `--json` |\n", "'millscope pept' has no --json"),
+    ("docs/cases.md", "See `configs/gone.yaml`.\n", "there is no configs/gone.yaml"),
+    ("docs/cases.md", "See `configs/{demo,gone}.yaml`.\n", "there is no configs/gone.yaml"),
+    ("docs/lost.md", "# Lost\n", "docs/lost.md is not in nav"),
+    ("mkdocs.yml", "  - Gone: gone.md\n", "nav has gone.md"),
+]
+
+
+class DocumentationCheck(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.root = Path(self.folder.name)
+        for name, text in SOUND.items():
+            self.write(name, text)
+        self.help = check_docs.Help(lambda words: HELP[" ".join(words)])
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def write(self, name, text):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+    def faults(self):
+        return list(check_docs.check_all(self.root, self.help))
+
+    def test_help_is_understood(self):
+        self.assertEqual(self.help.commands, ["run", "pept", "geometry", "completion"])
+        self.assertEqual(self.help.actions, {"run": [], "pept": ["inspect", "camera"], "geometry": ["export", "report"], "completion": []})
+        self.assertEqual(self.help.options["pept", "camera"], {"--force"})
+
+    def test_sound_pages_pass(self):
+        self.assertEqual(self.faults(), [])
+
+    def test_a_command_without_a_row_is_found(self):
+        self.write("docs/commands.md", SOUND["docs/commands.md"].replace("| `pept inspect` |\n", ""))
+        self.assertEqual(self.faults(), ["docs/commands.md: 'millscope pept' has no row in the table; add one"])
+
+    def test_each_fault_is_found_alone(self):
+        for name, text, message in WRONG:
+            with self.subTest(text):
+                before = SOUND.get(name, "")
+                self.write(name, before + "\n" + text)
+                found = self.faults()
+                if before:
+                    self.write(name, before)
+                else:
+                    (self.root / name).unlink()
+                self.assertEqual(len(found), 1, found)
+                self.assertIn(message, found[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
