@@ -9,10 +9,11 @@ import { element } from "./dom.js";
 
 echarts.use([LineChart, BarChart, ScatterChart, CustomChart, GridComponent, TooltipComponent, LegendComponent, SVGRenderer]);
 
-const PAPER = 660; // px: the width of charts on paper
+const PAPER = { whole: 660, half: 322 }; // px: the width of charts on paper, alone and side by side
 const NARROW = 480; // px: below it charts have less room for labels
 export const FONT = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
 
+let onPaper = false; // while it prints, widths are those of the paper
 const charts = new Map();
 const byElement = new WeakMap();
 
@@ -27,7 +28,7 @@ const seen = new IntersectionObserver((entries) => {
 const sized = new ResizeObserver((entries) => {
   for (const entry of entries) {
     const one = byElement.get(entry.target);
-    if (entry.contentRect.width > 0 && Math.abs(entry.contentRect.width - one.width) > 0.5) one.changed();
+    if (!onPaper && entry.contentRect.width > 0 && Math.abs(entry.contentRect.width - one.width) > 0.5) one.changed();
   }
 });
 
@@ -107,10 +108,17 @@ export function hint(title, rows) {
     }));
 }
 
-const redrawAll = (width) => {
+const paperWidth = (node) => {
+  const halves = node.closest(".halves");
+  return halves && halves.children.length > 1 ? PAPER.half : PAPER.whole;
+};
+
+const redrawAll = (paper) => {
+  onPaper = paper;
+  setPrinting(paper);
   for (const one of charts.values()) {
     one.stale = true;
-    if (one.element.isConnected) one.draw(width ? Math.min(width, one.element.clientWidth || width) : 0);
+    if (one.element.isConnected) one.draw(paper ? paperWidth(one.element) : 0);
   }
 };
 
@@ -121,12 +129,10 @@ window.addEventListener("beforeprint", () => {
     if (details.complete) details.complete();
     details.open = true;
   }
-  setPrinting(true);
-  redrawAll(PAPER);
+  redrawAll(true);
 });
 window.addEventListener("afterprint", () => {
   for (const details of shut) details.open = false;
-  setPrinting(false);
-  redrawAll(0);
+  redrawAll(false);
 });
-window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => redrawAll(0));
+window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => redrawAll(false));

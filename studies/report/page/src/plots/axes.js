@@ -27,6 +27,9 @@ export const roomBelow = ({ name, unit }, room) => 32 + 14 * broken(named(name, 
 
 const decade = (value, round) => (value > 0 ? 10 ** round(Math.log10(value) + (round === Math.floor ? 1e-9 : -1e-9)) : undefined);
 
+/** Ends that are not round get no label; nothing: as the library likes. */
+const isRound = (end) => (end === undefined || end === Number(end.toPrecision(2)) ? undefined : false);
+
 /** An axis with numbers: {name, unit, log, min, max}; room: px along the axis. */
 export function axis(which, { name, unit, log, min, max, splits, gap }, { colours, narrow }, room, more = {}) {
   const vertical = which === "y";
@@ -36,7 +39,7 @@ export function axis(which, { name, unit, log, min, max, splits, gap }, { colour
     min: log ? decade(min, Math.floor) : min, max: log ? decade(max, Math.ceil) : max,
     nameTextStyle: { color: colours.text, fontSize: 12, lineHeight: 14, verticalAlign: vertical ? "bottom" : "top" }, scale: true, splitNumber: splits ?? (narrow && !vertical ? 4 : 6), logBase: 10,
     axisLine: { show: true, onZero: false, lineStyle: { color: colours.faint } }, axisTick: { show: true, lineStyle: { color: colours.faint } },
-    axisLabel: { color: colours.text, fontSize: 11, formatter: (value) => tick(value, log), hideOverlap: true },
+    axisLabel: { color: colours.text, fontSize: 11, formatter: (value) => tick(value, log), hideOverlap: true, showMinLabel: isRound(min), showMaxLabel: isRound(max) },
     splitLine: { show: true, lineStyle: { color: colours.rule, width: 1 } }, minorTick: { show: false }, ...more,
   };
 }
@@ -45,7 +48,7 @@ export function axis(which, { name, unit, log, min, max, splits, gap }, { colour
 export function widthOfTicks(low, high, log) {
   if (log || !(high > low)) return 34;
   const [from, to] = roundRange([low, high]);
-  const texts = [...Array(7).keys()].map((part) => tick(Number((from + ((to - from) * part) / 6).toPrecision(3))));
+  const texts = [tick(from), tick(to), ...[...Array(7).keys()].map((part) => tick(Number((from + ((to - from) * part) / 6).toPrecision(3))))];
   return 12 + 6.3 * Math.min(9, Math.max(...texts.map((text) => text.length)));
 }
 

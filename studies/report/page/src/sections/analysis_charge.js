@@ -31,10 +31,10 @@ export function chargeBlock(find, shell, key) {
     used.push(degrees);
     marks.push({ x: 0.78 * radius * x, y: 0.78 * radius * y, x2: radius * x, y2: radius * y, text, colour, shift: 14 * crowded });
   }
-  for (const [name, text, colour] of PLACES) {
-    const [x, y] = [value(`${name}_x`), value(`${name}_y`)];
-    if (x !== null && y !== null) marks.push({ x: x * 1000, y: y * 1000, text, colour, side: name === "centre_of_mass" ? "left" : "right" });
-  }
+  const places = PLACES.map(([name, text, colour]) => ({ x: value(`${name}_x`) * 1000, y: value(`${name}_y`) * 1000, text, colour, known: value(`${name}_x`) !== null && value(`${name}_y`) !== null }))
+    .filter((one) => one.known).sort((a, b) => b.y - a.y);
+  const close = places.length === 2 && places[0].y - places[1].y < 0.2 * radius;
+  places.forEach((one, index) => marks.push({ ...one, side: one.x > 0 ? "left" : "right", shift: close ? 14 * index - 7 : 0 })); // towards the middle, where there is room
   const facts = rows.length ? table({ caption: "Charge features with 90 % intervals", rows, columns: [{ label: "feature", wide: true, value: (row) => row.title },
     { label: "value", number: true, value: (row) => among(row.result.value[0], row.result.low?.[0], row.result.high?.[0], scale(row.result.unit).factor) },
     { label: "90 %", number: true, value: (row) => (row.result.high?.[0] > row.result.low?.[0] ? interval(row.result.low[0], row.result.high[0], scale(row.result.unit).factor) : "–") },

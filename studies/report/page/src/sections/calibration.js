@@ -1,6 +1,6 @@
 // A calibration: what each parameter is and how well the recordings determine it, and how that was found.
 import { block, disclosure, element, figure, list, note, paragraph, table } from "../dom.js";
-import { interval, isNumber, number, percent, probability, quantity, words } from "../numbers.js";
+import { capital, interval, isNumber, number, percent, probability, quantity, words } from "../numbers.js";
 import { bars, intervals } from "../plots/intervals.js";
 import { progressBlock, planeBlock } from "./calibration_runs.js";
 import { surfaceBlock } from "./calibration_surface.js";
@@ -66,7 +66,7 @@ export function calibration(section, key) {
   const conditions = Object.entries(found.conditions ?? {}).map(([name, one]) => ({ name, ...one }));
   const failed = found.failed ?? [];
   return {
-    kind: "Calibration", sentence: all.some((one) => one.posterior) ? `${all.map((one) => `${words(one.name)} ${value(one, one.value)}${one.posterior ? `, ${one.posterior.determined} determined` : ""}`).join("; ")}.`
+    kind: "Calibration", sentence: all.some((one) => one.posterior) ? `${capital(all.map((one) => `${words(one.name)} ${value(one, one.value)}${one.posterior ? `, ${one.posterior.determined} determined` : ""}`).join("; "))}.`
       : `The calibrated set is ${found.how}.`,
     headline: [...all.map((one) => [titleOf(one.name), value(one, one.value), one.posterior ? `${span(one, one.posterior.low90, one.posterior.high90)} (90 %), ${one.posterior.determined} determined` : "interval not known"]),
       ["Method", words(found.method), `objective: ${found.objective}`], ["Simulations", number(found.simulations), failed.length ? `${failed.length} failed` : "none failed"],

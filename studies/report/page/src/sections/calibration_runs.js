@@ -4,7 +4,7 @@ import { isNumber, number, words } from "../numbers.js";
 import { lines } from "../plots/lines.js";
 import { colourBar, colouring } from "../plots/map.js";
 import { plane } from "../plots/plane.js";
-import { range } from "../plots/axes.js";
+import { range, roundRange } from "../plots/axes.js";
 import { scaleOf, titleOf } from "./parameters.js";
 
 /** "round 3" and "round 4" are one stage of a chart; the table tells them apart. */
@@ -28,7 +28,7 @@ export function progressBlock(section, key) {
   const log = Math.min(...values) > 0 && Math.max(...values) / Math.min(...values) > 20;
   let least = Infinity;
   const best = done.map((trial) => [trial.number, (least = Math.min(least, trial.objective))]);
-  const [low, high] = range(values);
+  const [low, high] = roundRange(range(values));
   const failed = all.filter((trial) => trial.state === "failed");
   const series = stages.map((stage, index) => ({ name: stage, dots: true, symbol: STAGE_SYMBOLS[index % STAGE_SYMBOLS.length], size: 9,
     points: done.filter((trial) => stageOf(trial.stage) === stage).map((trial) => [trial.number, trial.objective]) })).filter((one) => one.points.length);
@@ -65,8 +65,8 @@ export function planeBlock(section, key) {
       return { name: words(parameters[index].name), unit: scaleOf(parameters[index].name).unit, min: low - beyond, max: high + beyond };
     };
     const groups = [{ name: "simulated", points: all.filter((trial) => trial.objective !== null).map((trial) => ({ ...point(trial.point), value: trial.objective, text: text(trial) })) },
-      { name: "failed", symbol: "triangle", fill: "#d55e00", points: all.filter((trial) => trial.objective === null).map((trial) => ({ ...point(trial.point), text: [["why", trial.message]] })) },
-      { name: "calibrated set", symbol: "diamond", size: 17, fill: "#ffffff", points: [{ ...point(best), text: parameters.map((one, index) => [words(one.name), number(best[index])]) }] }];
+      { name: "failed", symbol: "triangle", fill: "#7f7f7f", points: all.filter((trial) => trial.objective === null).map((trial) => ({ ...point(trial.point), text: [["why", trial.message]] })) },
+      { name: "calibrated set", symbol: "diamond", size: 17, fill: "#d55e00", points: [{ ...point(best), text: parameters.map((one, index) => [words(one.name), number(best[index])]) }] }];
     if (posterior?.mode) groups.push({ name: "most probable set", symbol: "rect", size: 11, fill: "#e69f00", points: [{ ...point(posterior.mode), text: parameters.map((one, index) => [words(one.name), number(posterior.mode[index])]) }] });
     const [x, y] = [ends(a, by[0]), ends(b, by[1])];
     holder.replaceChildren(plane(`${key}-plane`, { label: `${all.length} simulated sets over ${x.name} and ${y.name}`, x, y, colour: scale?.colour ?? (() => "#888888"), groups: groups.filter((group) => group.points.length), height: 420 }),

@@ -1,6 +1,6 @@
 // The quadratic surface of a calibration: contours, the same to be turned in 3-D, coefficients and what the fit is worth.
 import { block, element, figure, list, note, paragraph, table } from "../dom.js";
-import { interval, isNumber, number, percent, probability, words } from "../numbers.js";
+import { capital, interval, isNumber, number, percent, probability, words } from "../numbers.js";
 import { colourBar, colouring } from "../plots/map.js";
 import { levels, plane } from "../plots/plane.js";
 import { Surface } from "../three/surface.js";
@@ -51,7 +51,7 @@ function drawing(section, key) {
       .filter((point) => point.x >= x.min && point.x <= x.max && point.y >= y.min && point.y <= y.max);
     const groups = [{ name: "simulated", points }];
     if (surface.stationary?.inside)
-      groups.push({ name: surface.stationary.kind, symbol: "diamond", size: 16, fill: "#ffffff", points: [{ x: surface.stationary.natural[across], y: surface.stationary.natural[up],
+      groups.push({ name: surface.stationary.kind, symbol: "diamond", size: 16, fill: "#d55e00", points: [{ x: surface.stationary.natural[across], y: surface.stationary.natural[up],
         text: [["value", number(surface.stationary.value, 3)]] }] });
     const flat = plane(`${key}-contour`, { label: `Contours of the surface over ${x.name} and ${y.name}`, x, y, field, colour: scale.colour, groups, height: 400 });
     if (!surfaces.has(key)) surfaces.set(key, new Surface(`The quadratic surface over ${words(a.name)} and ${words(b.name)}`));
@@ -85,7 +85,7 @@ export function surfaceBlock(section, key) {
   const region = stationary?.region;
   const checks = [square("lack of fit", surface.lack_of_fit), square("pure error", surface.pure_error)].filter(Boolean);
   return block(`${key}-surface`, "Response surface", stationary?.sentence ? paragraph(`The surface has ${stationary.sentence}.`) : null,
-    surface.lack_of_fit_means ? paragraph(`${surface.lack_of_fit_means}.`) : null, surface.factors.length >= 2 ? drawing(section, `${key}-surface`) : null,
+    surface.lack_of_fit_means ? paragraph(`${capital(surface.lack_of_fit_means)}.`) : null, surface.factors.length >= 2 ? drawing(section, `${key}-surface`) : null,
     stationary ? table({ caption: `The ${stationary.kind} of the surface${region ? ` with its ${percent(region.confidence, 3)} confidence region (Box & Hunter 1954)` : ""}`,
       rows: surface.factors.map((factor, index) => ({ ...factor, at: stationary.natural[index], low: region?.low?.[index], high: region?.high?.[index] })),
       columns: [{ label: "parameter", value: (row) => words(row.name) }, { label: "value", number: true, value: (row) => number(row.at) },

@@ -45,11 +45,11 @@ export function comparison(section, key) {
       charted.length ? block(`${key}-strongest`, "The strongest differences", figure("The strongest element of each observable: B less A in standard errors, with 90 % intervals. "
         + "Filled: differs, with one error rate for everything; hollow: may be chance.", intervals(`${key}-strongest`, {
         label: charted.slice(0, 4).map((row, index) => `${title(row)} ${signed(values[index].value, 2)} standard errors`).join(", "), rows: charted.map((row) => `${row.rank}. ${title(row)}`),
-        groups: [{ name: "", values }], x: { name: "B − A in standard errors" }, zero: 0, zone: [-1.645, 1.645] }))) : null,
+        groups: [{ name: "", values }], x: { name: "B − A in standard errors" }, zero: 0 }))) : null,
       rows.length ? block(`${key}-ranked`, "All observables, ranked", ranked(rows.slice(0, FIRST), "A star marks what differs; all differences are B less A"),
         rows.length > FIRST ? disclosure(`${key}-rest`, `The other ${rows.length - FIRST} observables`, () => ranked(rows.slice(FIRST), "The other observables")) : null) : null,
-      pictures.length ? block(`${key}-pictures`, "Pictures", note("A, B and B − A side by side; what differs is framed."), first.map(picture),
-        pictures.length > PICTURED ? disclosure(`${key}-more`, `The other ${pictures.length - PICTURED} pictures`, () => pictures.slice(PICTURED).map(picture)) : null) : null,
+      pictures.length ? block(`${key}-pictures`, "Pictures", note("A, B and B − A side by side; what differs is framed."), element("div", { class: "halves" }, first.map(picture)),
+        pictures.length > PICTURED ? disclosure(`${key}-more`, `The other ${pictures.length - PICTURED} pictures`, () => element("div", { class: "halves" }, pictures.slice(PICTURED).map(picture))) : null) : null,
       found.notes?.length || given.length || found.not_judged?.length ? block(`${key}-notes`, "Notes of the comparison", found.notes?.length ? list(found.notes) : null,
         given.length ? disclosure(`${key}-given`, `Given quantities that differ (${given.length})`, () => list(given.map((one) => (typeof one === "string" ? one : Object.values(one).join(" "))))) : null,
         found.not_judged?.length ? disclosure(`${key}-not-judged`, `Not judged (${found.not_judged.length})`, () => list(found.not_judged)) : null) : null,

@@ -13,7 +13,7 @@ function movieBlock(section, key) {
   const id = `${key}-mill`;
   const { movie } = section;
   if (!movie) return section.state === "running" ? block(id, "The mill turning", note("Pictures of the beads come as soon as the run has written some.")) : null;
-  if (!mills.has(key)) mills.set(key, new Mill(section.title));
+  if (!mills.has(key)) mills.set(key, new Mill(section.title, movie.beads));
   const mill = mills.get(key);
   if (!mill.works)
     return block(id, "The mill turning", element("p", { class: "missing" }, "This browser shows no 3-D (WebGL 2 is missing or switched off), so the beads are not drawn. All else on this page works."));

@@ -4,7 +4,7 @@ import { channels } from "../colours.js";
 import { inflate } from "../data.js";
 import { element, freshId, svg } from "../dom.js";
 import { number } from "../numbers.js";
-import { Beads } from "./beads.js";
+import { Beads, MANY } from "./beads.js";
 import { Liner } from "./liner.js";
 import { View } from "./view.js";
 
@@ -13,8 +13,8 @@ const stillness = window.matchMedia("(prefers-reduced-motion: reduce)");
 const button = (text, title, click) => element("button", { type: "button", title, click }, text);
 
 export class Mill {
-  constructor(name) {
-    this.view = new View(`${name}: beads in the turning mill, coloured by speed. Arrow keys turn the view, + and − zoom, space plays, page up and down step.`);
+  constructor(name, beads) {
+    this.view = new View(`${name}: beads in the turning mill, coloured by speed. Arrow keys turn the view, + and − zoom, space plays, page up and down step.`, { plain: beads > MANY });
     this.works = Boolean(this.view.renderer);
     if (!this.works) return;
     this.view.renderer.localClippingEnabled = true;

@@ -90,8 +90,8 @@ export class Surface {
     this.view.scene.add(...this.content);
     const [[left, right], [bottom, top], [, front]] = BOX;
     this.labels = [[`${x.name}`, 0, bottom - 0.16, front + 0.14], [number(x.min, 3), left, bottom - 0.06, front + 0.14], [number(x.max, 3), right, bottom - 0.06, front + 0.14],
-      [`${y.name}`, right + 0.2, bottom - 0.16, 0], [number(y.min, 3), right + 0.14, bottom - 0.02, front - 0.1], [number(y.max, 3), right + 0.14, bottom - 0.02, -front],
-      [field.name, left, top + 0.14, -front], [number(high, 3), left - 0.12, top, -front], [number(low, 3), left - 0.12, bottom, -front]].map(([text, ...at]) => {
+      [`${y.name}`, right + 0.2, bottom - 0.16, 0], [number(y.min, 3), right + 0.14, bottom - 0.02, front - 0.1], [number(y.max, 3), right + 0.14, bottom - 0.06, -front],
+      [field.name, right, top + 0.14, -front], [number(high, 3), right + 0.16, top, -front], [number(low, 3), right + 0.16, bottom + 0.1, -front]].map(([text, ...at]) => {
       const node = element("span", { class: "label" }, text);
       this.element.append(node);
       return { node, at: new Vector3(...at) };

@@ -6,27 +6,27 @@ import { element } from "../dom.js";
 const STEP = Math.PI / 24; // a key press turns by so much
 
 /** Null where the browser has no WebGL 2. */
-function newRenderer() {
+function newRenderer(plain) {
   try {
-    return new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true }); // the buffer is kept for printing
+    return new WebGLRenderer({ antialias: !plain, preserveDrawingBuffer: true }); // the buffer is kept for printing
   } catch {
     return null;
   }
 }
 
 export class View {
-  /** azimuth and height of the eye, rad: 0 and 0 look along −z with x to the right and y up. */
-  constructor(label, turn = { azimuth: 0, height: 0 }) {
-    this.renderer = newRenderer();
+  /** azimuth and height of the eye, rad: 0 and 0 look along −z with x to the right and y up; plain: without smooth edges, for much to draw. */
+  constructor(label, { azimuth = 0, height = 0, plain = false } = {}) {
+    this.renderer = newRenderer(plain);
     if (!this.renderer) return;
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+    this.renderer.setPixelRatio(plain ? 1 : Math.min(2, window.devicePixelRatio || 1));
     this.scene = new Scene();
     this.camera = new OrthographicCamera(-1, 1, 1, -1, 0, 10);
     this.centre = new Vector3();
     this.reach = 1; // the scene's radius about its centre
     this.wide = 1; // what must fit at azimuth 0: half its height
     this.zoom = 1;
-    this.turn = { ...turn };
+    this.turn = { azimuth, height };
     this.before = []; // called before each picture
     this.canvas = this.renderer.domElement;
     for (const [name, value] of Object.entries({ tabindex: 0, role: "img", "aria-label": label })) this.canvas.setAttribute(name, value);
