@@ -53,6 +53,22 @@ double Case::mean_bead_mass() const {
   return mass;
 }
 
+bool Case::has_tracers() const {
+  return std::any_of(beads.begin(), beads.end(), [](const BeadCase& bead) { return bead.tracer; });
+}
+
+bool Case::may_be_followed(double radius, double bead_mass) const {
+  if (!has_tracers()) return true;
+  constexpr double kRounding = 1e-4;  // masses and radii of a run are kept in single precision
+  const auto alike = [](double a, double b) { return std::fabs(a - b) <= kRounding * b; };
+  for (const BeadCase& bead : beads) {
+    for (const SizeClass& size : bead.sizes) {
+      if (bead.tracer && alike(2 * radius, size.diameter) && alike(bead_mass, bead.density * sphere_volume(size.diameter))) return true;
+    }
+  }
+  return false;
+}
+
 std::uint64_t bead_count(const Case& c, const std::optional<Vessel>& vessel) {
   const FillCase& fill = c.fill;
   if (fill.count) return *fill.count;

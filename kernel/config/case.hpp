@@ -47,6 +47,7 @@ struct BeadCase {
   double density = 0;            ///< kg/m³; the material's unless `density` is given
   std::vector<SizeClass> sizes;  ///< from `diameter`, `sizes` or `distribution`; in the order of the file
   double number_share = 1;       ///< of all beads; the classes sum to 1
+  bool tracer = false;           ///< beads that are followed are of this class
   Location where;
 
   double mean_volume() const;  ///< m³ per bead
@@ -220,6 +221,10 @@ struct Case {
   double smallest_diameter() const;                                                          ///< m
   double mean_bead_volume() const;                                                           ///< m³, over classes and sizes
   double mean_bead_mass() const;                                                             ///< kg
+  bool has_tracers() const;                                                                  ///< some class says `tracer: true`
+  /// Whether a bead of this radius, m, and mass, kg, may be followed: it is like a bead of a tracer class, or no class is one. Beads that
+  /// are alike may stand for each other.
+  bool may_be_followed(double radius, double bead_mass) const;
 };
 
 /// Reads and checks a case; `overrides` are "path.to.key=value". The plugins' own keys are checked by `resolve`; when every plugin has

@@ -90,7 +90,7 @@ void normalise(std::vector<SizeClass>& sizes) {
 }
 
 BeadCase read_bead(const Node& node, const std::string& name, const std::vector<MaterialCase>& materials) {
-  node.expect({"material", "diameter", "sizes", "distribution", "fractions_by", "density", "share"});
+  node.expect({"material", "diameter", "sizes", "distribution", "fractions_by", "density", "share", "tracer"});
   BeadCase bead;
   bead.name = name;
   bead.where = node.where();
@@ -100,6 +100,7 @@ BeadCase read_bead(const Node& node, const std::string& name, const std::vector<
   }
   bead.density = number_or(node, "density", "kg/m^3", positive(), bead.density);
   bead.sizes = read_sizes(node);
+  if (const auto tracer = node.find("tracer")) bead.tracer = read_flag(*tracer);
   return bead;
 }
 

@@ -117,7 +117,8 @@ json beads_schema() {
                         {"distribution", distribution},
                         {"fractions_by", choice({"mass", "number"})},
                         {"density", quantity("kg/m^3; default: the material's")},
-                        {"share", quantity("part of the charge")}},
+                        {"share", quantity("part of the charge")},
+                        {"tracer", flag("beads that are followed are of this class")}},
                        {"material"}));
 }
 

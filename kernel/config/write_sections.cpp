@@ -82,6 +82,7 @@ void write_beads(Lines& out, const std::vector<BeadCase>& beads) {
     out.value("sizes", "[" + list + "]");
     out.value("fractions_by", "number");
     out.value("share", bead.number_share);
+    if (bead.tracer) out.value("tracer", "true");
     out.close();
   }
   out.close();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "kernel/run/random.hpp"
@@ -20,6 +21,17 @@ std::int64_t steps_of(double interval, double time_step) {
   a.c.root.at("output").at("tracks").at("beads").fail(message);
 }
 
+/// Ids of the beads that may be followed, in their order.
+std::vector<std::uint32_t> followable(const Assembly& a) {
+  const dem::Particles& p = a.system->particles;
+  std::vector<std::uint32_t> ids;
+  for (std::size_t i = 0; i < a.bead_count; ++i) {
+    if (a.c.may_be_followed(p.position[i].radius, 1.0 / p.motion[i].inverse_mass)) ids.push_back(p.id[i]);
+  }
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
 /// Which beads to follow: the user's ids, or a seeded draw.
 std::vector<std::uint32_t> tracked(const Assembly& a) {
   const config::OutputCase::Tracks& t = *a.c.output.tracks;
@@ -27,14 +39,27 @@ std::vector<std::uint32_t> tracked(const Assembly& a) {
   for (const std::uint64_t id : t.ids) ids.push_back(static_cast<std::uint32_t>(id));
   if (!ids.empty()) return ids;
   Random random(a.c.seed ^ 0x747261636b73ULL);  // another stream than the filling's
-  std::vector<std::uint32_t> all(a.bead_count);
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);
+  std::vector<std::uint32_t> all = followable(a);
   for (std::size_t k = 0; k < t.count; ++k) {
     std::swap(all[k], all[k + random.below(all.size() - k)]);
     ids.push_back(all[k]);
   }
   std::sort(ids.begin(), ids.end());
   return ids;
+}
+
+/// How many may be followed at least, whatever the filling makes of fractions of a bead.
+std::uint64_t least_followable(const Assembly& a) {
+  if (!a.c.has_tracers()) return a.bead_count;
+  std::uint64_t count = 0;
+  for (const config::BeadCase& bead : a.c.beads) {
+    for (const config::SizeClass& size : bead.sizes) {
+      const double mass = bead.density * std::numbers::pi / 6 * size.diameter * size.diameter * size.diameter;
+      if (a.c.may_be_followed(0.5 * size.diameter, mass))
+        count += static_cast<std::uint64_t>(static_cast<double>(a.bead_count) * bead.number_share * size.number_fraction);
+    }
+  }
+  return count;
 }
 
 void wrap(const dem::Settings& s, double* x) {
@@ -48,6 +73,12 @@ void Recorder::check(const Assembly& a) {
   const config::OutputCase::Tracks& t = *a.c.output.tracks;
   if (t.count > a.bead_count)
     refuse_tracks(a, fmt::format("asks for {} beads, but there are only {}; give at most that many", t.count, a.bead_count));
+  if (t.ids.empty() && t.count > least_followable(a)) {
+    refuse_tracks(a,
+                  fmt::format("asks for {} beads, but there are only {} like those of the classes with 'tracer: true'; give at most that "
+                              "many, or these classes a larger share",
+                              t.count, least_followable(a)));
+  }
   for (const std::uint64_t id : t.ids) {
     if (id >= a.bead_count)
       refuse_tracks(a, fmt::format("names bead {}, but ids run from 0 to {}; choose one of these", id, a.bead_count - 1));

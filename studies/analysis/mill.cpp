@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -55,15 +56,20 @@ std::array<double, 3> gravity_of(const config::Case& c, const host::Registry& re
   return sum;
 }
 
+/// The charge without its tracers, if any are set apart: in a recorded mill there is one of them.
 void know_charge(const config::Case& c, const std::optional<config::Vessel>& vessel, AnalyzerContext& context) {
-  double mass = 0, volume = 0;
+  double mass = 0, volume = 0, share = 0;
+  const bool all_tracers = std::all_of(c.beads.begin(), c.beads.end(), [](const config::BeadCase& beads) { return beads.tracer; });
   for (const config::BeadCase& beads : c.beads) {
+    if (beads.tracer && !all_tracers) continue;
+    share += beads.number_share;
     for (const config::SizeClass& size : beads.sizes)
       context.bead_radius += beads.number_share * size.number_fraction * 0.5 * size.diameter;
     mass += beads.number_share * beads.mean_volume() * beads.density;
     volume += beads.number_share * beads.mean_volume();
   }
   context.bead_density = mass / volume;
+  context.bead_radius /= share, mass /= share, volume /= share;
   // A case that serves only as the geometry of a recording may leave the charge open.
   if (!c.fill.count && !c.fill.mass && !c.fill.filling) return;
   context.charge_count = static_cast<double>(config::bead_count(c, vessel));

@@ -14,11 +14,29 @@ namespace {
 
 using config::UserError;
 
-std::vector<std::size_t> evenly(std::size_t count, int wished) {
-  const std::size_t n = std::min(count, static_cast<std::size_t>(wished));
+/// At most `wished` of those that may be followed.
+std::vector<std::size_t> evenly(const output::FrameBeads& beads, const config::Case& c, int wished) {
+  std::vector<std::size_t> all;
+  for (std::size_t b = 0; b < beads.size(); ++b) {
+    if (c.may_be_followed(beads.radius[b], beads.mass[b])) all.push_back(b);
+  }
+  const std::size_t n = std::min(all.size(), static_cast<std::size_t>(wished));
   std::vector<std::size_t> chosen(n);
-  for (std::size_t i = 0; i < n; ++i) chosen[i] = i * count / n;
+  for (std::size_t i = 0; i < n; ++i) chosen[i] = all[i * all.size() / n];
   return chosen;
+}
+
+/// Σ m x of the charge that a recorded mill has, N beads like those beside the tracers, over that of the beads as they are.
+double lever_ratio(const output::FrameBeads& beads, const config::Case& c, const std::vector<double>& sum_x) {
+  double all = 0, others = 0, count = 0;
+  for (std::size_t b = 0; b < beads.size(); ++b) {
+    all += beads.mass[b] * sum_x[b];
+    if (c.may_be_followed(beads.radius[b], beads.mass[b])) continue;
+    others += beads.mass[b] * sum_x[b];
+    count += 1;
+  }
+  // No bead beside the tracers: each is as good as every other.
+  return count > 0 && all != 0 ? others * static_cast<double>(beads.size()) / count / all : 1.0;
 }
 
 }  // namespace
@@ -26,7 +44,8 @@ std::vector<std::size_t> evenly(std::size_t count, int wished) {
 BeadPaths::BeadPaths(const std::filesystem::path& run, int beads, const AxialPlace& place, const host::Registry& registry)
     : case_file_(run / "case.resolved.yaml"), mill_(studies::read_mill_of_case(case_file_, registry)), place_(place) {
   const output::FrameReader reader(run / "frames.h5");
-  const double from = config::read_case(case_file_.string()).time.analyze_from;
+  const config::Case c = config::read_case(case_file_.string());
+  const double from = c.time.analyze_from;
   const std::vector<double>& time = reader.scalars().time;
   const auto first = static_cast<std::size_t>(
       std::lower_bound(time.begin(), time.begin() + static_cast<std::ptrdiff_t>(reader.frame_count()), from - 1e-9) - time.begin());
@@ -35,21 +54,26 @@ BeadPaths::BeadPaths(const std::filesystem::path& run, int beads, const AxialPla
     throw UserError(
         fmt::format("{}: has {} frames after {} s, at least 4 are needed; simulate longer", reader.path().string(), frames, from));
   time_.assign(time.begin() + static_cast<std::ptrdiff_t>(first), time.begin() + static_cast<std::ptrdiff_t>(first + frames));
-  const std::vector<std::size_t> chosen = evenly(reader.beads().size(), beads);
+  const std::vector<std::size_t> chosen = evenly(reader.beads(), c, beads);
+  if (chosen.empty())
+    throw UserError(fmt::format("{}: no bead is of a class with 'tracer: true'; give such a class a larger share", reader.path().string()));
   for (const std::size_t b : chosen) {
     ids_.push_back(reader.beads().id[b]);
     radius_.push_back(reader.beads().radius[b]);
   }
   std::vector<float> all(reader.beads().size() * 3);
+  std::vector<double> sum_x(reader.beads().size());
   const auto load = [&](output::BeadField field, std::vector<float>& values) {
     values.reserve(frames * chosen.size() * 3);
     for (std::size_t f = 0; f < frames; ++f) {
       reader.read(field, first + f, 1, all);
+      for (std::size_t b = 0; field == output::BeadField::position && b < sum_x.size(); ++b) sum_x[b] += static_cast<double>(all[3 * b]);
       for (const std::size_t b : chosen) values.insert(values.end(), {all[3 * b], all[3 * b + 1], all[3 * b + 2]});
     }
   };
   load(output::BeadField::position, position_);
   load(output::BeadField::velocity, velocity_);
+  lever_ratio_ = c.has_tracers() ? lever_ratio(reader.beads(), c, sum_x) : 1.0;
 }
 
 output::TrackSamples BeadPaths::path(std::size_t i) const {

@@ -25,14 +25,16 @@ struct AxialPlace {
 
 class BeadPaths {
  public:
-  /// At most `beads` of the run, evenly over their ids, from the time on at which the case begins its analysis. The beads of a periodic
-  /// slice are spread over `place`, so that the camera sees them as far away as it saw the recorded one.
-  /// Throws config::UserError when the run has no frames or fewer than four.
+  /// At most `beads` of the run, of those that the case lets be followed (`tracer: true`), evenly over their ids, from the time on at which
+  /// the case begins its analysis. The beads of a periodic slice are spread over `place`, so that the camera sees them as far away as it
+  /// saw the recorded one. Throws config::UserError when the run has no frames or fewer than four.
   BeadPaths(const std::filesystem::path& run, int beads, const AxialPlace& place, const host::Registry& registry);
 
   std::size_t size() const { return ids_.size(); }
   const studies::MillOfCase& mill() const { return mill_; }
   const std::filesystem::path& case_file() const { return case_file_; }
+  /// The power of the charge without unlike tracers, all N beads like the others, over that of the run: 1 where no class is set apart.
+  double power_ratio() const { return lever_ratio_; }
   double seconds() const { return time_.back() - time_.front(); }  ///< of each path
 
   output::TrackSamples path(std::size_t i) const;
@@ -42,6 +44,7 @@ class BeadPaths {
   std::filesystem::path case_file_;
   studies::MillOfCase mill_;
   AxialPlace place_;
+  double lever_ratio_ = 1;
   std::vector<std::uint32_t> ids_;
   std::vector<double> radius_, time_;
   std::vector<float> position_, velocity_;  ///< [frames, beads, 3]

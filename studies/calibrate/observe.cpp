@@ -155,7 +155,7 @@ struct Observer::Impl {
     Observation o = summarise(results, r.summaries);
     o.bead_seconds = paths.seconds() * static_cast<double>(paths.size());
     if (r.measured_power) {
-      set_power(o, whole_charge_power(run, r.mass / case_mass[condition]));
+      set_power(o, whole_charge_power(run, r.mass / case_mass[condition] * paths.power_ratio()));
     } else {
       const studies::ResultArray* specific = results.find("power", "specific_power_gravity");
       o.power = {r.mass * specific->value.at(0), r.mass * specific->sem.at(0),

@@ -42,7 +42,8 @@ struct Library {
 /// All that apply to the case: the plugins' hypotheses and the targets of targets.cpp.
 Library library_of(const config::Case& base, const host::Registry& registry);
 
-/// Targets: height and face angle of lifters, end faces at rest, ripple of the speed. For the files of this room.
+/// Targets: density of the tracer, spread of the sizes, stiffness of the contacts, height and face angle of lifters, end faces at rest,
+/// ripple of the speed. For the files of this room.
 std::vector<Candidate> targets_of(const config::Case& base);
 
 }  // namespace millscope::diagnose

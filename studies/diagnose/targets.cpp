@@ -16,6 +16,13 @@ constexpr double kAngle = 15 * kDegree;  // by which a lifter's face may be off
 constexpr double kRipple = 0.1;          // of the speed
 constexpr double kSteepest = 89 * kDegree;
 
+constexpr double kTracers = 0.05;   // of the beads: enough to be followed, too few to change how the charge moves
+constexpr double kHeavyTracer = 2;  // times the density of the charge
+constexpr double kLightTracer = 0.5;
+constexpr double kSpread = 0.15;  // standard deviation of the diameters over their mean
+constexpr double kEqual = 0.005;  // spread of beads that pass for equal
+constexpr double kStiffer = 4;    // times the stiffness: half the time step
+
 double number(const config::Node& node) {
   const config::Quantity q = config::read_quantity(node);
   return q.has_unit ? q.unit.to_si(q.number) : q.number;
@@ -103,10 +110,83 @@ void ripple(const config::Case& base, const config::GeometryCase& g, std::vector
   out.push_back(std::move(c));
 }
 
+/// The one class of equal beads of a case without tracers, or null.
+const config::BeadCase* equal_beads(const config::Case& base) {
+  const bool one = base.beads.size() == 1 && !base.has_tracers() && base.beads[0].sizes.size() == 1;
+  return one && base.root.at("beads").at(base.beads[0].name).has("diameter") ? &base.beads[0] : nullptr;
+}
+
+/// Sets apart the part of a class that is followed, at first like the rest.
+std::vector<std::string> tracers_of(const config::BeadCase& beads) {
+  return {"fill.shares_by=number", fmt::format("beads.{}.share={}", beads.name, 1 - kTracers),
+          fmt::format("beads.tracer={{material: {}, diameter: {:.6g}, density: {:.6g}, share: {}, tracer: true}}", beads.material,
+                      beads.sizes[0].diameter, beads.density, kTracers)};
+}
+
+void unlike_tracer(const config::BeadCase& beads, std::vector<Candidate>& out) {
+  const double rho = beads.density;
+  out.push_back({"unlike_tracer",
+                 "The recorded bead is not of the density of the charge.",
+                 "rho_tracer != rho",
+                 "",
+                 "density",
+                 "kg/m^3",
+                 tracers_of(beads),
+                 {"beads.tracer.density"},
+                 rho,
+                 kHeavyTracer * rho,
+                 {(kLightTracer - 1) / (kHeavyTracer - 1), 1},
+                 {"size_spread"}});
+}
+
+/// The tracer stays of the nominal size.
+void size_spread(const config::BeadCase& beads, std::vector<Candidate>& out) {
+  const double d = beads.sizes[0].diameter;
+  Candidate c{"size_spread",
+              "The beads of the charge are not of one size.",
+              "d ~ normal(d_0, s)",
+              "",
+              "deviation",
+              "m",
+              tracers_of(beads),
+              {fmt::format("beads.{}.distribution.deviation", beads.name)},
+              kEqual * d,
+              kSpread * d,
+              {},
+              {"unlike_tracer"}};
+  c.set.push_back(fmt::format("beads.{}.diameter=~", beads.name));
+  c.set.push_back(fmt::format("beads.{}.fractions_by=number", beads.name));
+  c.set.push_back(fmt::format("beads.{0}.distribution={{kind: normal, mean: {1:.6g}, deviation: {2:.6g}}}", beads.name, d, kSpread * d));
+  out.push_back(std::move(c));
+}
+
+/// Softening lengthens contacts and lets beds pack more densely.
+void stiffness(const config::Case& base, std::vector<Candidate>& out) {
+  const double factor = base.stiffness_factor;
+  if (factor >= 1) return;
+  out.push_back({"contact_stiffness",
+                 "The contacts are stiffer than the simulation takes them to be.",
+                 "E = s E_material",
+                 "",
+                 "stiffness_factor",
+                 "1",
+                 {},
+                 {"stiffness_factor"},
+                 factor,
+                 std::min(1.0, kStiffer * factor),
+                 {},
+                 {}});
+}
+
 }  // namespace
 
 std::vector<Candidate> targets_of(const config::Case& base) {
   std::vector<Candidate> out;
+  if (const config::BeadCase* beads = equal_beads(base)) {
+    unlike_tracer(*beads, out);
+    size_spread(*beads, out);
+  }
+  stiffness(base, out);
   for (const config::GeometryCase& g : base.geometry) {
     if (g.plugin.kind != "mill") continue;
     lifters(g, out);

@@ -103,6 +103,9 @@ class Values(Refusals):
         self.refuse_case([("tracks: {beads: 2", "tracks: {beads: [0, 324]")], "tracks", "324", "0 to 323")
         self.refuse_case([("tracks: {beads: 2", "tracks: {beads: [7, 7]")], "tracks", "twice", "once")
         self.refuse_case([("tracks: {beads: 2", "tracks: {beads: 400")], "tracks", "only 324")
+        self.refuse_case([("glass8: {material: glass, diameter: 8 mm}", "glass8: {material: glass, diameter: 8 mm, share: 99 %}\n"
+                           "  marked: {material: glass, density: 5000, diameter: 8 mm, share: 1 %, tracer: true}"), ("tracks: {beads: 2", "tracks: {beads: 4")],
+                         "tracks", "only 1 like", "tracer: true", "larger share")
 
     def test_beads_that_do_not_fit(self):
         self.refuse_case([("filling: 30 %", "filling: 95 %")], "fill", "only", "fit", "lower the filling")

@@ -171,5 +171,24 @@ class Outputs(CliTest):
         self.assert_one_line(self.millscope("resume", "meshed", "--set", "time.end_s=0.11"), "no longer what the checkpoint was written with")
 
 
+class Tracers(CliTest):
+    def test_only_beads_of_a_tracer_class_are_followed(self):
+        self.write_case(("glass8: {material: glass, diameter: 8 mm}", "glass8: {material: glass, diameter: 8 mm, share: 95 %}\n"
+                         "  marked: {material: glass, density: 5000, diameter: 8 mm, share: 5 %, tracer: true}"),
+                        ("settle_s: 0.02", "settle_s: 0.02\n  shares_by: number"), ("tracks: {beads: 2", "tracks: {beads: 16"))
+        self.run_case("out")
+        with Hdf5(self.folder / "out" / "tracks.h5") as f:
+            followed = {int(name.removeprefix("bead_")) for name in f.names()}
+        with Hdf5(self.folder / "out" / "frames.h5") as f:
+            mass = dict(zip((int(i) for i in f.read("beads/id")), f.read("beads/mass")))
+        self.assertEqual(len(followed), 16)
+        heavy = 5000 * math.pi / 6 * 0.008**3
+        for bead in followed:
+            self.assertAlmostEqual(mass[bead] / heavy, 1, 5)
+        self.assertEqual(sum(1 for m in mass.values() if m > 0.9 * heavy), 16)
+        with open(self.folder / "out" / "case.resolved.yaml") as resolved:
+            self.assertIn("tracer: true", resolved.read())
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -110,3 +110,20 @@ TEST_CASE("outputs can be switched on and off") {
   CHECK(c.output.vtk->every == 0.05);
   CHECK_FALSE(c.output.frames.has_value());
 }
+
+TEST_CASE("only beads like those of a tracer class may be followed") {
+  const std::string two =
+      "beads: {charge: {material: glass, diameter: 5 mm, share: 95 %}, marked: {material: glass, density: 5000, diameter: 5 mm, share: 5 "
+      "%, "
+      "tracer: true}}";
+  const Case c = read_all(case_with("beads", two));
+  const double volume = std::acos(-1.0) / 6 * std::pow(5e-3, 3);
+  CHECK(c.has_tracers());
+  CHECK(c.may_be_followed(2.5e-3, 5000 * volume));
+  CHECK(c.may_be_followed(2.5e-3 * (1 + 1e-7), 5000 * volume * (1 - 1e-7)));  // single precision
+  CHECK_FALSE(c.may_be_followed(2.5e-3, 2500 * volume));
+  CHECK_FALSE(c.may_be_followed(2.6e-3, 5000 * volume));
+  const Case plain = read_all(testing::kCase);
+  CHECK_FALSE(plain.has_tracers());
+  CHECK(plain.may_be_followed(1, 1));
+}

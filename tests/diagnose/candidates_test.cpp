@@ -41,7 +41,8 @@ std::string why_not(const Library& l, const std::string& name) {
 TEST_CASE("hypotheses of plugins that the base lacks apply, others say why they do not") {
   const Library l = library();
   for (const char* name : {"adhesion", "air_drag", "capillary_bridge", "cohesion", "fluid_pool", "lubrication", "rolling_friction",
-                           "rolling_resistance", "speed_dependent_friction", "lifter_wear", "lifter_face_angle", "end_faces_at_rest"}) {
+                           "rolling_resistance", "speed_dependent_friction", "lifter_wear", "lifter_face_angle", "end_faces_at_rest",
+                           "unlike_tracer", "size_spread", "contact_stiffness"}) {
     INFO(name << ": " << why_not(l, name));
     CHECK(find(l, name) != nullptr);
   }
@@ -120,6 +121,40 @@ TEST_CASE("lifters may be worn, and their faces stand otherwise, to both sides")
   const Library upright = library({"geometry.liner.lifter_face_angle=89 deg"});
   if (const Candidate* u = find(upright, "lifter_face_angle")) CHECK(std::isfinite(u->range.low));
   CHECK(find(library({"geometry.liner.lifters=0"}), "lifter_wear") == nullptr);
+}
+
+TEST_CASE("a tracer of another density is set apart from a charge that stays as it is") {
+  const Candidate* c = nullptr;
+  const Library l = library();
+  REQUIRE((c = find(l, "unlike_tracer")) != nullptr);
+  const config::Case base = config::read_case(kMill), heavy = config::read_case(kMill, settings_of(*c, 1)),
+                     light = config::read_case(kMill, settings_of(*c, c->range.low));
+  REQUIRE(heavy.beads.size() == 2);
+  const config::BeadCase &charge = heavy.beads[0], &tracer = heavy.beads[1];
+  CHECK(tracer.tracer);
+  CHECK_FALSE(charge.tracer);
+  CHECK(charge.density == base.beads[0].density);
+  CHECK_THAT(tracer.density, WithinRel(2 * charge.density, 1e-9));
+  CHECK_THAT(light.beads[1].density, WithinRel(0.5 * charge.density, 1e-9));
+  CHECK_THAT(tracer.number_share, WithinRel(0.05, 1e-9));
+  CHECK(config::bead_count(heavy) == config::bead_count(base));
+  CHECK(find(library({"beads.glass10.tracer=true"}), "unlike_tracer") == nullptr);
+  CHECK(find(library({"stiffness_factor=1"}), "contact_stiffness") == nullptr);
+}
+
+TEST_CASE("sizes may spread about a tracer of the nominal one") {
+  const Candidate* c = nullptr;
+  const Library l = library();
+  REQUIRE((c = find(l, "size_spread")) != nullptr);
+  const config::Case spread = config::read_case(kMill, settings_of(*c, 1));
+  double mean = 0, square = 0;
+  for (const config::SizeClass& s : spread.beads[0].sizes) {
+    mean += s.number_fraction * s.diameter;
+    square += s.number_fraction * s.diameter * s.diameter;
+  }
+  CHECK_THAT(mean, WithinRel(0.01, 1e-6));
+  CHECK_THAT(std::sqrt(square - mean * mean), WithinRel(0.0015, 0.05));
+  CHECK(spread.beads[1].sizes[0].diameter == 0.01);
 }
 
 TEST_CASE("end faces that turn may be at rest, on or off") {
