@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "kernel/host/scaffold.hpp"
 #include "scratch.hpp"
@@ -50,17 +51,24 @@ std::string write_wind(const Scratch& scratch) {
   return project;
 }
 
+/// The plugin, built out of tree against the SDK that this build installs; where it lies.
+std::string build_wind(const Scratch& scratch) {
+  const fs::path log = scratch / "log", sdk = scratch / "sdk";
+  run(quoted(MILLSCOPE_CMAKE) + " --install " + quoted(MILLSCOPE_BINARY_DIR) + " --component sdk --prefix " + quoted(sdk.string()), log);
+  const std::string project = write_wind(scratch), build = project + "/build";
+  run(quoted(MILLSCOPE_CMAKE) + " -S " + quoted(project) + " -B " + quoted(build) +
+          " -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=" + quoted(MILLSCOPE_CXX) + " -DCMAKE_PREFIX_PATH=" + quoted(sdk.string()),
+      log);
+  run(quoted(MILLSCOPE_CMAKE) + " --build " + quoted(build), log);
+  return build + "/lib/millscope/plugins";
+}
+
 }  // namespace
 
 TEST_CASE("a third party's hypothesis is found, described and asked for like ours") {
   const Scratch scratch;
-  const fs::path log = scratch / "log", sdk = scratch / "sdk";
-  run(quoted(MILLSCOPE_CMAKE) + " --install " + quoted(MILLSCOPE_BINARY_DIR) + " --component sdk --prefix " + quoted(sdk.string()), log);
-  const std::string project = write_wind(scratch), build = project + "/build", plugins = build + "/lib/millscope/plugins";
-  run(quoted(MILLSCOPE_CMAKE) + " -S " + quoted(project) + " -B " + quoted(build) + " -DCMAKE_CXX_COMPILER=" + quoted(MILLSCOPE_CXX) +
-          " -DCMAKE_PREFIX_PATH=" + quoted(sdk.string()),
-      log);
-  run(quoted(MILLSCOPE_CMAKE) + " --build " + quoted(build), log);
+  const fs::path log = scratch / "log";
+  const std::string plugins = build_wind(scratch);
 
   const std::string page = run(quoted(MILLSCOPE_COMMAND) + " describe wind --plugin-dir " + quoted(plugins), log);
   CHECK_THAT(page, Contains("Hypothesis wind") && Contains("A wind blows through the mill."));
@@ -78,4 +86,34 @@ TEST_CASE("a third party's hypothesis is found, described and asked for like our
   const config::Case with = config::read_case(base, {"body_forces.wind.kind=wind"});
   const Library again = library_of(with, registry);
   CHECK(std::find(again.left_out.begin(), again.left_out.end(), "wind: wind is in the base case already") != again.left_out.end());
+}
+
+// The story's small mill, once with a wind of 0.05 Pa s and contacts half as stiff again: that is recorded. Nobody tells the simulation.
+TEST_CASE("a third party's hypothesis is named on a recording made with it") {
+  const Scratch scratch;
+  const fs::path log = scratch / "log", story = fs::path(MILLSCOPE_SOURCE_DIR) / "configs" / "story";
+  const std::string plugins = " --plugin-dir " + quoted(build_wind(scratch));
+  const std::string command = "cd " + quoted(scratch.path.string()) + " && " + quoted(MILLSCOPE_COMMAND) + " ";
+  std::string conditions;
+  for (const std::string speed : {"75", "55"}) {
+    run(command + "run " + quoted((story / "mill.yaml").string()) + " -o mill" + speed + plugins +
+            " -q --set body_forces.wind.kind=wind --set body_forces.wind.viscosity=0.05 --set stiffness_factor=0.0003 --set seed=" + speed +
+            " --set 'mill.speed=" + speed + " %critical' --set 'time={end_s: 6, analyze_from_s: 1}' --set 'output.tracks={beads: 40, " +
+            "every_s: 0.0005}'",
+        log);
+    run(command + "pept synthesize mill" + speed + " -o r" + speed + ".a --camera " + quoted((story / "../cameras/study.yaml").string()),
+        log);
+    const std::string condition = " --set conditions.speed" + speed;
+    conditions += condition + ".recording=" + quoted((scratch / ("r" + speed + ".yaml")).string()) + condition + ".set.time.end_s=2";
+  }
+  run(command + "diagnose " + quoted((story / "study.yaml").string()) + " -o out -q --draws 400 --cache cache" + plugins + conditions +
+          " --set 'hypotheses={wind: {}, rolling_resistance: {}}' --set observe.beads=60",
+      log);
+  const auto found = nlohmann::json::parse(text_of(scratch / "out" / "diagnosis.json"));
+  CHECK(found["verdict"] == "named");
+  REQUIRE(found["named"] == nlohmann::json::array({"wind"}));
+  const auto wind = std::find_if(found["hypotheses"].begin(), found["hypotheses"].end(), [](const auto& h) { return h["name"] == "wind"; });
+  REQUIRE(wind != found["hypotheses"].end());
+  CHECK(found["sentence"].get<std::string>().find("A wind blows through the mill.") == 0);
+  CHECK_THAT((*wind)["parameters"]["viscosity"]["value"].get<double>(), Catch::Matchers::WithinAbs(0.05, 0.02));
 }
