@@ -71,8 +71,9 @@ FramesSource::FramesSource(output::FrameReader reader, AnalyzerContext context, 
   context_.impact_energy_edge = s.impact_edges.data();
   context_.start = s.time[begin_];
   context_.end = s.time[end_ - 1];
-  context_.omega = 0;
-  for (std::size_t f = begin_; f < end_; ++f) context_.omega += s.angular_velocity[f] / static_cast<double>(end_ - begin_);
+  // The mean over the time, whatever the wall did between the frames: one at the moment of the start still tells of rest.
+  const double span = context_.end - context_.start;
+  context_.omega = span > 0 ? (s.wall_angle[end_ - 1] - s.wall_angle[begin_]) / span : s.angular_velocity[begin_];
   cut(0, 128);
 }
 

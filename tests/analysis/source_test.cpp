@@ -90,6 +90,15 @@ TEST_CASE("frames come with weights that fill the span and changes that add up, 
   CHECK(c.impact_pair_count == 1);
 }
 
+TEST_CASE("the mean speed of the shell is that between the frames, also from a frame at the moment of the start") {
+  const Scratch scratch;
+  Drum drum;
+  drum.start = 0;
+  drum.at_rest_first = true;
+  drum.write(scratch.path);
+  CHECK_THAT(open(scratch / "frames.h5", {}, 0.0).source->context().omega, WithinRel(-2.0, 1e-12));
+}
+
 TEST_CASE("a part of the frames can be asked for, spins only where they are wanted") {
   const Scratch scratch;
   Drum().write(scratch.path);

@@ -59,7 +59,7 @@ void Drum::write_frames(const fs::path& directory) const {
     }
     const std::vector<double> work{power * time}, lost{0.5 * power * time};
     const std::vector<std::uint64_t> impacts{10 * f, 3 * f};
-    writer.append({time, omega * time, omega, work, lost, impacts, position, velocity, spin});
+    writer.append({time, omega * time, at_rest_first && f == 0 ? 0.0 : omega, work, lost, impacts, position, velocity, spin});
   }
   writer.close();
 }

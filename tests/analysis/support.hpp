@@ -27,6 +27,7 @@ inline void spill(const fs::path& path, const std::string& text) { std::ofstream
 struct Drum {
   std::size_t beads = 6, frames = 200;
   double omega = -2, power = 0.3, step = 0.01, start = 1, track_seconds = 4;
+  bool at_rest_first = false;  ///< the first frame says Ω = 0: it starts to turn at that moment
   double radius(std::size_t bead) const { return 0.02 + 0.01 * static_cast<double>(bead); }
   double angle(std::size_t bead, double time) const { return static_cast<double>(bead) + omega * time; }
   double z(std::size_t bead, double time) const { return 0.01 * static_cast<double>(bead) + 0.02 * time; }  ///< before it is wrapped

@@ -4,6 +4,8 @@ import { chromium } from "playwright-core";
 
 const PLACES = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
 
+export const PATIENCE = 120000; // ms for what takes a moment on a free machine
+
 export function stop(message) {
   console.error(message);
   process.exit(2);

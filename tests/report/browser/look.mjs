@@ -94,7 +94,7 @@ export function overflow() {
 
 /** Comes by every chart, as a reader does, until it is drawn; with `open` all that is shut is opened before. */
 export async function visit(open) {
-  const PATIENCE = 5000; // ms for one chart
+  const PATIENCE = 30000; // ms for one chart, on a machine that is busy with something else
   document.documentElement.style.scrollBehavior = "auto";
   if (open) for (const details of document.querySelectorAll("main details")) details.open = true;
   await new Promise((resolve) => setTimeout(resolve, 200));

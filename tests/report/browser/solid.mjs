@@ -2,6 +2,7 @@
 import { colours, decode, difference, painted } from "./picture.mjs";
 
 const CHANGED = 0.002; // mean difference of the channels: a few beads that have moved give more
+const PATIENCE = 10000; // ms until a play must have moved
 const pause = (page, ms) => page.waitForTimeout(ms);
 
 async function shot(page, canvas) {
@@ -16,9 +17,10 @@ async function setRange(slider, value) {
   }, value);
 }
 
-async function mill(page, holder, complain) {
+/** whole: everything that can be done with it; else only that it is drawn and moves. */
+async function mill(page, holder, whole, complain) {
   await holder.scrollIntoViewIfNeeded();
-  await page.waitForFunction((node) => node.dataset.ready === "1", await holder.elementHandle(), { timeout: 60000 });
+  await page.waitForFunction((node) => node.dataset.ready === "1", await holder.elementHandle(), { timeout: 120000 });
   const canvas = holder.locator("canvas");
   const [slider, cut] = [holder.locator("[data-role=time]"), holder.locator("[data-role=cut]")];
   const last = Number(await slider.getAttribute("max"));
@@ -34,10 +36,12 @@ async function mill(page, holder, complain) {
   if (last > 0) {
     await changes("the time slider", () => setRange(slider, Math.floor(last / 2)));
     await setRange(slider, 0);
+  }
+  if (!whole) return changes("the button 3-D", () => holder.getByRole("button", { name: "3-D" }).click());
+  if (last > 0) {
     await holder.getByRole("button", { name: "Play" }).click();
-    await pause(page, 2500);
-    const reached = Number(await slider.inputValue());
-    if (reached === 0) complain("play does not move the time slider");
+    for (let waited = 0; Number(await slider.inputValue()) === 0 && waited < PATIENCE; waited += 100) await pause(page, 100);
+    if (Number(await slider.inputValue()) === 0) complain("play does not move the time slider");
     await canvas.focus();
     await page.keyboard.press("Space");
     await pause(page, 150);
@@ -72,11 +76,11 @@ async function surface(page, view, complain) {
   await page.keyboard.press("ArrowRight");
 }
 
-export async function solid(page, data, complain) {
+export async function solid(page, data, whole, complain) {
   const movies = data.sections.filter((section) => section.kind === "run" && section.movie).length;
   const mills = page.locator(".mill");
   if ((await mills.count()) !== movies) complain(`${await mills.count()} turning mills are shown where the data have ${movies}`);
-  for (let index = 0; index < (await mills.count()); index++) await mill(page, mills.nth(index), complain);
+  for (let index = 0; index < (await mills.count()); index++) await mill(page, mills.nth(index), whole, complain);
   const surfaces = page.locator(".view:not(.mill .view)");
   const expected = data.sections.filter((section) => section.kind === "calibration" && section.calibration?.surface?.factors?.length > 1).length;
   if ((await surfaces.count()) !== expected) complain(`${await surfaces.count()} surfaces are shown in 3-D where the data have ${expected}`);

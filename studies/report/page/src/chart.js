@@ -124,6 +124,7 @@ const redrawAll = (paper) => {
 
 let shut = [];
 window.addEventListener("beforeprint", () => {
+  if (onPaper) return; // all is drawn for paper already
   shut = [...document.querySelectorAll("main details:not([open])")];
   for (const details of shut) {
     if (details.complete) details.complete();

@@ -26,15 +26,19 @@ let counter = 0;
 /** An id that no other element of this page has. */
 export const freshId = (stem) => `${stem}-${++counter}`;
 
-/** Columns: {label, value(row) → text or node, number: right-aligned, wide: for sentences, header: names the row}. */
-export function table({ caption, columns, rows, classOf }) {
+/** Columns: {label, value(row) → text or node, number: right-aligned, wide: for sentences, header: names the row}. Rows of one groupOf(row) stand under its name. */
+export function table({ caption, columns, rows, classOf, groupOf }) {
   const kind = (column) => (column.number ? "number" : column.wide ? "wide" : null);
   const cell = (row) => (column, index) => {
     const name = column.header || (index === 0 && !columns.some((one) => one.header)) ? "th" : "td";
     return element(name, { class: kind(column), scope: name === "th" ? "row" : null }, column.value(row));
   };
   const head = columns.map((column) => element("th", { scope: "col", class: kind(column) }, column.label));
-  const body = rows.map((row) => element("tr", { class: classOf ? classOf(row) : null }, columns.map(cell(row))));
+  const groupRow = (name) => element("tr", { class: "group" }, element("th", { scope: "rowgroup", colspan: columns.length }, element("span", null, name)));
+  const body = rows.flatMap((row, index) => {
+    const begins = groupOf && (index === 0 || groupOf(rows[index - 1]) !== groupOf(row));
+    return [begins ? groupRow(groupOf(row)) : null, element("tr", { class: classOf ? classOf(row) : null }, columns.map(cell(row)))];
+  });
   return element("div", { class: "table-box", tabindex: 0, role: "region", "aria-label": caption },
     element("table", null, element("caption", null, element("span", null, caption)), element("thead", null, element("tr", null, head)),
       element("tbody", null, body)));

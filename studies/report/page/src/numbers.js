@@ -70,6 +70,9 @@ export function probability(p) {
   return number(p, 2);
 }
 
+/** "p < 0.001" or "p = 0.02", for sentences. */
+export const pValue = (p) => (isNumber(p) && p < 0.001 ? "p\u00a0<\u00a00.001" : `p\u00a0=\u00a0${probability(p)}`);
+
 export const percent = (share, digits = 3) => (isNumber(share) ? `${number(100 * share, digits)}\u00a0%` : MISSING);
 export const signed = (value, digits = 3) => (isNumber(value) && value > 0 ? "+" : "") + number(value, digits);
 
@@ -84,9 +87,9 @@ const PREFIXED = { J: 0, W: 0, "N m": 0, s: 0, "W/kg": 0, Pa: 0, N: 0 };
 export function scale(unit, values = []) {
   const known = FIXED[unit ?? ""];
   if (known) return { factor: known[0], unit: known[1] };
+  const largest = values.reduce((most, value) => (isNumber(value) ? Math.max(most, Math.abs(value)) : most), 0);
+  if (unit === "kg" && largest > 0 && largest < 1) return { factor: 1e3, unit: "g" };
   if (unit in PREFIXED) {
-    let largest = 0;
-    for (const value of values) if (isNumber(value) && Math.abs(value) > largest) largest = Math.abs(value);
     const found = largest > 0 ? PREFIXES.filter(([size]) => largest >= 0.999 * size && (unit !== "s" || size <= 1)).pop() : null;
     const [size, prefix] = found ?? [1, ""];
     return { factor: 1 / size, unit: prefix + unit };
@@ -96,6 +99,11 @@ export function scale(unit, values = []) {
 
 /** "speed (m/s)" */
 export const named = (name, unit) => (unit ? `${name} (${unit})` : name);
+const SHORT = { pept: "PEPT", rms: "RMS" };
 /** "bead_friction" → "bead friction" */
-export const words = (name) => String(name).replace(/_+/g, " ").trim();
+export const words = (name) => String(name).replace(/_+/g, " ").trim().replace(/\b(pept|rms)\b/g, (found) => SHORT[found]);
+/** A sentence of the program with the names in it as words: "pept_grid.velocity_y" → "PEPT grid: velocity y"; files and units stay. */
+export const readable = (text) => String(text ?? "").replace(/\b[a-z][a-z0-9]*_[a-z0-9_]*(\.[a-z][a-z0-9_]*)?(?![\w./])/g, (name) => words(name.replace(".", ": "))).replace(/\bNaN\b/g, "undefined");
+/** "2026-11-22T08:36:11Z" → "2026-11-22 08:36 UTC" */
+export const moment = (text) => String(text ?? "").replace(/^(\d{4}-\d\d-\d\d)T(\d\d:\d\d)(:\d\d)?Z$/, "$1 $2 UTC");
 export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);

@@ -27,19 +27,38 @@ export const roomBelow = ({ name, unit }, room) => 32 + 14 * broken(named(name, 
 
 const decade = (value, round) => (value > 0 ? 10 ** round(Math.log10(value) + (round === Math.floor ? 1e-9 : -1e-9)) : undefined);
 
-/** Ends that are not round get no label; nothing: as the library likes. */
-const isRound = (end) => (end === undefined || end === Number(end.toPrecision(2)) ? undefined : false);
+const STEPS = [1, 2, 2.5, 5, 10];
+/** A round step that is at least as long. */
+const roundStep = (rough) => {
+  const size = 10 ** Math.floor(Math.log10(rough));
+  return STEPS.find((one) => one * size >= rough * 0.999) * size;
+};
+
+const isMultiple = (value, step) => Math.abs(value / step - Math.round(value / step)) < 1e-6;
+
+/** The library counts ticks of a given step from the lower end; where that is not round, it finds its own between the ends. */
+function stepOf({ log, low, high }, parts) {
+  if (!(high > low) || (log && !(low > 0))) return undefined;
+  if (log) return Math.max(1, Math.ceil(Math.log10(high / low) / parts - 1e-9)); // decades
+  const step = roundStep((high - low) / parts);
+  return isMultiple(low, step) ? step : undefined;
+}
 
 /** An axis with numbers: {name, unit, log, min, max}; room: px along the axis. */
 export function axis(which, { name, unit, log, min, max, splits, gap }, { colours, narrow }, room, more = {}) {
   const vertical = which === "y";
   const lines = broken(named(name, unit), room ?? Infinity);
+  const parts = splits ?? (narrow && !vertical ? 4 : 6);
+  const [low, high] = log ? [decade(min, Math.floor), decade(max, Math.ceil)] : [min, max];
+  const step = stepOf({ log, low, high }, parts);
+  const isEnd = (value) => [low, high].some((end) => Math.abs(value - end) < 1e-6 * (high - low));
+  const isUnround = (value) => !log && isEnd(value) && (step === undefined || !isMultiple(value, step)); // its label would stand too near to its neighbour's
   return {
     type: log ? "log" : "value", name: lines.join("\n"), nameLocation: "middle", nameGap: vertical ? (gap ?? (narrow ? 42 : 48)) : 28,
-    min: log ? decade(min, Math.floor) : min, max: log ? decade(max, Math.ceil) : max,
-    nameTextStyle: { color: colours.text, fontSize: 12, lineHeight: 14, verticalAlign: vertical ? "bottom" : "top" }, scale: true, splitNumber: splits ?? (narrow && !vertical ? 4 : 6), logBase: 10,
+    min: low, max: high,
+    nameTextStyle: { color: colours.text, fontSize: 12, lineHeight: 14, verticalAlign: vertical ? "bottom" : "top" }, scale: true, splitNumber: parts, interval: step, logBase: 10,
     axisLine: { show: true, onZero: false, lineStyle: { color: colours.faint } }, axisTick: { show: true, lineStyle: { color: colours.faint } },
-    axisLabel: { color: colours.text, fontSize: 11, formatter: (value) => tick(value, log), hideOverlap: true, showMinLabel: isRound(min), showMaxLabel: isRound(max) },
+    axisLabel: { color: colours.text, fontSize: 11, formatter: (value) => (isUnround(value) ? "" : tick(value, log)), hideOverlap: true },
     splitLine: { show: true, lineStyle: { color: colours.rule, width: 1 } }, minorTick: { show: false }, ...more,
   };
 }
@@ -87,12 +106,9 @@ export function range(values, share = 0.04) {
   return [low >= 0 && low < beyond ? 0 : low - beyond, high <= 0 && -high < beyond ? 0 : high + beyond]; // amounts begin at zero, not below it
 }
 
-const STEPS = [1, 2, 2.5, 5, 10];
 /** [low, high] widened to a multiple of a round step. */
 export function roundRange([low, high], parts = 6) {
-  const rough = (high - low) / parts;
-  const size = 10 ** Math.floor(Math.log10(rough));
-  const step = STEPS.find((one) => one * size >= rough * 0.999) * size;
+  const step = roundStep((high - low) / parts);
   const tidy = (value) => Number(value.toPrecision(10));
   return [tidy(Math.floor(low / step) * step), tidy(Math.ceil(high / step) * step)];
 }

@@ -26,7 +26,8 @@ export function colouring(values, { signed } = {}) {
   const known = values.filter(Number.isFinite).sort((a, b) => a - b);
   if (known.length === 0) return null;
   const at = (share) => known[Math.min(known.length - 1, Math.floor(share * known.length))];
-  const [least, most] = [known[0], known[known.length - 1]];
+  const most = known[known.length - 1];
+  const least = known[0] < 0 && -known[0] < 1e-6 * most ? 0 : known[0]; // what rounding leaves below zero is no amount
   const isSigned = signed ?? (least < 0 && most > 0 && -least > 0.02 * most);
   let low = Math.min(0, least);
   let high = most;

@@ -1,6 +1,6 @@
 // An analysis: where the charge is, every single number, and maps and curves that are drawn when they are opened.
 import { block, disclosure, element, list, table } from "../dom.js";
-import { among, capital, interval, isNumber, number, quantity, scale, withError, words } from "../numbers.js";
+import { among, capital, interval, isNumber, number, quantity, readable, scale, withError, words } from "../numbers.js";
 import { chargeBlock } from "./analysis_charge.js";
 import { curveFigure, isCurve } from "./analysis_curves.js";
 import { isMap, mapFigure } from "./analysis_maps.js";
@@ -32,9 +32,8 @@ function numbers(results, key) {
   if (rows.length === 0) return null;
   const known = rows.filter((row) => isNumber(row.value));
   const undefinedRows = rows.filter((row) => !isNumber(row.value));
-  return block(`${key}-numbers`, "All single numbers", element("div", { class: "tall" }, table({ caption: `${known.length} numbers with 90 % intervals`, rows: known, columns: [
-    { label: "analyzer", value: (row) => words(row.analyzer) },
-    { label: "result", header: true, wide: true, value: (row) => [row.name, row.doc ? element("small", null, row.doc) : null] },
+  return block(`${key}-numbers`, "All single numbers", element("div", { class: "tall" }, table({ caption: `${known.length} numbers with 90 % intervals`, rows: known, groupOf: (row) => capital(words(row.analyzer)), columns: [
+    { label: "result", header: true, wide: true, value: (row) => [row.name, row.doc ? element("small", null, readable(row.doc)) : null] },
     { label: "value", number: true, value: (row) => among(row.value, row.low, row.high, row.factor) },
     { label: "90 % interval", number: true, value: (row) => (row.high > row.low ? interval(row.low, row.high, row.factor) : "–") }, { label: "unit", value: (row) => row.unit },
     { label: "remarks", value: (row) => remarks(row.flags) }] })),
@@ -68,7 +67,7 @@ export function analysis(section, key) {
   const { context = {} } = meta;
   return {
     kind: meta.source === "simulation" ? "Analysis of a simulation" : "Analysis of a recording", sentence: meta.description,
-    headline: [fact("Power, M g x Ω", "power", "power_gravity"), fact("Shoulder", "charge_features", "departure_shoulder"), fact("Toe of the bulk", "charge_features", "bulk_toe"),
+    headline: [fact("Power, by the charge's place", "power", "power_gravity"), fact("Shoulder", "charge_features", "departure_shoulder"), fact("Toe of the bulk", "charge_features", "bulk_toe"),
       fact("Centre of circulation", "charge_features", "centre_of_circulation_radius"), fact("Free surface", "charge_features", "free_surface_angle"),
       isNumber(context.omega) && ["Speed", quantity(Math.abs(context.omega), "rad/s"), context.omega > 0 ? "counter-clockwise" : "clockwise"],
       isNumber(meta.blocks) && ["Independent blocks", number(meta.blocks), isNumber(meta.block_duration_s) ? `of ${quantity(meta.block_duration_s, "s", 3)}` : null]],

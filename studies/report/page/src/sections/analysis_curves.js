@@ -1,8 +1,8 @@
 // Results with one dimension as curves with 90 % bands; a few rows without an axis of their own as several curves.
-import { element, figure } from "../dom.js";
+import { figure } from "../dom.js";
 import { capital, isNumber, scale, words } from "../numbers.js";
 import { lines } from "../plots/lines.js";
-import { axisName } from "./analysis_maps.js";
+import { axisName, captionOf, withoutValues } from "./analysis_maps.js";
 
 const MOST_ROWS = 6;
 
@@ -39,7 +39,8 @@ export function curveFigure(result, key) {
       one.band = one.band?.map(([x, low, high]) => [x, low > 0 ? low : NaN, high > 0 ? high : NaN]) ?? null;
     }
   const title = capital(words(result.name));
-  return figure([element("b", null, title), result.doc ? `. ${result.doc}` : ""], lines(key, { label: `${title} against ${axisName(axis)}. ${result.doc ?? ""}`, series,
+  if (!result.value.some((value) => isNumber(value) && value !== 0)) return withoutValues(result);
+  return figure(captionOf(result), lines(key, { label: `${title} against ${axisName(axis)}. ${result.doc ?? ""}`, series,
     x: { name: axisName(axis), unit: across.unit, log: wide, min: wide ? undefined : places[0], max: wide ? undefined : places[places.length - 1] },
     y: { name: words(result.name), unit: by.unit, log: steep }, height: 290 }));
 }

@@ -1,7 +1,7 @@
 // Results with two dimensions as coloured maps.
 import { element, figure } from "../dom.js";
 import { LINES } from "../colours.js";
-import { capital, interval, isNumber, number, scale, words } from "../numbers.js";
+import { capital, interval, isNumber, number, readable, scale, words } from "../numbers.js";
 import { colourBar, colouring, colourKey, map } from "../plots/map.js";
 
 const NAMES = ["transparent", LINES[0], LINES[5], LINES[4], LINES[3], LINES[2], LINES[1], LINES[7]];
@@ -81,4 +81,11 @@ export function drawMap(key, result, shell, more = {}) {
   return [drawn, below];
 }
 
-export const mapFigure = (result, key, shell) => figure([element("b", null, capital(words(result.name))), result.doc ? `. ${result.doc}` : ""], ...drawMap(key, result, shell).filter(Boolean));
+/** The result's name in full and what it is: axes may have less room than that. */
+export const captionOf = (result) => [element("b", null, capital(words(result.name))), result.doc ? `. ${readable(result.doc)}` : ""];
+
+/** Said in words, as an empty chart could also be one that failed. */
+export const withoutValues = (result) => figure(captionOf(result), element("p", { class: "nothing" }, result.value.some(isNumber)
+  ? "Nothing to draw: it is zero everywhere." : "Nothing to draw: these data have no value of it, because what it counts did not occur, or too seldom."));
+
+export const mapFigure = (result, key, shell) => (result.value.some(isNumber) ? figure(captionOf(result), ...drawMap(key, result, shell).filter(Boolean)) : withoutValues(result));

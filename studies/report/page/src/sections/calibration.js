@@ -1,6 +1,6 @@
 // A calibration: what each parameter is and how well the recordings determine it, and how that was found.
 import { block, disclosure, element, figure, list, note, paragraph, table } from "../dom.js";
-import { capital, interval, isNumber, number, percent, probability, quantity, words } from "../numbers.js";
+import { capital, interval, isNumber, number, percent, probability, pValue, quantity, words } from "../numbers.js";
 import { bars, intervals } from "../plots/intervals.js";
 import { progressBlock, planeBlock } from "./calibration_runs.js";
 import { surfaceBlock } from "./calibration_surface.js";
@@ -14,7 +14,9 @@ function parameters({ parameters: all = [], posterior }, key) {
   const share = (one, at) => (100 * (at - one.range[0])) / (one.range[1] - one.range[0]);
   const bar = (one) => ({ value: share(one, one.value), low: share(one, one.posterior?.low90), high: share(one, one.posterior?.high90),
     text: `${value(one, one.value)}${one.posterior ? ` (${span(one, one.posterior.low90, one.posterior.high90)})` : ""}` });
-  return block(`${key}-parameters`, "Parameters", figure("The calibrated set with 90 % intervals, as places in the range of the study: 0 % its lower end, 100 % its upper end.",
+  const apart = known.filter((one) => one.value < one.posterior.low90 || one.value > one.posterior.high90);
+  const why = apart.length ? ` ${capital(apart.map((one) => words(one.name)).join(", "))}: the set with the best objective lies outside the interval, which comes from the likelihood of all numbers.` : "";
+  return block(`${key}-parameters`, "Parameters", figure(`The calibrated set with 90 % intervals, as places in the range of the study: 0 % its lower end, 100 % its upper end.${why}`,
     intervals(`${key}-parameters`, { label: all.map((one) => `${words(one.name)} ${bar(one).text}`).join(", "), rows: all.map((one) => titleOf(one.name)), groups: [{ name: "", values: all.map(bar) }],
       x: { name: "place in the range of the study", unit: "%", min: 0, max: 100 }, zone: [0, 100] })),
   table({ caption: "The calibrated set", rows: all, columns: [{ label: "parameter", value: (one) => titleOf(one.name) }, { label: "value", number: true, value: (one) => value(one, one.value) },
@@ -56,20 +58,40 @@ function posterior({ parameters: all = [], posterior: found }, key) {
     { label: "concealed", number: true, value: (one) => percent(one.profile.concealed, 2) }] }),
   all.length > 1 && found.correlation ? table({ caption: "Correlation of the parameters", rows: cells, columns: [{ label: "", value: (cell) => words(cell.name) },
     ...all.map((other, column) => ({ label: words(other.name), number: true, value: (cell) => number(found.correlation[cell.row]?.[column], 2) }))] }) : null,
-  paragraph(`Misfit at the most probable set ${number(found.misfit, 3)} for ${number(found.observables?.length)} numbers; a larger one would come by chance with p = ${probability(found.misfit_probability)}. `
+  paragraph(`Misfit at the most probable set ${number(found.misfit, 3)} for ${number(found.observables?.length)} numbers; a larger one would come by chance with ${pValue(found.misfit_probability)}. `
     + `The emulator's 90 % intervals held ${percent(found.emulator_coverage90, 2)} of left-out numbers.`));
+}
+
+const UNLIKELY = 0.01; // as in the statements of the posterior: below it no parameters fit
+const OBJECTIVES = { chagas2015: "errors of power (W) and of the distributions of place and speed (%), summed (Chagas 2015, Eq. 4.3)",
+  likelihood: "squared differences over their variances, summed (misfit)" };
+
+/** Null without a posterior: then nothing is known of the fit. */
+function fitOf({ posterior: found }) {
+  const p = found?.misfit_probability;
+  if (!isNumber(p)) return null;
+  const exact = p < 1e-300 ? "p < 10⁻³⁰⁰" : p < 0.001 ? `p = ${number(p, 1)}` : pValue(p);
+  return { fits: p >= UNLIKELY, told: `misfit ${number(found.misfit, 3)} for ${number(found.observables?.length)} numbers, ${exact}` };
+}
+
+function sentenceOf(found, all, fit) {
+  if (fit && !fit.fits) return `No parameters fit (${fit.told}): the simulation cannot tell what was recorded, and the intervals below would hold only if it could.`;
+  const values = all.map((one) => `${words(one.name)} ${value(one, one.value)}${one.posterior ? `, ${one.posterior.determined} determined` : ""}`).join("; ");
+  return fit ? `${capital(values)}. The most probable set fits (${fit.told}).` : all.some((one) => one.posterior) ? `${capital(values)}.` : `The calibrated set is ${found.how}.`;
 }
 
 export function calibration(section, key) {
   const { calibration: found } = section;
   const all = found.parameters ?? [];
+  const fit = fitOf(found);
+  const bound = (one) => (!one.posterior ? "interval not known"
+    : `${span(one, one.posterior.low90, one.posterior.high90)} (90 %), ${fit && !fit.fits ? "if anything fitted" : `${one.posterior.determined} determined`}`);
   const conditions = Object.entries(found.conditions ?? {}).map(([name, one]) => ({ name, ...one }));
   const failed = found.failed ?? [];
   return {
-    kind: "Calibration", sentence: all.some((one) => one.posterior) ? `${capital(all.map((one) => `${words(one.name)} ${value(one, one.value)}${one.posterior ? `, ${one.posterior.determined} determined` : ""}`).join("; "))}.`
-      : `The calibrated set is ${found.how}.`,
-    headline: [...all.map((one) => [titleOf(one.name), value(one, one.value), one.posterior ? `${span(one, one.posterior.low90, one.posterior.high90)} (90 %), ${one.posterior.determined} determined` : "interval not known"]),
-      ["Method", words(found.method), `objective: ${found.objective}`], ["Simulations", number(found.simulations), failed.length ? `${failed.length} failed` : "none failed"],
+    kind: "Calibration", sentence: sentenceOf(found, all, fit),
+    headline: [fit && ["Fit", fit.fits ? "yes" : "none", fit.told], ...all.map((one) => [titleOf(one.name), value(one, one.value), bound(one)]),
+      ["Method", words(found.method), `objective: ${OBJECTIVES[found.objective] ?? found.objective}`], ["Simulations", number(found.simulations), failed.length ? `${failed.length} failed` : "none failed"],
       found.at_best && ["Objective at the set", number(found.at_best.objective, 3), isNumber(found.predicted_objective) ? `${number(found.predicted_objective, 3)} was predicted` : null],
       found.at_best?.chagas2015 && ["Power error at the set", quantity(found.at_best.chagas2015.power_W, "W", 3), "mean over the fitted conditions"]],
     blocks: [

@@ -11,7 +11,7 @@ const COUNTS = [["false_alarms", "nothing hidden: something is said to be missin
   ["outside_named", "physics outside the list: something of the list named (wrong)"], ["outside_missed", "physics outside the list: not noticed"]];
 
 const share = (count) => (count?.of > 0 ? `${count.hits} of ${count.of}` : "none tried");
-const bounds = (count) => (count?.of > 0 ? `${percent(count.low95, 2)} … ${percent(count.high95, 2)}` : "–");
+const bounds = (count) => (count?.of > 0 ? `${number(100 * count.low95, 2)} … ${percent(count.high95, 2)}` : "–");
 const point = (count) => (count?.of > 0 ? { value: 100 * count.share, low: 100 * count.low95, high: 100 * count.high95, text: `${share(count)} (${bounds(count)})` } : null);
 const countTable = (caption, rows) => table({ caption, rows, columns: [{ label: "", wide: true, value: (row) => row[0] }, { label: "counted", number: true, value: (row) => share(row[1]) },
   { label: "share", number: true, value: (row) => percent(row[1]?.of > 0 ? row[1].share : NaN) }, { label: "90 % interval", number: true, value: (row) => bounds(row[1]) }] });
@@ -34,7 +34,7 @@ function doses(score, key) {
   const least = Math.min(0, ...all.map((dose) => 100 * Math.min(dose.truth, dose.estimate)));
   const series = [{ name: "named", dots: true, points: of(true) }, { name: "not named", dots: true, outline: true, points: of(false) },
     { name: "hidden = estimated", points: [[least, least], [most, most]], dashed: true, colour: "#7f7f7f", width: 1.2 }].filter((one) => one.points.length);
-  if (isNumber(slope) && isNumber(intercept)) series.push({ name: "least squares", points: [least, most].map((x) => [x, 100 * intercept + slope * x]), width: 1.4, colour: "#7f7f7f" });
+  if (isNumber(slope) && isNumber(intercept)) series.push({ name: "least squares", points: [least, most].map((x) => [x, 100 * intercept + slope * x]), width: 1.4, colour: "#009e73" });
   return block(`${key}-doses`, "Dose and response", figure("Hidden against estimated strength, as shares of the prior range, whether the effect was named or not.",
     lines(`${key}-doses`, { label: `${all.length} hidden strengths and their estimates`, series, hover: "item", x: { name: "hidden strength", unit: "%", min: Math.floor(least / 10) * 10, max: Math.ceil(most / 10) * 10 },
       y: { name: "estimated strength", unit: "%" }, height: 340 })),

@@ -1,7 +1,7 @@
 // What differs between two analyses.
 import { base64 } from "../base64.js";
 import { block, disclosure, element, figure, list, note, table } from "../dom.js";
-import { capital, interval, isNumber, number, probability, quantity, scale, signed, words } from "../numbers.js";
+import { capital, interval, isNumber, number, probability, quantity, readable, scale, signed, words } from "../numbers.js";
 import { intervals } from "../plots/intervals.js";
 
 const FIRST = 25; // rows at once
@@ -39,7 +39,7 @@ export function comparison(section, key) {
   const given = found.given_quantities_that_differ ?? [];
   const first = pictures.slice(0, PICTURED);
   return {
-    kind: "Comparison", sentence: capital(found.sentence ?? ""), headline: [["Verdict", VERDICTS[found.verdict] ?? words(found.verdict ?? ""), `at ${number(100 * found.level)} % for all together`],
+    kind: "Comparison", sentence: capital(readable(found.sentence)), headline: [["Verdict", VERDICTS[found.verdict] ?? words(found.verdict ?? ""), `at ${number(100 * found.level)} % for all together`],
       ["Observables that differ", `${differing} of ${rows.length}`, null], side("A", found.a), side("B", found.b)],
     blocks: [
       charted.length ? block(`${key}-strongest`, "The strongest differences", figure("The strongest element of each observable: B less A in standard errors, with 90 % intervals. "

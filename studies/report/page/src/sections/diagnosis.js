@@ -1,6 +1,6 @@
 // A diagnosis, in the order in which it was found: where it differs, what was tried, what was found, whether it predicts.
 import { block, disclosure, figure, list, note, paragraph, table } from "../dom.js";
-import { among, interval, isNumber, number, probability, scale, signed, words } from "../numbers.js";
+import { among, interval, isNumber, number, probability, pValue, readable, scale, signed, words } from "../numbers.js";
 import { intervals } from "../plots/intervals.js";
 import { drift, frictionBlock } from "./diagnosis_friction.js";
 import { heldOut } from "./diagnosis_held_out.js";
@@ -32,7 +32,7 @@ function mismatch({ mismatch: rows = [], base }, key) {
   const values = first.map((row) => ({ value: row.z, hollow: !(row.p_value < 0.05), text: `z ${signed(row.z, 3)}, p ${probability(row.p_value)} for all together` }));
   return block(`${key}-mismatch`, "Where it differs",
     paragraph(`Each of ${rows.length} numbers of the recordings beside what the base gives after friction has been retuned to all of them. `
-      + `The retuned base as a whole: p = ${probability(base?.p_value)}.`),
+      + `The retuned base as a whole: ${pValue(base?.p_value)}.`),
     figure("Recording less retuned base, in standard deviations, the farthest first. Shaded: within 1.645, as nine of ten numbers are when nothing differs. "
       + "Hollow: not significant among so many.", intervals(`${key}-mismatch`, { label: `The ${first.length} farthest of ${rows.length} numbers: ${first.slice(0, 4)
       .map((row, index) => `${names[index]} z = ${signed(row.z, 2)}`).join(", ")}`, rows: names, groups: [{ name: "", values }],
@@ -48,7 +48,7 @@ const strength = (row) => Object.entries(row.parameters ?? {}).map(([name, found
   return `${words(name)} ${among(found.value, found.low90, found.high90, by.factor)}${known ? ` (${interval(found.low90, found.high90, by.factor)})` : ""}${unit}`;
 }).join("; ");
 
-const canMatter = (row) => (row.undetectable ? "no: cannot be seen in these data even at its strongest" : "yes");
+const canMatter = (row) => (row.undetectable ? "no" : "yes");
 
 function tried({ hypotheses = [], notes = [] }, key) {
   if (hypotheses.length === 0) return null;
@@ -61,9 +61,9 @@ function tried({ hypotheses = [], notes = [] }, key) {
       { label: "p alone", number: true, value: (row) => probability(row.p_value_alone) },
       { label: "strength (90 %)", wide: true, value: strength }, { label: "gain ΔQ", number: true, value: (row) => number(Math.abs(row.delta_q) < 1e-6 ? 0 : row.delta_q, 3) },
       { label: "κ", number: true, value: (row) => number(row.kappa, 2) }, { label: "λ", number: true, value: (row) => number(row.lambda, 3) },
-      { label: "could be seen", wide: true, value: canMatter }] }),
+      { label: "could be seen", value: canMatter }] }),
   note("p, all candidates together: how often chance would bring one of them so far. κ: part of the effect that retuned friction cannot imitate (0: concealed wholly). "
-    + "λ: the square of that part in noise units at the candidate's strongest; below 9 it cannot be seen."),
+    + "λ: the square of that part in noise units at the candidate's strongest; below 9 it cannot be seen in these data. ΔQ: by how much the candidate lowers the misfit."),
   untested.length ? disclosure(`${key}-untested`, `Not tested (${untested.length})`, () => list(untested.map((one) => one.replace(/^not tested: /, "")))) : null);
 }
 
@@ -72,10 +72,10 @@ function found(diagnosis, key) {
   const lines = [];
   for (const name of named) {
     const row = hypotheses.find((one) => one.name === name);
-    if (row) lines.push(`${words(name)}: ${strength(row)}; p = ${probability(row.p_value)} among all candidates; with it the recordings look like a draw of the model with p = ${probability(row.p_goodness)}.`);
+    if (row) lines.push(`${words(name)}: ${strength(row)}; ${pValue(row.p_value)} among all candidates; with it the recordings look like a draw of the model with ${pValue(row.p_goodness)}.`);
   }
   const rivals = hypotheses.filter((row) => isNumber(row.p_against_best) && !named.includes(row.name));
-  const second = pairs.map((pair) => `Beside ${words(pair.first)} (p = ${probability(pair.p_first)}), ${words(pair.second)} helps most, with p = ${probability(pair.p_second)}`
+  const second = pairs.map((pair) => `Beside ${words(pair.first)} (${pValue(pair.p_first)}), ${words(pair.second)} helps most, with ${pValue(pair.p_second)}`
     + (pair.p_second < 0.05 ? "." : ": it is not needed."));
   const why = { no_mismatch: "The base with its parameters retuned describes the recordings, so nothing was looked for further.",
     undetectable: "No candidate could be seen in these data, even at its strongest.", outside_library: "The base is rejected, and no candidate brings it near enough.",
@@ -95,7 +95,7 @@ export function diagnosis(section, key) {
   const error = (name) => held.find((model) => model.model === name)?.power_percent;
   const others = (found90.notes ?? []).filter((one) => !one.startsWith("not tested"));
   return {
-    kind: "Diagnosis", sentence: found90.sentence, headline: [
+    kind: "Diagnosis", sentence: readable(found90.sentence), headline: [
       ["Verdict", VERDICTS[found90.verdict] ?? words(found90.verdict), found90.named?.length ? found90.named.map(words).join(", ") : null],
       ["p of the best candidate", probability(best?.p_value ?? smallest), "for all candidates together"],
       best && ["Strength", Object.values(best.parameters ?? {}).map((one) => among(one.value, one.low90, one.high90, scale(one.unit).factor)).join(", ") || "–",

@@ -17,7 +17,7 @@ function middle(cell, sense) {
 
 const told = (found) => `${number(found.value, 3)} (${interval(found.low90, found.high90)})`;
 
-const cellTable = (cells, caption) => table({ caption, rows: cells, columns: [{ label: "distance from the axis (mm)", value: (cell) => interval(...cell.r_m, MM) },
+const cellTable = (cells, caption) => table({ caption, rows: cells, columns: [{ label: "distance from the axis (mm)", value: (cell) => `${number(cell.r_m[0] * MM, 3)} … ${number(cell.r_m[1] * MM, 3)}` },
   { label: "angle from 6 o'clock (°)", number: true, value: (cell) => `${number(cell.angle_deg[0], 3)} … ${number(cell.angle_deg[1], 3)}` },
   { label: "x (m/s², 90 %)", number: true, value: (cell) => told(cell.x_m_per_s2) }, { label: "y (m/s², 90 %)", number: true, value: (cell) => told(cell.y_m_per_s2) },
   { label: "p, all cells together", number: true, value: (cell) => probability(cell.p_value) }] });

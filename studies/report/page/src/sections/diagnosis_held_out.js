@@ -1,6 +1,6 @@
 // Whether the corrected model predicts a condition that was not fitted, beside what else one might have done.
 import { block, disclosure, element, figure, paragraph, table } from "../dom.js";
-import { interval, isNumber, number, probability, quantity, signed } from "../numbers.js";
+import { interval, isNumber, number, pValue, quantity, signed } from "../numbers.js";
 import { bars, intervals } from "../plots/intervals.js";
 
 const gain = (model) => model.improvement_of_corrected;
@@ -35,7 +35,7 @@ function condition(held, key, index) {
       { label: "power (W)", number: true, value: (model) => number(model.power_W) }, { label: "error (%)", number: true, value: (model) => signed(model.power_percent, 2) },
       ...(gained.length ? [{ label: "gain of the corrected one (90 %)", number: true,
         value: (model) => (gain(model) ? `${number(gain(model).value, 3)} (${interval(gain(model).low90, gain(model).high90)})` : "–") }] : [])] }),
-    isNumber(held.p_base) ? paragraph(`A recording of the refitted base would look as bad here with p = ${probability(held.p_base)}.`) : null,
+    isNumber(held.p_base) ? paragraph(`A recording of the refitted base would look as bad here with ${pValue(held.p_base)}.`) : null,
     held.observables?.length ? observables(held, id) : null);
 }
 

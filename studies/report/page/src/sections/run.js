@@ -1,6 +1,6 @@
 // A run: the turning mill, its power, where the energy went, and what it was made with.
 import { disclosure, element, facts, figure, block, note, paragraph, table } from "../dom.js";
-import { isNumber, number, percent, quantity, withError } from "../numbers.js";
+import { isNumber, moment, number, percent, quantity, withError } from "../numbers.js";
 import { Mill } from "../three/mill.js";
 import { collisions, dissipation, ledger, spectra } from "./run_energy.js";
 import { powerChart } from "./run_power.js";
@@ -35,7 +35,7 @@ function headline({ summary, series, mill, progress, state }) {
   const last = (name) => (series?.[name]?.length ? series[name][series[name].length - 1] : null);
   return [
     power && ["Power, by the torque", withError(power.torque, power.torque_sem, "W"), "mean ± standard error"],
-    power && ["Power, by the charge's place", withError(power.com, power.com_sem, "W"), "M g x Ω"],
+    power && ["Power, by the charge's place", withError(power.com, power.com_sem, "W"), "weight × lever arm × speed"],
     power && ["Power, by the losses", withError(power.dissipation, power.dissipation_sem, "W"), null],
     !summary && ["Power now, by the charge's place", quantity(last("power_com_W"), "W"), "one instant, no mean yet"],
     isNumber(speed) && speed !== 0 && ["Speed", quantity(Math.abs(speed), "rad/s"), sense],
@@ -62,7 +62,7 @@ function provenance(summary, key) {
   if (!from) return null;
   const seed = /--seed[= ](\S+)/.exec((from.command_line ?? []).join(" "));
   return [
-    facts([["millscope", from.version, from.compiler], ["Made", from.date_utc, null], ["Machine", from.host, `${from.processor ?? ""}, ${number(from.cores)} cores`],
+    facts([["millscope", from.version, from.compiler], ["Made", moment(from.date_utc), null], ["Machine", from.host, `${from.processor ?? ""}, ${number(from.cores)} cores`],
       ["State hash", element("code", null, summary.state_hash), "equal where two runs are equal to the bit"], seed && ["Seed", seed[1], null],
       ["Time step", quantity(summary.dt_s, "s"), `${percent(summary.dt_rayleigh_fraction)} of the Rayleigh time`],
       ["Stiffness", `× ${number(summary.stiffness_factor)}`, "of the real materials"],

@@ -103,8 +103,9 @@ export class Surface {
     for (const { node, at } of this.labels) {
       const seen = at.clone().project(camera);
       const margin = node.offsetWidth / 2 + 2;
-      node.style.left = `${Math.min(width - margin, Math.max(margin, ((seen.x + 1) / 2) * width))}px`;
-      node.style.top = `${Math.min(height - 10, Math.max(10, ((1 - seen.y) / 2) * height))}px`;
+      const [left, top] = [Math.min(width - margin, Math.max(margin, ((seen.x + 1) / 2) * width)), Math.min(height - 10, Math.max(10, ((1 - seen.y) / 2) * height))];
+      node.style.left = `${(100 * left) / width}%`; // shares, because on paper the picture is smaller
+      node.style.top = `${(100 * top) / height}%`;
     }
   }
 }

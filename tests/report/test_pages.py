@@ -1,0 +1,73 @@
+"""The pages in a browser: what `report` and `watch` write is opened, looked at, clicked through and printed (browser/*.mjs)."""
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+from support import call, data_of, simulate
+
+FIXTURES = pathlib.Path(__file__).resolve().parent / "fixtures"
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "studies" / "report" / "page"
+BROWSER_TESTS = pathlib.Path(os.environ["MILLSCOPE_BROWSER_TESTS"])
+MISSING = [name for name in ("node", "chromium") if not shutil.which(name)] + ([] if (BROWSER_TESTS / "copied").exists() else ["the browser's driver"])
+
+
+def looked_at(program, *pages):
+    return subprocess.run(["node", str(BROWSER_TESTS / program), *map(str, pages)], capture_output=True, text=True, timeout=800)
+
+
+@unittest.skipIf(MISSING, f"without {', '.join(MISSING)} no page can be opened")
+class Pages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.scratch.cleanup)
+        cls.folder = pathlib.Path(cls.scratch.name)
+        simulate(cls.folder, "out", "--set", "name=<script>alert(1)</script>")
+
+
+class StaticPages(Pages):
+    def test_every_kind_of_section(self):
+        call(self.folder, "analyze", "out", "-o", "an", "-q", "--no-pictures")
+        kinds = [str(FIXTURES / name) for name in ("difference", "campaign", "surface", "retuned", "validated", "diagnosis", "scored")]
+        call(self.folder, "report", "out", "an", "-o", "run.html", "-q")
+        call(self.folder, "report", *kinds, "-o", "studies.html", "-q")
+        shown = [section["kind"] for page in ("run.html", "studies.html") for section in data_of(self.folder / page)["sections"]]
+        self.assertEqual(shown, ["run", "analysis", "comparison", "campaign", "calibration", "calibration", "validation", "diagnosis", "challenge"])
+        known = re.search(r"const KINDS = \{ (.*?) \};", (PAGE / "src" / "main.js").read_text())
+        self.assertEqual(set(shown), set(known.group(1).split(", ")), "a kind of section that the page knows is not looked at here")
+        done = looked_at("check.mjs", self.folder / "run.html", self.folder / "studies.html")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_faults_are_found(self):
+        call(self.folder, "report", str(FIXTURES / "scored"), "-o", "whole.html", "-q")
+        text = (self.folder / "whole.html").read_text()
+        (self.folder / "asks.html").write_text(text.replace("</body>", '<img alt="" src="http://127.0.0.1:9/picture.png"></body>'))
+        self.assertIn("asks for http://127.0.0.1:9", looked_at("check.mjs", self.folder / "asks.html").stdout)
+
+    def test_a_calibration_that_fits_nothing_says_so_first(self):
+        call(self.folder, "report", str(FIXTURES / "retuned"), str(FIXTURES / "surface"), "-o", "fits.html", "-q")
+        lines = looked_at("contents.mjs", self.folder / "fits.html").stdout.splitlines()
+        self.assertRegex(lines[0], "^No parameters fit \\(misfit 130 for 35 numbers, p = 3 × 10⁻¹³\\)")
+        self.assertRegex(lines[1], "^Bead friction 0.4113, weakly determined; .* The most probable set fits")
+
+
+class LivePage(Pages):
+    def test_it_follows_and_says_when_the_server_is_gone(self):
+        call(self.folder, "report", "out", "-o", "page.html", "-q")
+        text = (self.folder / "page.html").read_text()
+        data = data_of(self.folder / "page.html")
+        data["live"] = True
+        data["sections"][0].update(state="running", progress={"time_s": 0.2, "end_s": 0.3})
+        body = json.dumps(data).replace("<", "\\u003c")
+        (self.folder / "live.html").write_text(re.sub(r'(id="millscope-data">).*?(</script>)', lambda m: m[1] + body + m[2], text, flags=re.S))
+        done = looked_at("live.mjs", self.folder / "live.html")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
