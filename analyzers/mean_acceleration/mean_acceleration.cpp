@@ -27,7 +27,7 @@ constexpr Parameter kParameters[] = {
     kEndTrim,
 };
 
-enum Moment { kTime, kX, kY, kMoments };
+enum Moment { kTime, kX, kY, kVx, kVy, kMoments };
 enum SpeedMoment { kSpeedTime, kAlong, kSpeedMoments };
 
 class MeanAcceleration {
@@ -57,10 +57,12 @@ class MeanAcceleration {
   void finish(const double* const* sums, Results& results) const {
     const auto rings = static_cast<std::size_t>(rings_.count), sectors = static_cast<std::size_t>(sectors_.count);
     const auto speeds = static_cast<std::size_t>(speeds_.count);
-    std::vector<double> x(rings * sectors), y(rings * sectors), time(rings * sectors), along(speeds);
-    for (std::size_t i = 0; i < rings * sectors; ++i) {
+    const std::size_t cells = rings * sectors;
+    std::vector<double> x(cells), y(cells), vx(cells), vy(cells), time(cells), along(speeds);
+    for (std::size_t i = 0; i < cells; ++i) {
       const double* m = sums[0] + i * kMoments;
       time[i] = m[kTime], x[i] = ratio(m[kX], m[kTime]), y[i] = ratio(m[kY], m[kTime]);
+      vx[i] = ratio(m[kVx], m[kTime]), vy[i] = ratio(m[kVy], m[kTime]);
     }
     for (std::size_t i = 0; i < speeds; ++i) along[i] = ratio(sums[1][i * kSpeedMoments + kAlong], sums[1][i * kSpeedMoments + kSpeedTime]);
     results.add("r_edges", "m", rings_.edges().data(), {rings + 1}, "Edges of the rings.");
@@ -69,6 +71,8 @@ class MeanAcceleration {
     results.add("speed_edges", "1", speeds_.edges().data(), {speeds + 1}, "Edges of the bins of speed over the shell's.");
     results.add("x", "m/s^2", x.data(), {rings, sectors}, "Mean acceleration along x.", {"r_edges", "angle_edges"}, kOdd);
     results.add("y", "m/s^2", y.data(), {rings, sectors}, "Mean acceleration along y, upwards.", {"r_edges", "angle_edges"});
+    results.add("velocity_x", "m/s", vx.data(), {rings, sectors}, "Mean velocity along x.", {"r_edges", "angle_edges"}, kOdd);
+    results.add("velocity_y", "m/s", vy.data(), {rings, sectors}, "Mean velocity along y, upwards.", {"r_edges", "angle_edges"});
     results.add("time", "s", time.data(), {rings, sectors}, "Time of the beads in each cell.", {"r_edges", "angle_edges"}, kBookkeeping);
     results.add("along_motion", "m/s^2", along.data(), {speeds},
                 "Mean acceleration along the motion by speed over the shell's: below 0 it brakes.", {"speed_edges"});
@@ -84,12 +88,12 @@ class MeanAcceleration {
                  y = 0.5 * (block.position[1][before] + block.position[1][after]);
     const double dx = block.velocity[0][after] - block.velocity[0][before], dy = block.velocity[1][after] - block.velocity[1][before];
     const std::int64_t ring = rings_.at(std::hypot(x, y)), sector = sectors_.at(angle_of(sense_ * x, -y));
-    if (ring >= 0 && sector >= 0) {
-      double* m = sums[0] + (ring * sectors_.count + sector) * kMoments;
-      m[kTime] += duration, m[kX] += dx, m[kY] += dy;
-    }
     const double vx = 0.5 * (block.velocity[0][before] + block.velocity[0][after]),
                  vy = 0.5 * (block.velocity[1][before] + block.velocity[1][after]);
+    if (ring >= 0 && sector >= 0) {
+      double* m = sums[0] + (ring * sectors_.count + sector) * kMoments;
+      m[kTime] += duration, m[kX] += dx, m[kY] += dy, m[kVx] += vx * duration, m[kVy] += vy * duration;
+    }
     const double speed = std::hypot(vx, vy);
     const std::int64_t bin = shell_speed_ > 0 ? speeds_.at(speed / shell_speed_) : -1;
     if (bin < 0 || !(speed > 0)) return;

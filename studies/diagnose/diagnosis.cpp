@@ -83,6 +83,7 @@ Diagnosis diagnose(const Question& question, const Workshop& workshop, const Nam
   if (d.naming.best >= 0 || d.naming.base_p <= options.level) {
     say(workshop, "missing mean acceleration, by place and speed");
     d.missing = missing_force(request);
+    d.terms = offer_terms(d.missing);
   }
   if (!d.bank.failures.empty())
     d.notes.push_back(

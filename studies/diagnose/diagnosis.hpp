@@ -6,6 +6,7 @@
 
 #include "studies/calibrate/session.hpp"
 #include "studies/diagnose/missing_force.hpp"
+#include "studies/diagnose/terms.hpp"
 
 namespace millscope::diagnose {
 
@@ -27,6 +28,7 @@ struct Diagnosis {
   std::vector<HeldOut> held_out;
   std::vector<Alone> alone;
   std::vector<MissingForce> missing;  ///< where the base does not describe the recordings
+  TermOffer terms;                    ///< that would describe `missing`
 };
 
 /// Everything from the bank on.

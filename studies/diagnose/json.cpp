@@ -136,6 +136,18 @@ Json missing(const Told& t) {
   return out;
 }
 
+Json offered(const TermOffer& offer) {
+  Json terms = Json::array();
+  for (const OfferedTerm& t : offer.terms) {
+    terms.push_back({{"name", t.name},
+                     {"equation", t.equation},
+                     {"unit", t.unit},
+                     {"coefficient", interval(t.coefficient)},
+                     {"share_of_halves", t.share}});
+  }
+  return {{"sentence", sentence_of(offer)}, {"cells", offer.cells}, {"explained", offer.explained}, {"terms", terms}};
+}
+
 }  // namespace
 
 Json diagnosis_json(const Told& t) {
@@ -175,6 +187,7 @@ Json diagnosis_json(const Told& t) {
           {"per_speed_friction", per_speed(t)},
           {"held_out", held_out(t)},
           {"missing_acceleration", missing(t)},
+          {"offered_terms", d.missing.empty() ? Json() : offered(d.terms)},
           {"bank", {{"parameter_sets", d.bank.points.size()}, {"used", d.problem.data.rows.size()}, {"failures", d.bank.failures}}},
           {"notes", d.notes},
           {"study", t.question.study.file.string()}};

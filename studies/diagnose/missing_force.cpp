@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace millscope::diagnose {
 namespace {
@@ -12,6 +13,7 @@ constexpr const char* kAnalyzers = "analyzers:\n  mean_acceleration: {rings: 5, 
 constexpr const char* kName = "mean_acceleration";
 constexpr int kSeeds = 2;
 constexpr double kNormal90 = 1.645;
+constexpr double kDegree = std::numbers::pi / 180;
 
 struct Side {
   studies::ResultSet set;
@@ -48,8 +50,18 @@ std::vector<ForceCell> cells_of(const Side& recorded, const std::vector<Side>& s
     const Difference x = difference(recorded, simulated, "x", i), y = difference(recorded, simulated, "y", i);
     if (!x.known() || !y.known()) continue;
     const std::size_t ring = i / sectors, sector = i % sectors;
+    const double radius = 0.5 * (r[ring] + r[ring + 1]), from_six = 0.5 * (angle[sector] + angle[sector + 1]) * kDegree;
+    const double sense = recorded.set.meta.context.omega < 0 ? -1 : 1;
     const double square = std::pow(x.value / x.sem, 2) + std::pow(y.value / y.sem, 2);
-    cells.push_back({r[ring], r[ring + 1], angle[sector], angle[sector + 1], x.interval(), y.interval(), std::exp(-0.5 * square)});
+    cells.push_back({r[ring],
+                     r[ring + 1],
+                     angle[sector],
+                     angle[sector + 1],
+                     {sense * radius * std::sin(from_six), -radius * std::cos(from_six)},
+                     {recorded.of("velocity_x").value[i], recorded.of("velocity_y").value[i]},
+                     x.interval(),
+                     y.interval(),
+                     std::exp(-0.5 * square)});
   }
   for (ForceCell& cell : cells) cell.p = std::min(1.0, cell.p * static_cast<double>(cells.size()));
   std::stable_sort(cells.begin(), cells.end(), [](const ForceCell& a, const ForceCell& b) { return a.p < b.p; });
@@ -81,7 +93,8 @@ std::vector<MissingForce> missing_force(const HeldOutRequest& r) {
     for (const campaign::Outcome& outcome : r.workshop.run(simulations)) {
       if (outcome.state == campaign::State::done) simulated.push_back({r.workshop.results(condition, outcome.folder, kAnalyzers)});
     }
-    if (!simulated.empty()) out.push_back({condition, cells_of(recorded, simulated), by_speed(recorded, simulated)});
+    if (!simulated.empty())
+      out.push_back({condition, recorded.set.meta.context.omega, cells_of(recorded, simulated), by_speed(recorded, simulated)});
   }
   return out;
 }

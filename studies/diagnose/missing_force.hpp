@@ -12,6 +12,8 @@ namespace millscope::diagnose {
 struct ForceCell {
   double r_low = 0, r_high = 0;          ///< m
   double angle_low = 0, angle_high = 0;  ///< deg from 6 o'clock in the turning sense
+  double place[2] = {0, 0};              ///< m, middle in the recording's frame, from the axis
+  double velocity[2] = {0, 0};           ///< m/s, of the recorded beads
   Interval x, y;                         ///< m/s²
   double p = 1;                          ///< that chance makes it as large, for all cells of the condition together (Bonferroni)
 };
@@ -23,6 +25,7 @@ struct ForceBySpeed {
 
 struct MissingForce {
   std::size_t condition = 0;
+  double omega = 0;              ///< rad/s of the shell in the recording's frame
   std::vector<ForceCell> cells;  ///< those that both sides visited, the surest first
   std::vector<ForceBySpeed> by_speed;
 };

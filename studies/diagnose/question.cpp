@@ -14,7 +14,6 @@ namespace {
 
 using config::Node;
 
-
 double number(const Node& node) {
   const config::Quantity q = config::read_quantity(node);
   return q.has_unit ? q.unit.to_si(q.number) : q.number;

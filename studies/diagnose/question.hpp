@@ -40,7 +40,7 @@ struct Question {
   std::vector<Candidate> candidates;
   std::vector<std::string> left_out;  ///< hypotheses that do not apply, and why
   BankSize bank;
-  std::vector<double> speed;   ///< |Ω| of every condition, rad/s
+  std::vector<double> speed;  ///< |Ω| of every condition, rad/s
 
   std::size_t dimensions() const { return study.parameters.size() + nuisances.size(); }
   std::vector<Coordinate> coordinates() const;

@@ -118,7 +118,7 @@ void missing(const Told& t, std::string& out) {
     for (std::size_t i = 0; i < std::min(kCells, m.cells.size()); ++i)
       add(out, "- {}\n", force_sentence(t.question, m.condition, m.cells[i]));
   }
-  out += "\n";
+  add(out, "\n{}\n\n", sentence_of(t.diagnosis.terms));
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ TEST_CASE("beads that turn with the shell are accelerated towards the axis by om
   for (int k = 0; k < 2000; ++k) times.push_back(k * step);
   const Frames frames = all_beads(turning_disc(60, 0.14, omega), 60, times, even_weights(times.size(), step), omega);
   const Outcome o = Analyzer("mean_acceleration", mill(60)).of(frames);
+  const auto vx = values(o, "velocity_x"), vy = values(o, "velocity_y");
   const auto x = values(o, "x"), y = values(o, "y"), time = values(o, "time"), angle = values(o, "angle_edges"), r = values(o, "r_edges");
   const std::size_t sectors = angle.size() - 1;
   int looked = 0;
@@ -34,6 +35,8 @@ TEST_CASE("beads that turn with the shell are accelerated towards the axis by om
       const double half = 0.5 * (angle[s + 1] - angle[s]) * kRadians, mean = std::sin(half) / half;  // of the direction over the sector
       CHECK_THAT(x[i], WithinAbs(-omega * omega * radius * std::sin(from_six) * mean, 0.12 * omega * omega * radius));
       CHECK_THAT(y[i], WithinAbs(omega * omega * radius * std::cos(from_six) * mean, 0.12 * omega * omega * radius));
+      CHECK_THAT(vx[i], WithinAbs(omega * radius * std::cos(from_six) * mean, 0.12 * omega * radius));
+      CHECK_THAT(vy[i], WithinAbs(omega * radius * std::sin(from_six) * mean, 0.12 * omega * radius));
       ++looked;
     }
   }

@@ -66,11 +66,12 @@ function senseOf(turns, held) {
   return Math.sign(centre?.recorded ?? 0);
 }
 
-export function missingAcceleration({ missing_acceleration: all = [], held_out: held = [] }, key, turns) {
+export function missingAcceleration({ missing_acceleration: all = [], held_out: held = [], offered_terms: offered }, key, turns) {
   const sense = senseOf(turns, held);
   const filled = all.filter((one) => one.cells?.length > 0);
   if (filled.length === 0) return null;
   return block(`${key}-acceleration`, "The missing acceleration", note("No form is assumed here: this is what the recorded beads do beyond what the base, retuned, makes them do."
     + (sense === 0 ? " The turning sense is not known here: the mill is drawn as turning counter-clockwise." : "")),
-  filled.map((found, index) => condition(found, `${key}-acceleration-${index + 1}`, sense || 1)));
+  filled.map((found, index) => condition(found, `${key}-acceleration-${index + 1}`, sense || 1)),
+  offered?.sentence ? element("p", { class: "sentence" }, offered.sentence) : null);
 }
