@@ -55,7 +55,7 @@ void System::sort_beads() {
   });
   double low[3] = {1e300, 1e300, 1e300}, high[3] = {-1e300, -1e300, -1e300};
   for (const Extent& e : extents) {
-    if (e.lost >= 0) complain(e.lost, "has left the domain");
+    if (e.lost >= 0) throw config::UserError(complaint(e.lost, "has left the domain"));
     largest_reach = std::max(largest_reach, e.reach);
     for (int a = 0; a < 3; ++a) {
       low[a] = std::min(low[a], e.low[a]);

@@ -289,13 +289,13 @@ void System::advance() {
   ++step_;
   wall_moved_ += settings_.time_step * wall_speed_;
   for (const auto& slab : slabs_) {
-    if (slab->result.runaway >= 0) complain(slab->result.runaway, "moved more than half its radius in one step");
+    if (slab->result.runaway >= 0) throw Runaway(complaint(slab->result.runaway, "moved more than half its radius in one step"));
     rebuild_needed_ = rebuild_needed_ || slab->result.rebuild;
   }
   if (wall_moved_ > wall_margin_) rebuild_needed_ = true;
 }
 
-void System::complain(std::int64_t bead, const char* what) const {
+std::string System::complaint(std::int64_t bead, const char* what) const {
   const std::size_t i = static_cast<std::size_t>(bead);
   const PositionLine& x = particles.position[i];
   const MotionLine& m = particles.motion[i];
@@ -306,7 +306,7 @@ void System::complain(std::int64_t bead, const char* what) const {
       "too long for the stiffness (lower time.step_fraction), beads that overlapped walls or each other at the start, a liner with "
       "an open edge (millscope geometry report)",
       time(), particles.id[i], what, x.x, x.y, x.z, m.v[0], m.v[1], m.v[2]);
-  throw config::UserError(line);
+  return line;
 }
 
 }  // namespace millscope::dem

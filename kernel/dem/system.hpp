@@ -12,6 +12,7 @@
 #include <memory>
 #include <string>
 
+#include "kernel/config/error.hpp"
 #include "kernel/dem/ledger.hpp"
 #include "kernel/dem/motion.hpp"
 #include "kernel/dem/particles.hpp"
@@ -81,6 +82,11 @@ struct Settings {
 double wrapped(const Settings& settings, int axis, double coordinate);
 
 struct SlabState;  // scratch and results of one slab
+
+/// A bead moved more than half its radius in one step: the state is of no use any more.
+struct Runaway : config::UserError {
+  using config::UserError::UserError;
+};
 
 class System {
  public:
@@ -184,7 +190,7 @@ class System {
     return first_reference_[static_cast<std::size_t>(slab)] >= workers_->first(worker, settings_.partitions);
   }
   void add_halos(int slab, BeadRange range);
-  [[noreturn]] void complain(std::int64_t bead, const char* what) const;
+  std::string complaint(std::int64_t bead, const char* what) const;
   int pair_index(int a, int b, bool wall) const;
   std::int64_t slab_begin(int slab) const { return slab * particles.count() / settings_.partitions; }
   friend struct PairEvaluator;

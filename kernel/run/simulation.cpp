@@ -29,6 +29,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 constexpr const char* kResolvedCase = "case.resolved.yaml";
 constexpr const char* kSummary = "summary.json";
+constexpr int kMostHalvings = 2;  // of the time step, where beads run away before the analysis begins
 
 /// A run while it goes on.
 struct Session {
@@ -36,6 +37,7 @@ struct Session {
   std::filesystem::path directory;
   std::unique_ptr<Recorder> recorder;
   RunOptions options;
+  bool may_start_again = false;  ///< with a shorter step, when a bead runs away early
   std::int64_t case_fingerprint = 0;
   std::optional<double> checkpoint_time{};  ///< s, of the newest checkpoint
   double wall_before = 0;                   ///< s of stepping in earlier sessions
@@ -74,18 +76,6 @@ dem::Ledger load_ledger(const output::ArchiveReader& archive, const dem::Ledger&
 
 static_assert(sizeof(Sample) % sizeof(double) == 0);
 
-class Fnv {
- public:
-  void add(const void* data, std::size_t bytes) {
-    const unsigned char* c = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < bytes; ++i) value_ = (value_ ^ c[i]) * 0x100000001b3ULL;
-  }
-  std::int64_t value() const { return static_cast<std::int64_t>(value_); }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325ULL;
-};
-
 /// Of all that a resumed run must share with the run that wrote the checkpoint: the resolved case without what `--set` may change, and
 /// the surfaces, whose files may have been replaced.
 std::int64_t fingerprint(const Assembly& a, const host::Registry& registry) {
@@ -94,14 +84,18 @@ std::int64_t fingerprint(const Assembly& a, const host::Registry& registry) {
   c.time.end = c.time.analyze_from = 0;
   c.run.threads = 0;
   c.output = {};
-  Fnv fnv;
+  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
+  const auto add = [&hash](const void* data, std::size_t bytes) {
+    const unsigned char* byte = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < bytes; ++i) hash = (hash ^ byte[i]) * 0x100000001b3ULL;
+  };
   const std::string text = config::resolved_yaml(c, registry.descriptors());
-  fnv.add(text.data(), text.size());
+  add(text.data(), text.size());
   for (const GeometryUse& g : a.geometries) {
-    fnv.add(g.surface.vertices, 3 * g.surface.vertex_count * sizeof *g.surface.vertices);
-    fnv.add(g.surface.triangles, 3 * g.surface.triangle_count * sizeof *g.surface.triangles);
+    add(g.surface.vertices, 3 * g.surface.vertex_count * sizeof *g.surface.vertices);
+    add(g.surface.triangles, 3 * g.surface.triangle_count * sizeof *g.surface.triangles);
   }
-  return fnv.value();
+  return static_cast<std::int64_t>(hash);
 }
 
 void write_checkpoint(Session& s) {
@@ -176,12 +170,23 @@ void write_summary(Session& s, const host::Registry& registry) {
   output::write_json(s.directory / kSummary, j);
 }
 
+/// A bead ran away before anything that is asked for was computed. `half_step`: as --set.
+struct RanAway {
+  std::string message, half_step;
+};
+
 /// One step. What is said of a bead that ran away is completed by what is left of the run.
 void advance(Session& s) {
   try {
     s.assembly.system->advance();
   } catch (const UserError& e) {
     if (e.exit_code() != config::kExitBadInput) throw;
+    if (dynamic_cast<const dem::Runaway*>(&e) != nullptr && s.may_start_again && !s.assembly.c.run.allow_unstable &&
+        s.assembly.system->step() < s.assembly.analyze_step) {
+      const config::TimeCase& time = s.assembly.c.time;
+      throw RanAway{e.what(), time.step ? fmt::format("time.step_s={:.17g}", 0.5 * *time.step)
+                                        : fmt::format("time.step_fraction={:.17g}", 0.5 * time.step_fraction)};
+    }
     const std::string kept = s.checkpoint_time
                                  ? fmt::format("the checkpoint at {:.6g} s is kept in {}", *s.checkpoint_time, s.directory.string())
                                  : fmt::format("no checkpoint had been written to {}", s.directory.string());
@@ -262,13 +267,9 @@ std::unique_ptr<output::ArchiveReader> open_checkpoint(const std::filesystem::pa
   }
 }
 
-}  // namespace
-
-void request_stop() { stop_requested.store(true, std::memory_order_relaxed); }
-
-Outcome run_case(const std::string& case_file, const host::Registry& registry, const RunOptions& options) {
+Outcome run_once(const std::string& case_file, const host::Registry& registry, const RunOptions& options, bool may_start_again) {
   Session s{assemble(config::read_case(case_file, options.overrides), registry, {options.threads, options.instruction_set}), options.output,
-            nullptr, options};
+            nullptr, options, may_start_again};
   Recorder::check(s.assembly);
   insert_beads(s.assembly);
   output::OutputDirectory directory(options.output, options.force ? output::Mode::overwrite : output::Mode::fresh,
@@ -286,6 +287,23 @@ Outcome run_case(const std::string& case_file, const host::Registry& registry, c
   s.first_step = -s.assembly.settle_steps;
   s.started = Clock::now();
   return step_to_end(s, registry);
+}
+
+}  // namespace
+
+void request_stop() { stop_requested.store(true, std::memory_order_relaxed); }
+
+Outcome run_case(const std::string& case_file, const host::Registry& registry, const RunOptions& options) {
+  RunOptions again = options;
+  for (int halvings = 0;; ++halvings) {
+    try {
+      return run_once(case_file, registry, again, halvings < kMostHalvings);
+    } catch (const RanAway& bead) {
+      fmt::print(stderr, "millscope: {}. Starting again with half the time step: {}\n", bead.message, bead.half_step);
+      again.overrides.push_back(bead.half_step);
+      again.force = true;  // what the first attempt left
+    }
+  }
 }
 
 Outcome resume_run(const host::Registry& registry, const RunOptions& options) {

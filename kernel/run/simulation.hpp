@@ -24,7 +24,8 @@ struct RunOptions {
 /// How a run ended.
 enum class Outcome { finished, interrupted };
 
-/// Runs a case from its start. Throws UserError.
+/// Runs a case from its start. Where a bead runs away before `analyze_from_s` the run begins again with half the time step, at most twice:
+/// what damping allows where many beads touch is less than what one contact does (docs/cases.md). Throws UserError.
 Outcome run_case(const std::string& case_file, const host::Registry& registry, const RunOptions& options);
 
 /// Continues from the newest checkpoint of `options.output`; `overrides` may change time.end_s, time.analyze_from_s and run.threads

@@ -17,6 +17,18 @@ class Explosion(CliTest):
         self.assertFalse((self.folder / "out/summary.json").exists())
         self.assert_one_line(self.millscope("resume", "out"), "no checkpoint")
 
+    def test_a_step_too_long_for_the_damping_is_halved_before_the_analysis_begins(self):
+        words = ("run", "case.yaml", "-q", "--set", "pairs.default.restitution=0.2", "--set", "pairs.default.static_friction=0.8", "--set", "fill.settle_s=0.2")
+        result = self.succeed(*words, "-o", "out")
+        self.assertIn("Starting again with half the time step: time.step_fraction=0.1", result.stderr)
+        halvings = result.stderr.count("Starting again")
+        self.assertAlmostEqual(self.summary("out")["dt_rayleigh_fraction"], 0.2 / 2**halvings, 9)
+        self.assertIn("step_fraction: %g" % (0.2 / 2**halvings), (self.folder / "out/case.resolved.yaml").read_text())
+        self.assertEqual(self.succeed(*words, "-o", "again").stderr.count("Starting again"), halvings)
+        self.assertEqual(self.summary("again")["state_hash"], self.summary("out")["state_hash"])
+        known = self.millscope(*words, "-o", "known", "--set", "run.allow_unstable=true")
+        self.assert_one_line(known, "moved more than half its radius")
+
     def test_the_last_checkpoint_is_kept(self):
         """A sound run until the first bead is lifted out of the domain."""
         self.write_case(("periodic: {z: [0, 26 mm]}", "periodic: {z: [0, 26 mm]}\n  high: {y: 20 mm}"))
