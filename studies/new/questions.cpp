@@ -99,8 +99,10 @@ void ask_for_size(const Answer& answer, Mill& m) {
   const Question length{"length", m.closed ? "inner length of the mill" : "length of the slice",
                         millimetres(own, m.liner ? kMeshDigits : 2)};
   answer(length, [&](const std::string& text) {
-    const Range range = m.closed ? Range{m.bead.si, 50, false, false, "the mill holds one bead at least"}
-                                 : Range{kShortestSlice * m.bead.si, 50, false, false, "beads of a shorter slice meet their own images"};
+    const Range range = m.closed
+                            ? Range{m.bead.si, 50, false, false, "the mill holds one bead at least"}
+                            : Range{kShortestSlice * m.bead.si, 50, false, false,
+                                    "beads of a shorter slice meet their own images: take smaller beads, a longer slice or a longer liner"};
     m.length = read_value(length, text, "m", range);
     if (m.liner) hold_to_liner("length", m.length, own, "length");
   });
