@@ -13,8 +13,6 @@ namespace {
 
 constexpr double kLargestCount = 4e9;
 
-double sphere_volume(double diameter) { return std::numbers::pi / 6 * diameter * diameter * diameter; }
-
 double extreme_diameter(const Case& c, bool largest) {
   double result = largest ? 0 : kUnbounded;
   for (const BeadCase& bead : c.beads) {
@@ -24,6 +22,8 @@ double extreme_diameter(const Case& c, bool largest) {
 }
 
 }  // namespace
+
+double sphere_volume(double diameter) { return std::numbers::pi / 6 * diameter * diameter * diameter; }
 
 double BeadCase::mean_volume() const {
   double volume = 0;

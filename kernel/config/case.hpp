@@ -238,6 +238,9 @@ Case parse_case(const std::string& text, const std::string& file, const std::vec
 /// descriptors every plugin must have been resolved before.
 void finish(const Case& c, std::span<const Descriptor* const> descriptors = {});
 
+/// m³, of a bead of this diameter, m.
+double sphere_volume(double diameter);
+
 /// Critical speed in rad/s: 42.3/√(D_m − d_b) rpm, D_m and d_b in m (Chagas 2015, Eq. 3.1). Requires D_m > d_b.
 double critical_speed(double mill_diameter, double bead_diameter);
 

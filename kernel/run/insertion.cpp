@@ -86,7 +86,7 @@ std::vector<BeadType> draw_types(const Assembly& a, std::uint64_t count, Random&
   std::vector<BeadType> types;
   for (const Share& s : shares) types.insert(types.end(), s.number, s.type);
   types.resize(count);
-  for (std::size_t i = types.size(); i > 1; --i) std::swap(types[i - 1], types[random.below(i)]);
+  random.shuffle(types);
   return types;
 }
 

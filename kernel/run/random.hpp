@@ -1,7 +1,9 @@
 // Random numbers that are the same on every machine (the standard library's distributions are not).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace millscope::run {
 
@@ -18,6 +20,12 @@ class Random {
   }
   double uniform() { return static_cast<double>(next() >> 11) * 0x1.0p-53; }  ///< [0, 1)
   std::uint64_t below(std::uint64_t n) { return next() % n; }                 ///< bias < n/2^64
+
+  /// Every order is as likely (Fisher & Yates).
+  template <class List>
+  void shuffle(List& list) {
+    for (std::size_t i = list.size(); i > 1; --i) std::swap(list[i - 1], list[below(i)]);
+  }
 
  private:
   std::uint64_t state_;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include "kernel/run/random.hpp"
@@ -54,8 +53,7 @@ std::uint64_t least_followable(const Assembly& a) {
   std::uint64_t count = 0;
   for (const config::BeadCase& bead : a.c.beads) {
     for (const config::SizeClass& size : bead.sizes) {
-      const double mass = bead.density * std::numbers::pi / 6 * size.diameter * size.diameter * size.diameter;
-      if (a.c.may_be_followed(0.5 * size.diameter, mass))
+      if (a.c.may_be_followed(0.5 * size.diameter, bead.density * config::sphere_volume(size.diameter)))
         count += static_cast<std::uint64_t>(static_cast<double>(a.bead_count) * bead.number_share * size.number_fraction);
     }
   }

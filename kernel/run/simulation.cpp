@@ -175,22 +175,27 @@ struct RanAway {
   std::string message, half_step;
 };
 
-/// One step. What is said of a bead that ran away is completed by what is left of the run.
+/// The message about a bead, completed by what is left of the run.
+std::string with_what_is_left(const Session& s, const UserError& e) {
+  const std::string kept = s.checkpoint_time
+                               ? fmt::format("the checkpoint at {:.6g} s is kept in {}", *s.checkpoint_time, s.directory.string())
+                               : fmt::format("no checkpoint had been written to {}", s.directory.string());
+  return fmt::format("{}; {}", e.what(), kept);
+}
+
+/// One step.
 void advance(Session& s) {
   try {
     s.assembly.system->advance();
+  } catch (const dem::Runaway& e) {
+    const bool early = s.assembly.system->step() < s.assembly.analyze_step;
+    if (!early || !s.may_start_again || s.assembly.c.run.allow_unstable) throw UserError(with_what_is_left(s, e));
+    const config::TimeCase& time = s.assembly.c.time;
+    throw RanAway{e.what(), time.step ? fmt::format("time.step_s={:.17g}", 0.5 * *time.step)
+                                      : fmt::format("time.step_fraction={:.17g}", 0.5 * time.step_fraction)};
   } catch (const UserError& e) {
     if (e.exit_code() != config::kExitBadInput) throw;
-    if (dynamic_cast<const dem::Runaway*>(&e) != nullptr && s.may_start_again && !s.assembly.c.run.allow_unstable &&
-        s.assembly.system->step() < s.assembly.analyze_step) {
-      const config::TimeCase& time = s.assembly.c.time;
-      throw RanAway{e.what(), time.step ? fmt::format("time.step_s={:.17g}", 0.5 * *time.step)
-                                        : fmt::format("time.step_fraction={:.17g}", 0.5 * time.step_fraction)};
-    }
-    const std::string kept = s.checkpoint_time
-                                 ? fmt::format("the checkpoint at {:.6g} s is kept in {}", *s.checkpoint_time, s.directory.string())
-                                 : fmt::format("no checkpoint had been written to {}", s.directory.string());
-    throw UserError(fmt::format("{}; {}", e.what(), kept));
+    throw UserError(with_what_is_left(s, e));
   }
 }
 

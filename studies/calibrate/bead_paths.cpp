@@ -62,7 +62,7 @@ BeadPaths::BeadPaths(const std::filesystem::path& run, int beads, const AxialPla
     radius_.push_back(reader.beads().radius[b]);
   }
   std::vector<float> all(reader.beads().size() * 3);
-  std::vector<double> sum_x(reader.beads().size());
+  std::vector<double> sum_x(c.has_tracers() ? reader.beads().size() : 0);  // of all beads, where some are set apart
   const auto load = [&](output::BeadField field, std::vector<float>& values) {
     values.reserve(frames * chosen.size() * 3);
     for (std::size_t f = 0; f < frames; ++f) {
@@ -73,7 +73,7 @@ BeadPaths::BeadPaths(const std::filesystem::path& run, int beads, const AxialPla
   };
   load(output::BeadField::position, position_);
   load(output::BeadField::velocity, velocity_);
-  lever_ratio_ = c.has_tracers() ? lever_ratio(reader.beads(), c, sum_x) : 1.0;
+  if (c.has_tracers()) lever_ratio_ = lever_ratio(reader.beads(), c, sum_x);
 }
 
 output::TrackSamples BeadPaths::path(std::size_t i) const {

@@ -60,8 +60,7 @@ std::vector<Truth> draw_truths(const Challenge& challenge, const diagnose::Quest
       truths.push_back(std::move(t));
     }
   }
-  emulate::Random order(challenge.seed, 0);
-  for (std::size_t i = truths.size(); i > 1; --i) std::swap(truths[i - 1], truths[order.below(i)]);
+  emulate::Random(challenge.seed, 0).shuffle(truths);
   return truths;
 }
 

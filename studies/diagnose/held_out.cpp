@@ -14,7 +14,6 @@ namespace millscope::diagnose {
 namespace {
 
 constexpr int kDraws = 4000;
-constexpr double kNormal90 = 1.645;
 
 /// Mean of the simulations of one parameter set with several seeds.
 Prediction simulate(const HeldOutRequest& r, const VectorXd& coded, const std::vector<Effect>& effects, std::size_t condition,

@@ -12,7 +12,6 @@ namespace {
 constexpr const char* kAnalyzers = "analyzers:\n  mean_acceleration: {rings: 5, sectors: 12, bins_speed: 12, largest_speed: 2}\n";
 constexpr const char* kName = "mean_acceleration";
 constexpr int kSeeds = 2;
-constexpr double kNormal90 = 1.645;
 constexpr double kDegree = std::numbers::pi / 180;
 
 struct Side {
@@ -27,7 +26,7 @@ struct Side {
 /// Value of the recording less the mean of the simulations, with its error; NaN where one of them lacks it.
 struct Difference {
   double value = 0, sem = 0;
-  Interval interval() const { return {value, value - kNormal90 * sem, value + kNormal90 * sem}; }
+  Interval interval() const { return interval_about(value, sem); }
   bool known() const { return std::isfinite(value) && std::isfinite(sem) && sem > 0; }
 };
 

@@ -54,6 +54,10 @@ struct Interval {
   double value = 0, low90 = 0, high90 = 0;
 };
 
+inline constexpr double kNormal90 = 1.645;  ///< standard errors to either side that hold 90 %
+
+inline Interval interval_about(double value, double sem) { return {value, value - kNormal90 * sem, value + kNormal90 * sem}; }
+
 /// One candidate against the base.
 struct Judged {
   FitResult fit;

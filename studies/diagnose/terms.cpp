@@ -17,7 +17,6 @@ constexpr int kHalves = 400;
 constexpr double kStable = 0.85;         // share of the halves
 constexpr double kGain = 0.95;           // share of the halves whose other half the term describes better than nothing
 constexpr std::size_t kLeastCells = 16;  // fewer cannot be halved for up to two coefficients
-constexpr double kNormal90 = 1.645;
 constexpr std::size_t kMostTerms = 2;
 
 using Vector2 = std::array<double, 2>;
@@ -124,7 +123,7 @@ void each_half(const Rows& rows, Visit&& visit) {
   std::vector<std::size_t> order(rows.cells());
   std::iota(order.begin(), order.end(), std::size_t{0});
   for (int h = 0; h < kHalves; ++h) {
-    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+    random.shuffle(order);
     visit(rows_of_cells(order, 0, order.size() / 2), rows_of_cells(order, order.size() / 2, order.size()));
   }
 }
@@ -178,8 +177,7 @@ TermOffer offer_terms(const std::vector<MissingForce>& missing) {
     double mean = 0, square = 0;
     for (const double c : coefficients[k]) mean += c / kHalves;
     for (const double c : coefficients[k]) square += (c - mean) * (c - mean) / (kHalves - 1);
-    const double reach = kNormal90 * std::sqrt(square);
-    offer.terms[k].coefficient = {mean, mean - reach, mean + reach};
+    offer.terms[k].coefficient = interval_about(mean, std::sqrt(square));
   }
   return offer;
 }

@@ -2,13 +2,13 @@
 """The check of the documentation finds each kind of fault in a small tree, and nothing in a sound one."""
 
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+sys.path[:0] = [str(folder) for folder in Path(__file__).resolve().parents[:2]]
 import check_docs  # noqa: E402
+from small_tree import SmallTreeTest  # noqa: E402
 
 HELP = {
     "": "usage: millscope COMMAND …\n\n  run        simulate a case\n  pept       recordings\n  geometry   liners\n  completion of words\n\n"
@@ -59,21 +59,12 @@ WRONG = [
 ]
 
 
-class DocumentationCheck(unittest.TestCase):
+class DocumentationCheck(SmallTreeTest):
+    sound = SOUND
+
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.root = Path(self.folder.name)
-        for name, text in SOUND.items():
-            self.write(name, text)
+        super().setUp()
         self.help = check_docs.Help(lambda words: HELP[" ".join(words)])
-
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def write(self, name, text):
-        path = self.root / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
 
     def faults(self):
         return list(check_docs.check_all(self.root, self.help))

@@ -2,13 +2,13 @@
 """The structure check finds each kind of violation in a tiny tree, and nothing in a sound one."""
 
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+sys.path[:0] = [str(folder) for folder in Path(__file__).resolve().parents[:2]]
 import check_structure  # noqa: E402
+from small_tree import SmallTreeTest  # noqa: E402
 
 SOUND = {
     "sdk/include/millscope/pack.hpp": "#include <cmath>\n#include \"millscope/abi.hpp\"\n",
@@ -49,20 +49,8 @@ WRONG = [
 ]
 
 
-class StructureCheck(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.root = Path(self.folder.name)
-        for name, text in SOUND.items():
-            self.write(name, text)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def write(self, name, text):
-        path = self.root / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
+class StructureCheck(SmallTreeTest):
+    sound = SOUND
 
     def test_sound_tree_passes(self):
         self.assertEqual(list(check_structure.check_tree(self.root)), [])
