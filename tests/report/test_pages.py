@@ -11,6 +11,7 @@ import unittest
 from support import call, data_of, simulate
 
 FIXTURES = pathlib.Path(__file__).resolve().parent / "fixtures"
+REFERENCES = pathlib.Path(__file__).resolve().parent / "references"
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "studies" / "report" / "page"
 BROWSER_TESTS = pathlib.Path(os.environ["MILLSCOPE_BROWSER_TESTS"])
 MISSING = [name for name in ("node", "chromium") if not shutil.which(name)] + ([] if (BROWSER_TESTS / "copied").exists() else ["the browser's driver"])
@@ -40,7 +41,10 @@ class StaticPages(Pages):
         self.assertEqual(shown, ["run", "analysis", "comparison", "campaign", "calibration", "calibration", "validation", "diagnosis", "challenge"])
         known = re.search(r"const KINDS = \{ (.*?) \};", (PAGE / "src" / "main.js").read_text())
         self.assertEqual(set(shown), set(known.group(1).split(", ")), "a kind of section that the page knows is not looked at here")
-        done = looked_at("check.mjs", self.folder / "run.html", self.folder / "studies.html")
+        done = looked_at("check.mjs", self.folder / "run.html")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        # The fixtures are the same on every machine, so their charts can be held against pictures.
+        done = looked_at("check.mjs", self.folder / "studies.html", "--compare", REFERENCES)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def test_faults_are_found(self):
@@ -48,6 +52,15 @@ class StaticPages(Pages):
         text = (self.folder / "whole.html").read_text()
         (self.folder / "asks.html").write_text(text.replace("</body>", '<img alt="" src="http://127.0.0.1:9/picture.png"></body>'))
         self.assertIn("asks for http://127.0.0.1:9", looked_at("check.mjs", self.folder / "asks.html").stdout)
+
+    def test_a_changed_chart_is_found(self):
+        call(self.folder, "report", str(FIXTURES / "campaign"), "-o", "made.html", "-q")
+        looked_at("check.mjs", self.folder / "made.html", "--keep", self.folder / "kept")
+        text = (self.folder / "made.html").read_text()
+        changed = re.sub(r'"state":"done"', '"state":"failed"', re.sub(r'"done":\d+', '"done":0', text))
+        self.assertNotEqual(changed, text)
+        (self.folder / "made.html").write_text(changed)
+        self.assertRegex(looked_at("check.mjs", self.folder / "made.html", "--compare", self.folder / "kept").stdout, "differs from its picture")
 
     def test_a_calibration_that_fits_nothing_says_so_first(self):
         call(self.folder, "report", str(FIXTURES / "retuned"), str(FIXTURES / "surface"), "-o", "fits.html", "-q")

@@ -1,45 +1,35 @@
-// node check.mjs PAGE.html… [--screens DIR] [--compare DIR] [--chromium PATH]: opens each page as a file, wide and narrow, and looks for
+// node check.mjs PAGE.html… [--screens DIR] [--keep DIR] [--compare DIR] [--chromium PATH]: opens each page as a file, wide and narrow, and looks for
 // faults; one line per fault, exit code 1 where there are any. docs of the checks: look.mjs, solid.mjs.
-import { existsSync, mkdirSync, readFileSync, renameSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, renameSync, writeFileSync } from "node:fs";
 import { basename, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { PATIENCE, dataOf, launch, readArguments, stop, watch } from "./browser.mjs";
 import { charts, overflow, structure, visit } from "./look.mjs";
-import { decode, difference } from "./picture.mjs";
+import { hold, keep } from "./reference.mjs";
 import { solid } from "./solid.mjs";
 
 const PROGRAM = "check.mjs";
-const USAGE = "usage: node check.mjs PAGE.html… [--screens DIR] [--compare DIR] [--chromium PATH]";
+const USAGE = "usage: node check.mjs PAGE.html… [--screens DIR] [--keep DIR] [--compare DIR] [--chromium PATH]";
 const WIDTHS = [1280, 390];
 const TALLEST = 3000; // px of a screenshot
-const TOLERANCE = 0.02; // mean difference from a stored screenshot: fonts of another machine stay below it, a missing chart does not
 
-const { pages, options } = readArguments(PROGRAM, USAGE, ["screens", "compare", "chromium"]);
-if (options.compare && !existsSync(options.compare)) stop(`${PROGRAM}: there is no folder ${options.compare} to compare with: make it with --screens`);
+const { pages, options } = readArguments(PROGRAM, USAGE, ["screens", "keep", "compare", "chromium"]);
+if (options.compare && !existsSync(options.compare)) stop(`${PROGRAM}: there is no folder ${options.compare} to compare with: make it with --keep`);
 
 /** A long page gives several pictures, because browsers refuse or repeat what is taller than a texture of their renderer. */
-async function screenshots(page, name, complain) {
+async function screenshots(page, name) {
   const height = await page.evaluate(() => document.documentElement.scrollHeight);
   const { width } = page.viewportSize();
   for (let top = 0, part = 1; top < height; top += TALLEST, part += 1) {
     const clip = { x: 0, y: top, width, height: Math.min(TALLEST, height - top) };
-    keepAndCompare(await page.screenshot({ fullPage: true, clip }), `${name}-${part}.png`, complain);
+    keepScreenshot(await page.screenshot({ fullPage: true, clip }), `${name}-${part}.png`);
   }
 }
 
-function keepAndCompare(bytes, name, complain) {
-  if (options.screens) {
-    mkdirSync(options.screens, { recursive: true });
-    writeFileSync(join(options.screens, `${name}.tmp`), bytes);
-    renameSync(join(options.screens, `${name}.tmp`), join(options.screens, name));
-  }
-  if (!options.compare) return;
-  const stored = join(options.compare, name);
-  if (!existsSync(stored)) return complain(`there is no ${stored} to compare with: make it with --screens`);
-  const [now, before] = [decode(bytes), decode(readFileSync(stored))];
-  if (now.width !== before.width || now.height !== before.height) return complain(`it has ${now.width} × ${now.height} px, ${stored} has ${before.width} × ${before.height}`);
-  const found = difference(now, before);
-  if (found > TOLERANCE) complain(`it differs from ${stored} by ${(100 * found).toFixed(2)} %, more than ${100 * TOLERANCE} %`);
+function keepScreenshot(bytes, name) {
+  mkdirSync(options.screens, { recursive: true });
+  writeFileSync(join(options.screens, `${name}.tmp`), bytes);
+  renameSync(join(options.screens, `${name}.tmp`), join(options.screens, name));
 }
 
 /** What printing does, without a printer: all opened, all drawn, no controls. */
@@ -77,10 +67,17 @@ async function look(browser, path, data, width, complain) {
   if (shown.head !== data.title || shown.title !== data.title) complain(`the title is shown as "${shown.head}", it is "${data.title}"`);
   data.sections.forEach((section, index) => shown.sections[index] !== section.title && complain(`section ${index + 1} is headed "${shown.sections[index]}", not "${section.title}"`));
   (await page.evaluate(overflow)).forEach(complain);
-  if (options.screens || options.compare) {
+  const name = `${basename(path, ".html")}-${width}`;
+  if (options.screens) {
     await page.evaluate(visit, false);
     await page.waitForTimeout(400);
-    await screenshots(page, `${basename(path, ".html")}-${width}`, complain);
+    await screenshots(page, name);
+  }
+  if (options.keep || options.compare) {
+    await page.evaluate(visit, true); // before the 3-D is turned
+    await page.waitForTimeout(400);
+    if (options.keep) await keep(page, join(options.keep, `${name}.png`));
+    if (options.compare) await hold(page, join(options.compare, `${name}.png`), complain);
   }
   await solid(page, data, width === WIDTHS[0], complain);
   await page.evaluate(visit, true);

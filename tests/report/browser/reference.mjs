@@ -1,0 +1,97 @@
+// Every chart and 3-D view of a page as a small picture, so small that another machine's fonts make next to no difference to it and a
+// missing line, another colour map or an empty axis does. The small pictures of a page lie side by side in one PNG that is kept with
+// the tests.
+import { existsSync, mkdirSync, readFileSync, renameSync, writeFileSync } from "node:fs";
+import { dirname } from "node:path";
+import { PNG } from "pngjs";
+import { decode } from "./picture.mjs";
+
+const [WIDE, HIGH, ACROSS] = [60, 40, 8]; // cells of a small picture; pictures in a row of the sheet
+const INK = 40; // difference from white, of 255, in an empty picture
+const TOLERANCE = 0.15; // share of what is drawn; 0.04 between two looks at one page, 0.5 for another colour
+
+/** Mean colour of each cell. */
+export function small(picture) {
+  const cells = new Float64Array(WIDE * HIGH * 3);
+  for (let row = 0; row < HIGH; row++)
+    for (let column = 0; column < WIDE; column++) {
+      const [top, bottom] = [row, row + 1].map((at) => Math.round((at * picture.height) / HIGH));
+      const [left, right] = [column, column + 1].map((at) => Math.round((at * picture.width) / WIDE));
+      for (let channel = 0; channel < 3; channel++) {
+        let sum = 0;
+        for (let y = top; y < bottom; y++) for (let x = left; x < right; x++) sum += picture.data[4 * (y * picture.width + x) + channel];
+        cells[3 * (row * WIDE + column) + channel] = sum / Math.max(1, (bottom - top) * (right - left));
+      }
+    }
+  return cells;
+}
+
+/** The least difference of a cell from the other picture's cells around it: what has moved by a cell has not changed. */
+function apart(one, other, row, column) {
+  let least = Infinity;
+  for (let y = Math.max(0, row - 1); y <= Math.min(HIGH - 1, row + 1); y++)
+    for (let x = Math.max(0, column - 1); x <= Math.min(WIDE - 1, column + 1); x++) {
+      let sum = 0;
+      for (let channel = 0; channel < 3; channel++) sum += Math.abs(one[3 * (row * WIDE + column) + channel] - other[3 * (y * WIDE + x) + channel]);
+      least = Math.min(least, sum);
+    }
+  return least;
+}
+
+/** How much of what is drawn in either picture is missing in the other, 0 … 1 and more. */
+export function change(one, other) {
+  let [changed, drawn] = [0, 0];
+  for (let row = 0; row < HIGH; row++)
+    for (let column = 0; column < WIDE; column++) {
+      changed += Math.max(apart(one, other, row, column), apart(other, one, row, column));
+      for (let channel = 0; channel < 3; channel++) drawn += 255 - Math.min(one[3 * (row * WIDE + column) + channel], other[3 * (row * WIDE + column) + channel]);
+    }
+  return changed / Math.max(drawn, INK);
+}
+
+/** [{name, cells}] of all charts and 3-D views in the order of the page. */
+async function gather(page) {
+  const found = [];
+  for (const element of await page.locator(".chart:has(svg), .view canvas").all())
+    found.push({ name: (await element.getAttribute("aria-label")) ?? "", cells: small(decode(await element.screenshot({ animations: "disabled" }))) });
+  return found;
+}
+
+function sheetOf(pictures) {
+  const sheet = new PNG({ width: ACROSS * WIDE, height: Math.ceil(pictures.length / ACROSS) * HIGH });
+  sheet.data.fill(255);
+  pictures.forEach(({ cells }, index) => {
+    const [left, top] = [(index % ACROSS) * WIDE, Math.floor(index / ACROSS) * HIGH];
+    for (let row = 0; row < HIGH; row++)
+      for (let at = 0; at < WIDE * 3; at++) sheet.data[4 * ((top + row) * sheet.width + left + Math.floor(at / 3)) + (at % 3)] = Math.round(cells[row * WIDE * 3 + at]);
+  });
+  return sheet;
+}
+
+/** The picture with this number on a sheet. */
+function cellsOf(sheet, index) {
+  const [left, top] = [(index % ACROSS) * WIDE, Math.floor(index / ACROSS) * HIGH];
+  const cells = new Float64Array(WIDE * HIGH * 3);
+  for (let row = 0; row < HIGH; row++)
+    for (let at = 0; at < WIDE * 3; at++) cells[row * WIDE * 3 + at] = sheet.data[4 * ((top + row) * sheet.width + left + Math.floor(at / 3)) + (at % 3)];
+  return cells;
+}
+
+/** Writes the sheet of a page. */
+export async function keep(page, file) {
+  mkdirSync(dirname(file), { recursive: true });
+  writeFileSync(`${file}.tmp`, PNG.sync.write(sheetOf(await gather(page))));
+  renameSync(`${file}.tmp`, file);
+}
+
+/** Holds a page against its sheet. */
+export async function hold(page, file, complain) {
+  if (!existsSync(file)) return complain(`there is no ${file} to compare with: make it with --keep`);
+  const [pictures, sheet] = [await gather(page), decode(readFileSync(file))];
+  if (sheet.width !== ACROSS * WIDE || sheet.height !== Math.ceil(pictures.length / ACROSS) * HIGH)
+    return complain(`it has ${pictures.length} charts, which ${file} has not: look at the page, then keep it with --keep`);
+  pictures.forEach(({ name, cells }, index) => {
+    const found = change(cells, cellsOf(sheet, index));
+    if (found > TOLERANCE) complain(`"${name.slice(0, 60)}" differs from its picture in ${file} by ${Math.round(100 * found)} % of what is drawn, more than ${100 * TOLERANCE} %`);
+  });
+}
