@@ -130,11 +130,18 @@ struct Observer::Impl {
   }
 
   /// The run's beads through the recording's camera and the same processing, turned to the recording's sense.
-  studies::ResultSet seen(std::size_t condition, const BeadPaths& paths, const fs::path& scratch, const Processing& how) const {
+  studies::ResultSet seen(std::size_t condition, const BeadPaths& paths, const std::string& before, const Processing& how) const {
     const RecordedCondition& r = recorded[condition];
-    const studies::Camera camera =
-        without_frame(studies::parse_camera(r.camera, "camera of condition '" + study.conditions[condition].name + "'", registry));
-    const Scratch folder(scratch);
+    const std::string name = "camera of condition '" + study.conditions[condition].name + "'";
+    const bool mirror = paths.mill().context.omega * r.omega < 0;
+    if (mirror && !before.empty())
+      throw UserError(
+          fmt::format("{}: turns the other way than the recording of condition '{}', so that offsets and tilts of the camera would "
+                      "change their sign; give mill.direction in the base case as in the recording",
+                      study.base.string(), study.conditions[condition].name));
+    const studies::Camera first = before.empty() ? studies::Camera() : studies::parse_camera(before, name, registry);
+    const studies::Camera camera = first.before(without_frame(studies::parse_camera(r.camera, name, registry)));
+    const Scratch folder(new_film());
     const studies::Recording recording = film(paths, camera, folder.path, threads);
     studies::TrajectoryOptions options;
     options.step = 0.002;
@@ -145,13 +152,13 @@ struct Observer::Impl {
     }
     const studies::ResultSet results = process(recording, options, how);
     std::vector<std::string> done;
-    return results.meta.context.omega * r.omega < 0 ? studies::mirrored(results, done) : results;
+    return mirror ? studies::mirrored(results, done) : results;
   }
 
-  Observation simulated(std::size_t condition, const fs::path& run, const fs::path& scratch) const {
+  Observation simulated(std::size_t condition, const fs::path& run, const std::string& camera) const {
     const RecordedCondition& r = recorded[condition];
     const BeadPaths paths(run, study.observing.beads, r.place, registry);
-    const studies::ResultSet results = seen(condition, paths, scratch, {study, registry, threads});
+    const studies::ResultSet results = seen(condition, paths, camera, {study, registry, threads});
     Observation o = summarise(results, r.summaries);
     o.bead_seconds = paths.seconds() * static_cast<double>(paths.size());
     if (r.measured_power) {
@@ -180,24 +187,27 @@ Observer::~Observer() = default;
 
 const Observation& Observer::recorded(std::size_t condition) const { return impl_->recorded[condition].observation; }
 
-Observation Observer::simulated(std::size_t condition, const fs::path& run, const std::string& key) const {
-  const std::string id = key + "-" + hash_of({impl_->recorded[condition].identity, fmt::format("{:.17g}", impl_->case_mass[condition])});
+Observation Observer::simulated(std::size_t condition, const fs::path& run, const std::string& key, const std::string& camera) const {
+  std::vector<std::string> depends{impl_->recorded[condition].identity, fmt::format("{:.17g}", impl_->case_mass[condition])};
+  if (!camera.empty()) depends.push_back(camera);
+  const std::string id = key + "-" + hash_of(depends);
   const fs::path file = impl_->cache / ("simulation-" + id + ".json");
   if (fs::exists(file)) {
     const Json known = read_json(file);
     if (!known.is_discarded()) return observation_from(known);
   }
-  const Observation o = impl_->simulated(condition, run, impl_->new_film());
+  const Observation o = impl_->simulated(condition, run, camera);
   output::write_json(file, to_json(o));
   return o;
 }
 
-studies::ResultSet Observer::results(std::size_t condition, const fs::path& run, const std::string& analyzers) const {
+studies::ResultSet Observer::results(std::size_t condition, const fs::path& run, const std::string& analyzers,
+                                     const std::string& camera) const {
   const Processing how{impl_->study, impl_->registry, impl_->threads, analyzers};
   const RecordedCondition& r = impl_->recorded[condition];
   if (run.empty()) return results_of_recording(condition, r, how);
   const BeadPaths paths(run, impl_->study.observing.beads, r.place, impl_->registry);
-  return impl_->seen(condition, paths, impl_->new_film(), how);
+  return impl_->seen(condition, paths, camera, how);
 }
 
 std::vector<std::string> observed_outputs() {

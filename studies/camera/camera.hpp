@@ -36,6 +36,12 @@ class Camera {
   Camera() = default;  ///< sees everything exactly
   explicit Camera(std::vector<CameraLink> links) : links_(std::move(links)) {}
   const std::vector<CameraLink>& links() const { return links_; }
+  /// This chain with another one behind it.
+  Camera before(const Camera& other) const {
+    std::vector<CameraLink> links = links_;
+    links.insert(links.end(), other.links_.begin(), other.links_.end());
+    return Camera(std::move(links));
+  }
 
  private:
   std::vector<CameraLink> links_;

@@ -27,12 +27,14 @@ MatrixXd unit_points(Index points, Index dimensions) {
   return 0.5 * (doe::sobol(std::move(factors), static_cast<int>(points)).coded.array() + 1);
 }
 
-VectorXd theta_of(const Question& q, const VectorXd& unit) {
+/// The share of an effect has its coordinate after those of the case, those of the camera follow.
+VectorXd theta_of(const Question& q, const VectorXd& unit, bool with_share) {
   VectorXd theta(static_cast<Index>(q.dimensions()));
   const std::vector<Coordinate> coordinates = q.coordinates();
   for (Index i = 0; i < theta.size(); ++i) {
     const Coordinate& c = coordinates[static_cast<std::size_t>(i)];
-    theta[i] = rounded(c.low + unit[i] * (c.high - c.low));
+    const bool behind = with_share && i >= static_cast<Index>(q.case_dimensions());
+    theta[i] = rounded(c.low + unit[behind ? i + 1 : i] * (c.high - c.low));
   }
   return theta;
 }
@@ -57,12 +59,13 @@ std::vector<BankPoint> plan_group(const Question& q, int candidate, int count) {
   std::vector<BankPoint> points;
   for (int i = 0; i < count; ++i) {
     const VectorXd u = unit.row(offset + i).transpose();
-    BankPoint point{group, i, theta_of(q, u), {}};
+    BankPoint point{group, i, theta_of(q, u, !base), {}};
     if (!base) {
       const Candidate& c = q.candidates[static_cast<std::size_t>(candidate)];
+      const double unit_share = u[static_cast<Index>(q.case_dimensions())];
       const double share = c.on_or_off()     ? 1
-                           : c.range.low < 0 ? c.range.low + (1 - c.range.low) * u[d]
-                                             : kLeastShare + (1 - kLeastShare) * u[d];
+                           : c.range.low < 0 ? c.range.low + (1 - c.range.low) * unit_share
+                                             : kLeastShare + (1 - kLeastShare) * unit_share;
       point.effects = {{candidate, rounded_share(c, share)}};
     }
     if (q.study.allowed(point.theta.head(static_cast<Index>(q.study.parameters.size())))) points.push_back(std::move(point));
@@ -109,7 +112,8 @@ Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoin
   studies::for_each_item(outcomes.size(), studies::worker_count(0, outcomes.size()), [&](std::size_t i, std::size_t) {
     try {
       if (outcomes[i].state == campaign::State::failed) throw config::UserError(outcomes[i].message);
-      bank.seen[i / per_point][i % per_point] = workshop.observe(bank.conditions[i % per_point], outcomes[i]);
+      bank.seen[i / per_point][i % per_point] =
+          workshop.observe(bank.conditions[i % per_point], outcomes[i], q.camera(bank.points[i / per_point].theta));
     } catch (const config::UserError& e) {
       failures[i] = fmt::format("{}: {}", simulations[i].label, e.what());
     }

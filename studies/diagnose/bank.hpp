@@ -21,8 +21,8 @@ struct BankPoint {
   std::vector<Effect> effects;
 };
 
-/// Sobol' points over the ranges; those of a group do not depend on the other groups nor on how many are asked for, so that a bank grows
-/// without losing a run. One-sided shares lie in 0.1 … 1.
+/// Sobol' points over the ranges; what is simulated of a group does not depend on the other groups, on how many are asked for, nor on the
+/// camera's nuisances, so that a bank grows without losing a run. One-sided shares lie in 0.1 … 1.
 std::vector<BankPoint> plan_group(const Question& question, int candidate, int count);
 /// All groups in full.
 std::vector<BankPoint> plan_bank(const Question& question);
@@ -33,14 +33,16 @@ campaign::Simulation simulation_of(const Question& question, const BankPoint& po
 campaign::Simulation simulation_at(const Question& question, const VectorXd& theta, const std::vector<Effect>& effects,
                                    std::size_t condition, int replicate, const std::string& label);
 
-/// What runs and what looks; tests put their own in place. `observe` is called from several threads at once.
+/// What runs and what looks; tests put their own in place. `observe` is called from several threads at once. `camera`: Question::camera.
 struct Workshop {
   std::function<std::vector<campaign::Outcome>(std::span<const campaign::Simulation>)> run;
-  std::function<calibrate::Observation(std::size_t condition, const campaign::Outcome&)> observe;
+  std::function<calibrate::Observation(std::size_t condition, const campaign::Outcome&, const std::string& camera)> observe;
   std::vector<calibrate::Observation> recorded;  ///< of every condition
   std::function<void(const std::string&)> say;
   /// Results of other analyzers, of the recording where `run` is empty; not set: nothing is looked at again.
-  std::function<studies::ResultSet(std::size_t condition, const std::filesystem::path& run, const std::string& analyzers)> results = {};
+  std::function<studies::ResultSet(std::size_t condition, const std::filesystem::path& run, const std::string& analyzers,
+                                   const std::string& camera)>
+      results = {};
 };
 
 /// The points with what was seen of them in some conditions.

@@ -20,6 +20,7 @@ struct Coordinate {
   double prior_mean = 0;     ///< of a nuisance
   double prior_sigma = 0;    ///< 0: flat over the range
   bool logarithmic = false;  ///< the surrogate is quadratic in its logarithm
+  bool additive = false;     ///< the surrogate has no products of it with others
   bool nuisance() const { return prior_sigma > 0; }
   double coded(double natural) const;  ///< low → −1, high → 1
   double natural(double coded) const;

@@ -43,8 +43,8 @@ std::string study_text(const Told& t, const fs::path& folder) {
                    fmt::join(p.tied, ", "));
   if (!t.question.nuisances.empty()) out += "\nnuisances:\n";
   for (const Nuisance& n : t.question.nuisances)
-    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], mean: {:.6g}, sigma: {:.6g}}}\n", n.path, n.name,
-                   n.low, n.high, n.mean, n.sigma);
+    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], mean: {:.6g}, sigma: {:.6g}{}}}\n", n.path, n.name,
+                   n.low, n.high, n.mean, n.sigma, n.camera_set.empty() ? "" : fmt::format(", set: {{{}}}", fmt::join(n.camera_set, ", ")));
   return out + choices_text(t.question);
 }
 

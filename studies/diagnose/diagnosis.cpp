@@ -95,12 +95,14 @@ Diagnosis diagnose(const Question& question, const Workshop& workshop, const Nam
 
 Workshop workshop_of(calibrate::Session& session, std::function<void(const std::string&)> say) {
   const calibrate::Machinery& m = session.evaluator().machinery();
-  const auto again = [&session](std::size_t condition, const std::filesystem::path& run, const std::string& analyzers) {
-    return session.observer().results(condition, run, analyzers);
+  const auto look = [&session](std::size_t condition, const campaign::Outcome& outcome, const std::string& camera) {
+    return session.observer().simulated(condition, outcome.folder, outcome.key, camera);
   };
+  const auto again = [&session](std::size_t condition, const std::filesystem::path& run, const std::string& analyzers,
+                                const std::string& camera) { return session.observer().results(condition, run, analyzers, camera); };
   std::vector<calibrate::Observation> recorded;
   for (std::size_t c = 0; c < session.evaluator().study().conditions.size(); ++c) recorded.push_back(session.observer().recorded(c));
-  return {m.run, m.observe, std::move(recorded), std::move(say), again};
+  return {m.run, look, std::move(recorded), std::move(say), again};
 }
 
 }  // namespace millscope::diagnose

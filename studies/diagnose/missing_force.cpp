@@ -87,10 +87,11 @@ std::vector<MissingForce> missing_force(const HeldOutRequest& r) {
     std::vector<campaign::Simulation> simulations;
     for (int replicate = 1; replicate <= kSeeds; ++replicate)
       simulations.push_back(simulation_at(r.question, theta, {}, condition, replicate, "retuned to all observables"));
-    const Side recorded{r.workshop.results(condition, {}, kAnalyzers)};
+    const Side recorded{r.workshop.results(condition, {}, kAnalyzers, {})};
     std::vector<Side> simulated;
     for (const campaign::Outcome& outcome : r.workshop.run(simulations)) {
-      if (outcome.state == campaign::State::done) simulated.push_back({r.workshop.results(condition, outcome.folder, kAnalyzers)});
+      if (outcome.state == campaign::State::done)
+        simulated.push_back({r.workshop.results(condition, outcome.folder, kAnalyzers, r.question.camera(theta))});
     }
     if (!simulated.empty())
       out.push_back({condition, recorded.set.meta.context.omega, cells_of(recorded, simulated), by_speed(recorded, simulated)});

@@ -4,10 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
+#include <map>
 
 #include "kernel/config/units.hpp"
 #include "kernel/config/writer.hpp"
+#include "studies/camera/camera.hpp"
 
 namespace millscope::diagnose {
 namespace {
@@ -33,9 +37,15 @@ void collect_nuisances(const Node& node, std::size_t prefix, std::vector<Nuisanc
     for (const std::string& key : node.keys()) collect_nuisances(node.at(key), prefix, out);
     return;
   }
-  node.expect({"range", "sigma", "mean", "name"});
   Nuisance n;
   n.path = node.path().substr(prefix);
+  if (n.of_camera())
+    node.expect({"range", "sigma", "mean", "name", "set"});
+  else
+    node.expect({"range", "sigma", "mean", "name"});
+  if (const auto set = node.find("set")) {
+    for (const std::string& key : set->keys()) n.camera_set.push_back(fmt::format("{}: {}", key, set->at(key).text()));
+  }
   n.where = node.where();
   std::tie(n.low, n.high) = range(node.at("range"));
   n.mean = node.has("mean") ? number(node.at("mean")) : 0.5 * (n.low + n.high);
@@ -119,12 +129,46 @@ void check_parameters(const Question& q, const host::Registry& registry) {
   }
 }
 
+/// Words of camera.PLUGIN.PARAMETER.
+std::array<std::string, 2> camera_words(const std::string& path) {
+  const std::size_t first = path.find('.'), second = path.find('.', first + 1);
+  if (second == std::string::npos || path.find('.', second + 1) != std::string::npos) return {};
+  return {path.substr(first + 1, second - first - 1), path.substr(second + 1)};
+}
+
+/// A camera file of these nuisances at their values.
+std::string camera_text(const std::vector<std::pair<const Nuisance*, double>>& of) {
+  std::map<std::string, std::string> links;
+  for (const auto& [n, value] : of) {
+    const auto [plugin, parameter] = camera_words(n->path);
+    std::string& link = links[plugin];
+    fmt::format_to(std::back_inserter(link), ", {}: {:.4g}", parameter, value);
+    for (const std::string& besides : n->camera_set) link += ", " + besides;
+  }
+  std::string text = "schema_version: 1\nobservations:\n";
+  for (const auto& [plugin, values] : links) fmt::format_to(std::back_inserter(text), "  {0}: {{kind: {0}{1}}}\n", plugin, values);
+  return text;
+}
+
+/// Both ends of the range must give a camera.
+void check_camera(const Nuisance& n, const host::Registry& registry) {
+  if (camera_words(n.path)[1].empty())
+    throw config::UserError(n.where,
+                            fmt::format("nuisance '{}' is no camera.PLUGIN.PARAMETER; write e.g. camera.frame_error.offset_x", n.path));
+  try {
+    for (const double end : {n.low, n.high}) studies::parse_camera(camera_text({{&n, end}}), "its camera", registry);
+  } catch (const config::UserError& e) {
+    throw config::UserError(n.where, fmt::format("nuisance '{}': {}", n.name, e.what()));
+  }
+}
+
 void check_nuisance(const Question& q, const Nuisance& n, const host::Registry& registry) {
   for (const calibrate::Parameter& p : q.study.parameters) {
     if (p.path == n.path || p.name == n.name)
       throw config::UserError(n.where,
                               fmt::format("nuisance '{}' is a parameter, too; keep one of them, or give it another 'name'", n.name));
   }
+  if (n.of_camera()) return check_camera(n, registry);
   try {
     const std::string low = resolved(q.study, {fmt::format("{}={:.17g}", n.path, n.low)}, registry);
     if (low != resolved(q.study, {fmt::format("{}={:.17g}", n.path, n.high)}, registry)) return;
@@ -170,9 +214,22 @@ void take_all(const Library& library, const host::Registry& registry, Question& 
 
 std::vector<Coordinate> Question::coordinates() const {
   std::vector<Coordinate> out;
-  for (const calibrate::Parameter& p : study.parameters) out.push_back({p.name, p.low, p.high, 0, 0, false});
-  for (const Nuisance& n : nuisances) out.push_back({n.name, n.low, n.high, n.mean, n.sigma, false});
+  for (const calibrate::Parameter& p : study.parameters) out.push_back({p.name, p.low, p.high, 0, 0, false, false});
+  for (const Nuisance& n : nuisances) out.push_back({n.name, n.low, n.high, n.mean, n.sigma, false, n.of_camera()});
   return out;
+}
+
+std::size_t Question::case_dimensions() const {
+  const auto of_case = std::count_if(nuisances.begin(), nuisances.end(), [](const Nuisance& n) { return !n.of_camera(); });
+  return study.parameters.size() + static_cast<std::size_t>(of_case);
+}
+
+std::string Question::camera(const VectorXd& theta) const {
+  std::vector<std::pair<const Nuisance*, double>> of;
+  for (std::size_t i = 0; i < nuisances.size(); ++i) {
+    if (nuisances[i].of_camera()) of.emplace_back(&nuisances[i], theta[static_cast<Index>(study.parameters.size() + i)]);
+  }
+  return of.empty() ? "" : camera_text(of);
 }
 
 std::vector<std::string> Question::settings(const VectorXd& theta, const std::vector<Effect>& effects) const {
@@ -183,6 +240,7 @@ std::vector<std::string> Question::settings(const VectorXd& theta, const std::ve
     for (const std::string& path : study.parameters[i].tied) out.push_back(path + "=" + value);
   }
   for (std::size_t i = 0; i < nuisances.size(); ++i) {
+    if (nuisances[i].of_camera()) continue;
     out.push_back(fmt::format("{}={:.4g}", nuisances[i].path, theta[static_cast<Index>(study.parameters.size() + i)]));
   }
   for (const Effect& e : effects) {
@@ -196,6 +254,7 @@ Question read_question(const std::filesystem::path& file, const std::vector<std:
   q.study = calibrate::read_study(file, overrides, calibrate::kDiagnoseSections);
   const Node& root = q.study.root;
   if (const auto node = root.find("nuisances")) collect_nuisances(*node, node->path().size() + 1, q.nuisances);
+  std::stable_partition(q.nuisances.begin(), q.nuisances.end(), [](const Nuisance& n) { return !n.of_camera(); });
   const config::Case base = config::read_case(q.study.base.string(), q.study.conditions.front().settings);
   for (const calibrate::Condition& c : q.study.conditions) {
     const config::Case at = config::read_case(q.study.base.string(), c.settings);

@@ -2,6 +2,7 @@
 //
 //   nuisances:                                   # beside the parameters; with a prior
 //     fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %, name: filling}
+//     camera.frame_error.offset_x: {range: [-5 mm, 5 mm], sigma: 1 mm, name: axis_x}   # of an observation plugin: no simulation more
 //   hypotheses:                                  # without this map: all that are loaded and apply
 //     rolling_resistance: {}
 //     speed_dependent_restitution: {set: {pairs.glass~glass.reference_restitution: 0.8}}
@@ -19,12 +20,15 @@
 
 namespace millscope::diagnose {
 
-/// A value of the case that is known with an error only.
+/// A value of the case, or of the recording's camera, that is known with an error only.
 struct Nuisance {
-  std::string path, name;
-  double low = 0, high = 0;  ///< what the bank covers
+  std::string path, name;               ///< of the camera: camera.PLUGIN.PARAMETER
+  std::vector<std::string> camera_set;  ///< "parameter: value" that the plugin needs besides
+  double low = 0, high = 0;             ///< what the bank covers
   double mean = 0, sigma = 0;
   config::Location where;
+
+  bool of_camera() const { return path.starts_with("camera."); }
 };
 
 /// How many simulations of each kind the bank has in every condition.
@@ -36,16 +40,20 @@ struct BankSize {
 
 struct Question {
   calibrate::Study study;
-  std::vector<Nuisance> nuisances;
+  std::vector<Nuisance> nuisances;  ///< those of the case first, those of the camera after them
   std::vector<Candidate> candidates;
   std::vector<std::string> left_out;  ///< hypotheses that do not apply, and why
   BankSize bank;
   std::vector<double> speed;  ///< |Ω| of every condition, rad/s
 
   std::size_t dimensions() const { return study.parameters.size() + nuisances.size(); }
+  /// Of θ, that a simulation depends on.
+  std::size_t case_dimensions() const;
   std::vector<Coordinate> coordinates() const;
   /// "path=value" of a parameter set, rounded as the bank rounds.
   std::vector<std::string> settings(const VectorXd& theta, const std::vector<Effect>& effects) const;
+  /// A camera file with what the recording's camera does besides at θ, before all else; "" where the study has no such nuisance.
+  std::string camera(const VectorXd& theta) const;
 };
 
 /// Throws config::UserError with file:line: unknown keys, hypotheses that no loaded plugin has, a prior outside the range.

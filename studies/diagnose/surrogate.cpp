@@ -45,11 +45,15 @@ VectorXd BankData::natural(const VectorXd& values) const {
 
 Features::Features(const BankData& data) {
   const auto d = static_cast<Index>(data.theta.size());
-  base_size_ = 1 + d + d * (d + 1) / 2;
-  size_ = base_size_;
+  const auto additive = [&](Index i) { return data.theta[static_cast<std::size_t>(i)].additive; };
   for (Index i = 0; i < d; ++i) {
     if (!data.theta[static_cast<std::size_t>(i)].nuisance()) interacting_.push_back(i);
+    for (Index j = i; j < d; ++j) {
+      if (i == j || !(additive(i) || additive(j))) products_.emplace_back(i, j);
+    }
   }
+  base_size_ = 1 + d + static_cast<Index>(products_.size());
+  size_ = base_size_;
   for (int j = 0; j < data.candidates; ++j) {
     std::set<double> shares;
     std::size_t runs = 0;
@@ -73,9 +77,7 @@ VectorXd Features::base(const VectorXd& u) const {
   Index k = 0;
   x[k++] = 1;
   for (Index i = 0; i < u.size(); ++i) x[k++] = u[i];
-  for (Index i = 0; i < u.size(); ++i) {
-    for (Index j = i; j < u.size(); ++j) x[k++] = u[i] * u[j];
-  }
+  for (const auto& [i, j] : products_) x[k++] = u[i] * u[j];
   return x;
 }
 

@@ -4,6 +4,8 @@
 //   m(u, s) = b₀ + Σ b_i u_i + Σ b_ij u_i u_j + Σ_j (c_j s_j + d_j s_j² + Σ_i e_ji s_j u_i),  u: coded θ, s: shares
 #pragma once
 
+#include <utility>
+
 #include "studies/diagnose/bank_data.hpp"
 
 namespace millscope::diagnose {
@@ -24,7 +26,8 @@ class Features {
 
  private:
   Index size_ = 0, base_size_ = 0;
-  std::vector<Index> interacting_;  ///< coordinates that multiply shares: those without a prior
+  std::vector<std::pair<Index, Index>> products_;  ///< of coordinates, squares among them
+  std::vector<Index> interacting_;                 ///< coordinates that multiply shares: those without a prior
   std::vector<Index> first_, count_;
   std::vector<bool> square_, product_;  ///< enough different shares, enough runs
 };

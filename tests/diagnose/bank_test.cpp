@@ -148,3 +148,36 @@ TEST_CASE("numbers stand under their condition when the first parameter set has 
   CHECK(data.condition[15] == 0);
   CHECK(data.condition[16] == 1);
 }
+
+TEST_CASE("what the camera is doubted of costs no simulation") {
+  const Scratch folder;
+  const std::string camera =
+      "camera.frame_error.offset_x: {range: [-5 mm, 5 mm], sigma: 1 mm, name: axis_x}, "
+      "camera.frame_error.scale: {range: [-2 %, 2 %], sigma: 0.5 %}";
+  const std::string hypotheses = "hypotheses: {lifter_face_angle: {}, rolling_resistance: {}, end_faces_at_rest: {}}\n";
+  const Question plain = question_of(folder, kSections);
+  // Named before the filling: those of the camera come last all the same.
+  const Question doubted =
+      question_of(folder, "nuisances: {" + camera + ", fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %}}\n" + hypotheses);
+  REQUIRE(doubted.dimensions() == 5);
+  CHECK(doubted.case_dimensions() == 3);
+  CHECK(plain.camera(plan_group(plain, -1, 1)[0].theta).empty());
+  std::set<std::string> cameras;
+  for (const int group : {-1, 0, 1, 2}) {
+    const auto with = plan_group(doubted, group, 20), without = plan_group(plain, group, 20);
+    for (std::size_t i = 0; i < with.size(); ++i) {
+      CHECK(settings(doubted, with[i]) == settings(plain, without[i]));
+      CHECK(with[i].theta[3] >= -0.005);
+      CHECK(with[i].theta[3] <= 0.005);
+      cameras.insert(doubted.camera(with[i].theta));
+    }
+  }
+  CHECK(cameras.size() > 70);
+  VectorXd theta(5);
+  theta << 0.3, 0.4, 0.313, 0.004, -0.01;
+  CHECK(doubted.camera(theta) == "schema_version: 1\nobservations:\n  frame_error: {kind: frame_error, offset_x: 0.004, scale: -0.01}\n");
+  MadeUpMill mill(doubted, {}, {});
+  const BankData data = data_of(doubted, fill_bank(doubted, mill.workshop(), plan_group(doubted, -1, 8), {0}), {0});
+  CHECK(data.theta[3].additive);
+  CHECK_FALSE(data.theta[2].additive);
+}

@@ -27,6 +27,22 @@ std::map<std::string, std::string> map_of(const std::string& key) {
   return settings;
 }
 
+/// "\ncamera.frame_error.offset_x=0.001" and so on, of a camera file's text.
+std::string camera_settings(const std::string& camera) {
+  std::string settings;
+  const std::string kind = "kind: ";
+  for (std::size_t at = camera.find(kind); at != std::string::npos; at = camera.find(kind, at + 1)) {
+    const std::string link = camera.substr(at + kind.size(), camera.find('}', at) - at - kind.size());
+    const std::string plugin = link.substr(0, link.find(','));
+    for (std::size_t comma = link.find(", "); comma != std::string::npos; comma = link.find(", ", comma + 1)) {
+      const std::size_t colon = link.find(": ", comma), end = link.find(',', colon);
+      settings +=
+          fmt::format("\ncamera.{}.{}={}", plugin, link.substr(comma + 2, colon - comma - 2), link.substr(colon + 2, end - colon - 2));
+    }
+  }
+  return settings;
+}
+
 }  // namespace
 
 const host::Registry& registry() {
@@ -104,7 +120,9 @@ Workshop MadeUpMill::workshop() {
     }
     return outcomes;
   };
-  w.observe = [this](std::size_t condition, const campaign::Outcome& o) { return observation(condition, o.key, run_noise); };
+  w.observe = [this](std::size_t condition, const campaign::Outcome& o, const std::string& camera) {
+    return observation(condition, o.key + camera_settings(camera), run_noise);
+  };
   for (std::size_t c = 0; c < conditions_; ++c)
     w.recorded.push_back(observation(c, fmt::format("{}", fmt::join(truth_, "\n")), recording_noise_));
   return w;

@@ -194,3 +194,27 @@ TEST_CASE("candidates that cannot matter get their first simulations alone") {
     return s.rfind("lifter_wear: at its strongest", 0) == 0 && s.find("cannot matter here") != std::string::npos;
   }));
 }
+
+TEST_CASE("a camera that stands aside is named, and no physics") {
+  const Scratch folder;
+  const Question q = question_of(folder,
+                                 "nuisances: {camera.frame_error.offset_x: {range: [-5 mm, 5 mm], sigma: 1 mm, name: axis_x}}\n"
+                                 "hypotheses: {rolling_resistance: {}, capillary_bridge: {}, lifter_wear: {}}\n");
+  const std::vector<std::string> friction{kTheta[0], kTheta[1]};
+  const auto diagnosed_at = [&](const std::string& offset) {
+    std::vector<std::string> truth = friction;
+    truth.push_back("camera.frame_error.offset_x=" + offset);
+    MadeUpMill mill(q, usual(), truth, 0.4);
+    return diagnose::diagnose(q, mill.workshop(), quick());
+  };
+  const Diagnosis within = diagnosed_at("0.0008");
+  INFO(within.sentence);
+  CHECK(within.verdict == Verdict::no_mismatch);
+  const Diagnosis aside = diagnosed_at("0.0045");
+  INFO(aside.sentence);
+  REQUIRE(aside.named == std::vector<std::string>{"axis_x"});
+  CHECK(aside.verdict == Verdict::named);
+  const Interval& found = judged(aside, "axis_x").theta.at(2);
+  CHECK(found.low90 < 0.0045);
+  CHECK(found.high90 > 0.0045);
+}
