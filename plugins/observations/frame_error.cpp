@@ -1,11 +1,12 @@
-// The camera's frame is not the mill's: shifted, turned, stretched.
+// The camera's frame is not the mill's: shifted, turned, stretched, and its clock goes wrong.
 //
 // symbol    here      meaning
 // o         offset_   where the mill's origin appears, m
 // R         turn_     rotation about x, then y, then z, by the angles α, β, γ (rad), right-handed
 // ε         scale_    relative error of lengths: 0 for none
+// κ         clock_    relative error of times: above 0 the recording lasts longer than it did
 //
-//   x' = (1 + ε) R x + o
+//   x' = (1 + ε) R x + o,   t' = (1 + κ) t
 //
 // All zero leaves the track as it is. Gravity in the camera's frame is turned by R, too: its angle from −y shows the tilt.
 #include <array>
@@ -25,6 +26,7 @@ constexpr Parameter kParameters[] = {
     number_parameter("tilt_y", "rad", 0.0, -kHalfTurn, kHalfTurn, "Rotation about y."),
     number_parameter("tilt_z", "rad", 0.0, -kHalfTurn, kHalfTurn, "Rotation about z: the camera is not level."),
     number_parameter("scale", "1", 0.0, -0.99, 100.0, "Relative error of all lengths; 0: none."),
+    number_parameter("clock", "1", 0.0, -0.99, 100.0, "Relative error of all times; above 0 everything seems slower. 0: none."),
 };
 
 constexpr Hypothesis kHypotheses[] = {
@@ -34,6 +36,7 @@ constexpr Hypothesis kHypotheses[] = {
      "", ""},
     {"tilt", "The camera is not level.", "x' = R(gamma) x", "", "tilt_z", 0.0, -0.1, 0.1, 1, 1, "", ""},
     {"scale", "The camera's scale is wrong.", "x' = (1 + e) x", "", "scale", 0.0, -0.02, 0.02, 1, 1, "", ""},
+    {"clock", "The recording's clock is wrong.", "t' = (1 + k) t", "", "clock", 0.0, -0.02, 0.02, 1, 1, "", ""},
 };
 
 using Matrix = std::array<std::array<double, 3>, 3>;
@@ -52,11 +55,13 @@ class FrameError {
   explicit FrameError(const Parameters& values)
       : offset_{values.number("offset_x"), values.number("offset_y"), values.number("offset_z")},
         turn_(rotation(values.number("tilt_x"), values.number("tilt_y"), values.number("tilt_z"))),
-        scale_(1.0 + values.number("scale")) {}
+        scale_(1.0 + values.number("scale")),
+        clock_(1.0 + values.number("clock")) {}
 
   Track observe(const TrackView& view, const TrackContext&) const {
     Track track = copy_of(view);
     for (TrackSample& s : track) {
+      s.time *= clock_;
       const double x[3] = {s.position[0], s.position[1], s.position[2]};
       for (std::size_t i = 0; i < 3; ++i) {
         s.position[i] = scale_ * (turn_[i][0] * x[0] + turn_[i][1] * x[1] + turn_[i][2] * x[2]) + offset_[i];
@@ -68,7 +73,7 @@ class FrameError {
  private:
   std::array<double, 3> offset_;
   Matrix turn_;
-  double scale_;
+  double scale_, clock_;
 };
 
 constexpr ObservationTable kTable = make_observation_table<FrameError>();
@@ -77,8 +82,8 @@ constexpr Descriptor kDescriptor = [] {
   Descriptor d = make_descriptor(Kind::observation, kObservationLayout, &kTable, sizeof kTable);
   d.name = "frame_error";
   d.version = "1.0";
-  d.doc = "The camera's frame against the mill's: offset of the axis, tilt, scale.";
-  d.equation = "x' = (1 + scale) R(tilt) x + offset";
+  d.doc = "The camera's frame against the mill's: offset of the axis, tilt, scale, clock.";
+  d.equation = "x' = (1 + scale) R(tilt) x + offset, t' = (1 + clock) t";
   d.parameters = kParameters;
   d.parameter_count = sizeof kParameters / sizeof kParameters[0];
   d.hypotheses = kHypotheses;

@@ -72,7 +72,8 @@ void add_plugin(const config::Case& base, const Descriptor& d, Library& library)
     const Hypothesis& of = d.hypotheses[h];
     const Parameter* parameter = find(d, of.parameter);
     if (!place) {
-      library.left_out.push_back(fmt::format("{}: an effect of the camera; such are not tested yet", of.name));
+      library.left_out.push_back(
+          fmt::format("{}: an effect of the camera; the study asks for it with the nuisance camera.{}.{}", of.name, d.name, of.parameter));
     } else if (uses(base, d)) {
       library.left_out.push_back(fmt::format("{}: {} is in the base case already", of.name, d.name));
     } else if (parameter == nullptr) {

@@ -165,7 +165,7 @@ TEST_CASE("outliers have their share and their distance") {
   CHECK_THAT(mean(far), WithinRel(2.0, 4 / std::sqrt(0.01 * n)));
 }
 
-TEST_CASE("frame_error shifts, turns and stretches") {
+TEST_CASE("frame_error shifts, turns and stretches, and its clock goes wrong") {
   const output::TrackSamples track = resting(0.1, 100, {0.1, 0.02, 0.03});
   const auto at = [&](const std::string& values) {
     const Run run = observe(track, chain_of("{kind: frame_error, " + values + "}"), context_of(1));
@@ -182,4 +182,6 @@ TEST_CASE("frame_error shifts, turns and stretches") {
   CHECK_THAT(about_y[2], WithinAbs(-0.1, 1e-15));
   CHECK_THAT(about_y[0], WithinAbs(0.03, 1e-15));
   CHECK_THAT(at("scale: 0.5 %")[0], WithinAbs(0.1005, 1e-15));
+  const Run late = observe(track, chain_of("{kind: frame_error, clock: 2 %}"), context_of(1));
+  for (std::size_t i = 0; i < late.size(); ++i) CHECK_THAT(late.time[i], WithinRel(1.02 * track.time[i], 1e-14) || WithinAbs(0, 1e-300));
 }
