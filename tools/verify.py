@@ -22,6 +22,7 @@ sys.dont_write_bytecode = True
 from verify_calibrate import calibrate
 from verify_camera import bbosa, camera, roundtrip
 from verify_compare import differences
+from verify_diagnose import doubts, ends, wet
 from verify_rows import row, show
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -271,7 +272,7 @@ def single_beads(bench, run):
     return {"single": single, "all": every, "spread": spread, "spread_error": spread / math.sqrt(2 * len(single))}
 
 
-ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate)}
+ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts)}
 QUICK = ("crosscheck", "hashes", "memory")
 
 

@@ -119,9 +119,15 @@ struct Observer::Impl {
   fs::path cache;
   int threads;
   std::vector<RecordedCondition> recorded;
-  /// kg, of the charge that the study's case has in each condition. A slice is scaled to the recorded mill by it; a run whose filling is
-  /// varied keeps what that does to the power.
-  std::vector<double> case_mass = {};
+  /// kg and m, of the charge and the mill that the study's case has in each condition. A slice is scaled to the recorded mill by them; a
+  /// run whose filling is varied keeps what that does to the power, one of another length does not.
+  std::vector<double> case_mass = {}, case_length = {};
+
+  double power_factor(std::size_t condition, const BeadPaths& paths) const {
+    const double length = paths.mill().context.mill_length;
+    const double longer = length > 0 && case_length[condition] > 0 ? length / case_length[condition] : 1;
+    return recorded[condition].mass / (case_mass[condition] * longer) * paths.power_ratio();
+  }
 
   /// A folder of its own for each look: several threads and processes may share the cache.
   fs::path new_film() const {
@@ -162,7 +168,7 @@ struct Observer::Impl {
     Observation o = summarise(results, r.summaries);
     o.bead_seconds = paths.seconds() * static_cast<double>(paths.size());
     if (r.measured_power) {
-      set_power(o, whole_charge_power(run, r.mass / case_mass[condition] * paths.power_ratio()));
+      set_power(o, whole_charge_power(run, power_factor(condition, paths)));
     } else {
       const studies::ResultArray* specific = results.find("power", "specific_power_gravity");
       o.power = {r.mass * specific->value.at(0), r.mass * specific->sem.at(0),
@@ -179,7 +185,9 @@ Observer::Observer(const Study& study, const host::Registry& registry, fs::path 
   for (std::size_t c = 0; c < study.conditions.size(); ++c) {
     if (say) say(fmt::format("looking at the recording of condition '{}'", study.conditions[c].name));
     impl_->recorded.push_back(look_at_recording(c, {study, registry, threads}, impl_->cache));
-    impl_->case_mass.push_back(studies::read_mill_of_case(study.base, registry, study.conditions[c].settings).context.charge_mass);
+    const AnalyzerContext mill = studies::read_mill_of_case(study.base, registry, study.conditions[c].settings).context;
+    impl_->case_mass.push_back(mill.charge_mass);
+    impl_->case_length.push_back(mill.mill_length);
   }
 }
 
@@ -188,7 +196,8 @@ Observer::~Observer() = default;
 const Observation& Observer::recorded(std::size_t condition) const { return impl_->recorded[condition].observation; }
 
 Observation Observer::simulated(std::size_t condition, const fs::path& run, const std::string& key, const std::string& camera) const {
-  std::vector<std::string> depends{impl_->recorded[condition].identity, fmt::format("{:.17g}", impl_->case_mass[condition])};
+  std::vector<std::string> depends{impl_->recorded[condition].identity, fmt::format("{:.17g}", impl_->case_mass[condition]),
+                                   fmt::format("{:.17g}", impl_->case_length[condition])};
   if (!camera.empty()) depends.push_back(camera);
   const std::string id = key + "-" + hash_of(depends);
   const fs::path file = impl_->cache / ("simulation-" + id + ".json");
