@@ -122,6 +122,7 @@ struct Observer::Impl {
   /// kg and m, of the charge and the mill that the study's case has in each condition. A slice is scaled to the recorded mill by them; a
   /// run whose filling is varied keeps what that does to the power, one of another length does not.
   std::vector<double> case_mass = {}, case_length = {};
+  std::vector<double> case_omega = {};  ///< rad/s
 
   double power_factor(std::size_t condition, const BeadPaths& paths) const {
     const double length = paths.mill().context.mill_length;
@@ -140,11 +141,6 @@ struct Observer::Impl {
     const RecordedCondition& r = recorded[condition];
     const std::string name = "camera of condition '" + study.conditions[condition].name + "'";
     const bool mirror = paths.mill().context.omega * r.omega < 0;
-    if (mirror && !before.empty())
-      throw UserError(
-          fmt::format("{}: turns the other way than the recording of condition '{}', so that offsets and tilts of the camera would "
-                      "change their sign; give mill.direction in the base case as in the recording",
-                      study.base.string(), study.conditions[condition].name));
     const studies::Camera first = before.empty() ? studies::Camera() : studies::parse_camera(before, name, registry);
     const studies::Camera camera = first.before(without_frame(studies::parse_camera(r.camera, name, registry)));
     const Scratch folder(new_film());
@@ -188,10 +184,13 @@ Observer::Observer(const Study& study, const host::Registry& registry, fs::path 
     const AnalyzerContext mill = studies::read_mill_of_case(study.base, registry, study.conditions[c].settings).context;
     impl_->case_mass.push_back(mill.charge_mass);
     impl_->case_length.push_back(mill.mill_length);
+    impl_->case_omega.push_back(mill.omega);
   }
 }
 
 Observer::~Observer() = default;
+
+bool Observer::turns_other_way(std::size_t condition) const { return impl_->case_omega[condition] * impl_->recorded[condition].omega < 0; }
 
 const Observation& Observer::recorded(std::size_t condition) const { return impl_->recorded[condition].observation; }
 

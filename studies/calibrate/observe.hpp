@@ -24,6 +24,8 @@ class Observer {
            std::function<void(const std::string&)> say);
   ~Observer();
 
+  /// Whether the study's case turns the other way than the recording, so that its results are mirrored.
+  bool turns_other_way(std::size_t condition) const;
   /// What the recording of a condition shows.
   const Observation& recorded(std::size_t condition) const;
   /// What a finished run shows, with exactly the same observables. `key`: of the run's cache entry. `camera`: a camera file's text, whose

@@ -58,8 +58,7 @@ struct Maker {
     RecordingOf what{outcome.folder, folder, "r_" + question.study.conditions[condition].name, believed(question, condition, registry),
                      camera_seed};
     what.condition.power = studies::MeasuredPower{measured, power.sem};
-    const std::string besides = question.camera(truth.theta);
-    write_recording(what, besides.empty() ? camera : studies::parse_camera(besides, "its nuisances", registry).before(camera), registry);
+    write_recording(what, camera, registry);
     return {{"power_W", power.value}, {"measured_power_W", measured}, {"camera_seed", camera_seed}, {"run", outcome.key}};
   }
 };

@@ -138,6 +138,11 @@ diagnose::Question question_of(const Challenge& challenge, const host::Registry&
   for (const std::string& name : conditions.keys())
     overrides.push_back(fmt::format("conditions.{}.recording={}", name, nlohmann::json(fs::absolute(challenge.study).string()).dump()));
   diagnose::Question question = diagnose::read_question(challenge.study, overrides, registry);
+  for (const diagnose::Nuisance& n : question.nuisances) {
+    if (n.of_camera())
+      throw config::UserError(
+          n.where, fmt::format("nuisance '{}': the recordings of a challenge state no frame that could be doubted; leave it out", n.name));
+  }
   for (const SetsOf& sets : challenge.sets) {
     for (const std::string& name : sets.hypotheses) check_hypothesis(sets, name, question);
   }

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
 #include "studies/calibrate/outputs.hpp"
@@ -27,7 +29,16 @@ std::string choices_text(const Question& q) {
   return out;
 }
 
-std::string study_text(const Told& t, const fs::path& folder) {
+bool is_named(const Told& t, const Nuisance& n) {
+  return std::find(t.diagnosis.named.begin(), t.diagnosis.named.end(), n.name) != t.diagnosis.named.end();
+}
+
+/// `theta`: as fitted. What the camera was found to do is the study's prior from here on: no case could hold it.
+std::string study_text(const Told& t, const VectorXd& theta, const fs::path& folder) {
+  const auto mean_of = [&](const Nuisance& n) {
+    const auto i = static_cast<Index>(t.question.study.parameters.size()) + (&n - t.question.nuisances.data());
+    return n.of_camera() && is_named(t, n) && theta[i] > n.low && theta[i] < n.high ? rounded(theta[i]) : n.mean;
+  };
   std::string out = fmt::format("# The study {} on the corrected case.\nschema_version: 1\nbase: case.yaml\n\nconditions:\n",
                                 t.question.study.file.filename().string());
   for (const calibrate::Condition& c : t.question.study.conditions) {
@@ -43,8 +54,8 @@ std::string study_text(const Told& t, const fs::path& folder) {
                    fmt::join(p.tied, ", "));
   if (!t.question.nuisances.empty()) out += "\nnuisances:\n";
   for (const Nuisance& n : t.question.nuisances)
-    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], mean: {:.6g}, sigma: {:.6g}{}}}\n", n.path, n.name,
-                   n.low, n.high, n.mean, n.sigma, n.camera_set.empty() ? "" : fmt::format(", set: {{{}}}", fmt::join(n.camera_set, ", ")));
+    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], mean: {:.6g}, sigma: {:.6g}}}\n", n.path, n.name,
+                   n.low, n.high, mean_of(n), n.sigma);
   return out + choices_text(t.question);
 }
 
@@ -60,13 +71,17 @@ void write_corrected(const Told& t, const fs::path& folder) {
     const int candidate = t.diagnosis.problem.rivals[static_cast<std::size_t>(r)].candidate;
     if (candidate >= 0) effects.push_back({candidate, fit.shares.at(effects.size())});
   }
-  const std::vector<std::string> settings = t.question.settings(t.diagnosis.problem.data.natural(fit.coded), effects);
+  const VectorXd theta = t.diagnosis.problem.data.natural(fit.coded);
+  const std::vector<std::string> settings = t.question.settings(theta, effects);
+  const bool of_camera = std::any_of(t.question.nuisances.begin(), t.question.nuisances.end(),
+                                     [&](const Nuisance& nuisance) { return nuisance.of_camera() && is_named(t, nuisance); });
   fs::create_directories(folder);
-  output::write_file(folder / "case.yaml",
-                     calibrate::case_with(fmt::format("With {}, as 'millscope diagnose' found it: {}.", fmt::join(t.diagnosis.named, ", "),
-                                                      name_of(t.diagnosis.verdict)),
-                                          t.question.study.base, settings, folder));
-  output::write_file(folder / "study.yaml", study_text(t, folder));
+  output::write_file(
+      folder / "case.yaml",
+      calibrate::case_with(fmt::format("{} {}, as 'millscope diagnose' found it: {}.", of_camera ? "The mill behind" : "With",
+                                       fmt::join(t.diagnosis.named, ", "), name_of(t.diagnosis.verdict)),
+                           t.question.study.base, settings, folder));
+  output::write_file(folder / "study.yaml", study_text(t, theta, folder));
 }
 
 void write_outputs(const Told& told, const fs::path& folder) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "studies/diagnose/camera_frame.hpp"
 #include "studies/diagnose/visibility.hpp"
 
 namespace millscope::diagnose {
@@ -93,7 +94,8 @@ Diagnosis diagnose(const Question& question, const Workshop& workshop, const Nam
   return d;
 }
 
-Workshop workshop_of(calibrate::Session& session, std::function<void(const std::string&)> say) {
+Workshop workshop_of(const Question& question, calibrate::Session& session, std::function<void(const std::string&)> say) {
+  check_recorded_frames(question, session.observer());
   const calibrate::Machinery& m = session.evaluator().machinery();
   const auto look = [&session](std::size_t condition, const campaign::Outcome& outcome, const std::string& camera) {
     return session.observer().simulated(condition, outcome.folder, outcome.key, camera);

@@ -4,14 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <iterator>
-#include <map>
 
 #include "kernel/config/units.hpp"
 #include "kernel/config/writer.hpp"
-#include "studies/camera/camera.hpp"
+#include "studies/diagnose/camera_frame.hpp"
 
 namespace millscope::diagnose {
 namespace {
@@ -23,33 +20,30 @@ double number(const Node& node) {
   return q.has_unit ? q.unit.to_si(q.number) : q.number;
 }
 
-std::pair<double, double> range(const Node& node) {
+template <class Read>
+std::pair<double, double> range(const Node& node, Read&& read) {
   const std::vector<Node> ends = node.items();
   if (ends.size() != 2) node.fail(fmt::format("has {} values; give the lower and the upper end, e.g. [0, 0.2]", ends.size()));
-  const double low = number(ends[0]), high = number(ends[1]);
+  const double low = read(ends[0]), high = read(ends[1]);
   if (!(low < high)) node.fail("has its lower end not below the upper one; turn them round");
   return {low, high};
 }
 
-void collect_nuisances(const Node& node, std::size_t prefix, std::vector<Nuisance>& out) {
+void collect_nuisances(const Node& node, std::size_t prefix, const host::Registry& registry, std::vector<Nuisance>& out) {
   if (!node.is_map()) node.fail("is no nuisance; write e.g. {range: [30 %, 32 %], sigma: 0.3 %}");
   if (!node.has("range")) {
-    for (const std::string& key : node.keys()) collect_nuisances(node.at(key), prefix, out);
+    for (const std::string& key : node.keys()) collect_nuisances(node.at(key), prefix, registry, out);
     return;
   }
   Nuisance n;
   n.path = node.path().substr(prefix);
-  if (n.of_camera())
-    node.expect({"range", "sigma", "mean", "name", "set"});
-  else
-    node.expect({"range", "sigma", "mean", "name"});
-  if (const auto set = node.find("set")) {
-    for (const std::string& key : set->keys()) n.camera_set.push_back(fmt::format("{}: {}", key, set->at(key).text()));
-  }
+  node.expect({"range", "sigma", "mean", "name"});
   n.where = node.where();
-  std::tie(n.low, n.high) = range(node.at("range"));
-  n.mean = node.has("mean") ? number(node.at("mean")) : 0.5 * (n.low + n.high);
-  n.sigma = number(node.at("sigma", "standard deviation of what is known of it"));
+  const std::string unit = n.of_camera() ? camera_frame_unit(node, n.path, registry) : "";
+  const auto read = [&](const Node& value) { return n.of_camera() ? config::read_number(value, unit) : number(value); };
+  std::tie(n.low, n.high) = range(node.at("range"), read);
+  n.mean = node.has("mean") ? read(node.at("mean")) : 0.5 * (n.low + n.high);
+  n.sigma = read(node.at("sigma", "standard deviation of what is known of it"));
   n.name = node.has("name") ? node.at("name").text() : n.path.substr(n.path.rfind('.') + 1);
   if (!(n.mean > n.low && n.mean < n.high))
     node.fail(fmt::format("has its mean {:.6g} outside the range {:.6g} … {:.6g}", n.mean, n.low, n.high));
@@ -96,7 +90,7 @@ Candidate read_candidate(const Node& node, const Library& library) {
   }
   if (node.has("range")) {
     if (c.on_or_off()) node.at("range").fail("has no 'path' that takes its values; give one, or leave the range out: it is on or off");
-    const auto [low, high] = range(node.at("range"));
+    const auto [low, high] = range(node.at("range"), number);
     const bool downwards = std::fabs(low - c.null_value) > std::fabs(high - c.null_value);
     c.far = downwards ? low : high;
     const double near = ((downwards ? high : low) - c.null_value) / (c.far - c.null_value);
@@ -129,46 +123,13 @@ void check_parameters(const Question& q, const host::Registry& registry) {
   }
 }
 
-/// Words of camera.PLUGIN.PARAMETER.
-std::array<std::string, 2> camera_words(const std::string& path) {
-  const std::size_t first = path.find('.'), second = path.find('.', first + 1);
-  if (second == std::string::npos || path.find('.', second + 1) != std::string::npos) return {};
-  return {path.substr(first + 1, second - first - 1), path.substr(second + 1)};
-}
-
-/// A camera file of these nuisances at their values.
-std::string camera_text(const std::vector<std::pair<const Nuisance*, double>>& of) {
-  std::map<std::string, std::string> links;
-  for (const auto& [n, value] : of) {
-    const auto [plugin, parameter] = camera_words(n->path);
-    std::string& link = links[plugin];
-    fmt::format_to(std::back_inserter(link), ", {}: {:.4g}", parameter, value);
-    for (const std::string& besides : n->camera_set) link += ", " + besides;
-  }
-  std::string text = "schema_version: 1\nobservations:\n";
-  for (const auto& [plugin, values] : links) fmt::format_to(std::back_inserter(text), "  {0}: {{kind: {0}{1}}}\n", plugin, values);
-  return text;
-}
-
-/// Both ends of the range must give a camera.
-void check_camera(const Nuisance& n, const host::Registry& registry) {
-  if (camera_words(n.path)[1].empty())
-    throw config::UserError(n.where,
-                            fmt::format("nuisance '{}' is no camera.PLUGIN.PARAMETER; write e.g. camera.frame_error.offset_x", n.path));
-  try {
-    for (const double end : {n.low, n.high}) studies::parse_camera(camera_text({{&n, end}}), "its camera", registry);
-  } catch (const config::UserError& e) {
-    throw config::UserError(n.where, fmt::format("nuisance '{}': {}", n.name, e.what()));
-  }
-}
-
 void check_nuisance(const Question& q, const Nuisance& n, const host::Registry& registry) {
   for (const calibrate::Parameter& p : q.study.parameters) {
     if (p.path == n.path || p.name == n.name)
       throw config::UserError(n.where,
                               fmt::format("nuisance '{}' is a parameter, too; keep one of them, or give it another 'name'", n.name));
   }
-  if (n.of_camera()) return check_camera(n, registry);
+  if (n.of_camera()) return check_camera_frame(n, registry);
   try {
     const std::string low = resolved(q.study, {fmt::format("{}={:.17g}", n.path, n.low)}, registry);
     if (low != resolved(q.study, {fmt::format("{}={:.17g}", n.path, n.high)}, registry)) return;
@@ -229,7 +190,7 @@ std::string Question::camera(const VectorXd& theta) const {
   for (std::size_t i = 0; i < nuisances.size(); ++i) {
     if (nuisances[i].of_camera()) of.emplace_back(&nuisances[i], theta[static_cast<Index>(study.parameters.size() + i)]);
   }
-  return of.empty() ? "" : camera_text(of);
+  return of.empty() ? "" : camera_frame_text(of);
 }
 
 std::vector<std::string> Question::settings(const VectorXd& theta, const std::vector<Effect>& effects) const {
@@ -253,7 +214,7 @@ Question read_question(const std::filesystem::path& file, const std::vector<std:
   Question q;
   q.study = calibrate::read_study(file, overrides, calibrate::kDiagnoseSections);
   const Node& root = q.study.root;
-  if (const auto node = root.find("nuisances")) collect_nuisances(*node, node->path().size() + 1, q.nuisances);
+  if (const auto node = root.find("nuisances")) collect_nuisances(*node, node->path().size() + 1, registry, q.nuisances);
   std::stable_partition(q.nuisances.begin(), q.nuisances.end(), [](const Nuisance& n) { return !n.of_camera(); });
   const config::Case base = config::read_case(q.study.base.string(), q.study.conditions.front().settings);
   for (const calibrate::Condition& c : q.study.conditions) {

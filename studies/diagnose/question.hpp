@@ -2,7 +2,7 @@
 //
 //   nuisances:                                   # beside the parameters; with a prior
 //     fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %, name: filling}
-//     camera.frame_error.offset_x: {range: [-5 mm, 5 mm], sigma: 1 mm, name: axis_x}   # of an observation plugin: no simulation more
+//     camera.frame_error.offset_x: {range: [-5 mm, 5 mm], sigma: 1 mm, name: axis_x}   # of the camera: no simulation more
 //   hypotheses:                                  # without this map: all that are loaded and apply
 //     rolling_resistance: {}
 //     speed_dependent_restitution: {set: {pairs.glass~glass.reference_restitution: 0.8}}
@@ -22,9 +22,8 @@ namespace millscope::diagnose {
 
 /// A value of the case, or of the recording's camera, that is known with an error only.
 struct Nuisance {
-  std::string path, name;               ///< of the camera: camera.PLUGIN.PARAMETER
-  std::vector<std::string> camera_set;  ///< "parameter: value" that the plugin needs besides
-  double low = 0, high = 0;             ///< what the bank covers
+  std::string path, name;    ///< of the camera: camera.frame_error.PARAMETER
+  double low = 0, high = 0;  ///< what the bank covers
   double mean = 0, sigma = 0;
   config::Location where;
 

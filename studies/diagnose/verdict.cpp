@@ -108,7 +108,11 @@ void reservations(Diagnosis& d) {
 
 void nothing_named(const std::vector<calibrate::Condition>& conditions, const Workshop& workshop, double level, double noise_units,
                    Diagnosis& d) {
-  const bool blind = std::all_of(d.naming.judged.begin(), d.naming.judged.end(), [](const Judged& j) { return j.undetectable; });
+  // A nuisance that would be seen says nothing of physics.
+  bool blind = true;
+  const bool physics = std::any_of(d.problem.rivals.begin(), d.problem.rivals.end(), [](const Rival& r) { return r.candidate >= 0; });
+  for (std::size_t j = 0; j < d.naming.judged.size(); ++j)
+    blind = blind && (d.naming.judged[j].undetectable || (physics && d.problem.rivals[j].candidate < 0));
   if (d.naming.base_p <= level) {
     d.verdict = Verdict::outside_library;
     d.sentence = fmt::format(

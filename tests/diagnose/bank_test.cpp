@@ -175,7 +175,7 @@ TEST_CASE("what the camera is doubted of costs no simulation") {
   CHECK(cameras.size() > 70);
   VectorXd theta(5);
   theta << 0.3, 0.4, 0.313, 0.004, -0.01;
-  CHECK(doubted.camera(theta) == "schema_version: 1\nobservations:\n  frame_error: {kind: frame_error, offset_x: 0.004, scale: -0.01}\n");
+  CHECK(doubted.camera(theta) == "schema_version: 1\nobservations:\n  doubted_frame: {kind: frame_error, offset_x: 0.004, scale: -0.01}\n");
   MadeUpMill mill(doubted, {}, {});
   const BankData data = data_of(doubted, fill_bank(doubted, mill.workshop(), plan_group(doubted, -1, 8), {0}), {0});
   CHECK(data.theta[3].additive);

@@ -133,26 +133,24 @@ TEST_CASE("nuisances that cannot be are refused at their line") {
              StartsWith("study.yaml:10: ") && Contains("is a parameter, too"));
 }
 
-TEST_CASE("nuisances of the camera name a number of an observation plugin, or are refused at their line") {
+TEST_CASE("of the camera its frame alone may be doubted, in units that fit, or it is refused at its line") {
   const Scratch folder;
-  const Question q = question_of(
-      folder,
-      "nuisances:\n"
-      "  camera.error_cut.per_speed: {range: [0, 5 ms], mean: 0.5 ms, sigma: 0.5 ms, name: lost, set: {cut: 3 mm, spread: 1 mm}}\n");
+  const Question q =
+      question_of(folder, "nuisances:\n  camera: {frame_error: {tilt_z: {range: [-3 deg, 3 deg], sigma: 10 mrad, name: level}}}\n");
   REQUIRE(q.nuisances.size() == 1);
   CHECK(q.nuisances[0].of_camera());
+  CHECK_THAT(q.nuisances[0].sigma, WithinRel(0.01, 1e-12));
   VectorXd theta(3);
-  theta << 0.3, 0.4, 0.001;
-  CHECK_THAT(q.camera(theta), Contains("error_cut: {kind: error_cut, per_speed: 0.001, cut: 3 mm, spread: 1 mm}"));
+  theta << 0.3, 0.4, 0.02;
+  CHECK_THAT(q.camera(theta), Contains("{kind: frame_error, tilt_z: 0.02}"));
   for (const std::string& setting : q.settings(theta, {})) CHECK_THAT(setting, !StartsWith("camera"));
   const auto camera = [](const std::string& path, const std::string& range) {
     return refused("nuisances: {" + path + ": {range: " + range + ", sigma: 1e-3, name: off}}\n");
   };
-  CHECK_THAT(camera("camera.frame_error", "[-1, 1]"), Contains("is no camera.PLUGIN.PARAMETER; write e.g. camera.frame_error.offset_x"));
-  CHECK_THAT(camera("camera.frame_eror.offset_x", "[-1, 1]"), StartsWith("study.yaml:9: nuisance 'off': ") && Contains("frame_eror"));
-  CHECK_THAT(camera("camera.frame_error.offset", "[-1, 1]"), StartsWith("study.yaml:9: nuisance 'off': ") && Contains("offset"));
+  for (const char* path : {"camera.frame_error", "camera.error_cut.per_speed", "camera.frame_error.offset", "camera.frame_error.tilt_z.x"})
+    CHECK_THAT(camera(path, "[-1, 1]"), StartsWith("study.yaml:9: ") && Contains("write camera.frame_error.NAME with one of offset_x, "));
   CHECK_THAT(camera("camera.frame_error.offset_x", "[-1, 50]"), StartsWith("study.yaml:9: nuisance 'off': ") && Contains("50"));
-  CHECK_THAT(refused("nuisances: {fill.filling: {range: [30 %, 32 %], sigma: 0.3 %, set: {a: 1}}}\n"), Contains("set"));
+  CHECK_THAT(camera("camera.frame_error.tilt_z", "[-10 mm, 10 mm]"), StartsWith("study.yaml:9: ") && Contains("mm"));
 }
 
 TEST_CASE("hypotheses that cannot be are refused at their line") {

@@ -1,5 +1,5 @@
-// Every chart and 3-D view of a page as a small picture, so small that another machine's fonts make next to no difference to it and a
-// missing line, another colour map or an empty axis does. The small pictures of a page lie side by side in one PNG that is kept with
+// Every chart and 3-D view of a page as a small picture, so small that a browser's next version makes next to no difference to it and an
+// empty chart, another colour or many marks that are missing do; a single one of twenty may not. The small pictures of a page lie side by side in one PNG that is kept with
 // the tests.
 import { existsSync, mkdirSync, readFileSync, renameSync, writeFileSync } from "node:fs";
 import { dirname } from "node:path";
@@ -90,6 +90,8 @@ export async function hold(page, file, complain) {
   const [pictures, sheet] = [await gather(page), decode(readFileSync(file))];
   if (sheet.width !== ACROSS * WIDE || sheet.height !== Math.ceil(pictures.length / ACROSS) * HIGH)
     return complain(`it has ${pictures.length} charts, which ${file} has not: look at the page, then keep it with --keep`);
+  for (let index = pictures.length; index < ACROSS * (sheet.height / HIGH); index++)
+    if (cellsOf(sheet, index).some((value) => value !== 255)) return complain(`${file} has more charts than the page's ${pictures.length}`);
   pictures.forEach(({ name, cells }, index) => {
     const found = change(cells, cellsOf(sheet, index));
     if (found > TOLERANCE) complain(`"${name.slice(0, 60)}" differs from its picture in ${file} by ${Math.round(100 * found)} % of what is drawn, more than ${100 * TOLERANCE} %`);
