@@ -16,6 +16,7 @@ using testing::Scratch;
 
 namespace {
 
+const std::string kFilling = "nuisances: {fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %, name: filling}}\n";
 const std::string kRolling = "pairs.glass~glass.rolling_friction";
 
 std::string text_of(const std::filesystem::path& file) {
@@ -24,12 +25,13 @@ std::string text_of(const std::filesystem::path& file) {
 }
 
 /// A diagnosis of recordings made with `truth`, written to folder/out.
-nlohmann::json written(const Scratch& folder, const std::vector<std::string>& truth) {
-  const Question q = question_of(folder,
-                                 "nuisances: {fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %, name: filling}}\n"
-                                 "hypotheses: {rolling_resistance: {}, lifter_wear: {}}\n"
-                                 "observe: {beads: 300}\n");
-  MadeUpMill mill(q, {{kRolling, 0, 0.2, 3, {21, 22, 23}}, {"geometry.liner.lifter_height", 0.005, 0.003, 3, {41, 42, 43}}}, truth);
+nlohmann::json written(const Scratch& folder, const std::vector<std::string>& truth, const std::string& nuisances = kFilling,
+                       double recording_noise = 1) {
+  const Question q = question_of(folder, nuisances +
+                                             "hypotheses: {rolling_resistance: {}, lifter_wear: {}}\n"
+                                             "observe: {beads: 300}\n");
+  MadeUpMill mill(q, {{kRolling, 0, 0.2, 3, {21, 22, 23}}, {"geometry.liner.lifter_height", 0.005, 0.003, 3, {41, 42, 43}}}, truth,
+                  recording_noise);
   NamingOptions options;
   options.draws = 240, options.rival_draws = 160;
   const Workshop workshop = mill.workshop();
@@ -134,6 +136,18 @@ TEST_CASE("corrected/ is a case with the physics on, and a study that can be dia
   REQUIRE(again.nuisances.size() == 1);
   CHECK_THAT(again.nuisances[0].sigma, WithinRel(0.00313, 1e-6));
   CHECK(std::none_of(again.candidates.begin(), again.candidates.end(), [](const Candidate& k) { return k.name == "rolling_resistance"; }));
+}
+
+TEST_CASE("a camera that was found to stand aside is where corrected/ goes on from") {
+  const Scratch folder;
+  const nlohmann::json j = written(folder, {kBase[0], kBase[1], "camera.frame_error.offset_x=0.0042"},
+                                   "nuisances: {camera.frame_error.offset_x: {range: [-5 mm, 5 mm], sigma: 1 mm, name: axis_x}}\n", 0.4);
+  REQUIRE(j["named"] == nlohmann::json({"axis_x"}));
+  CHECK_THAT(text_of(folder / "out/corrected/case.yaml"), Contains("The mill behind axis_x"));
+  const Question again = read_question(folder / "out/corrected/study.yaml", {}, registry());
+  REQUIRE(again.nuisances.size() == 1);
+  CHECK_THAT(again.nuisances[0].mean, WithinAbs(0.0042, 0.001));
+  CHECK_THAT(again.nuisances[0].sigma, WithinRel(0.001, 1e-6));
 }
 
 TEST_CASE("where nothing was found there is no corrected case, an older one goes") {
