@@ -17,7 +17,7 @@ POOL = "body_forces.fluid_pool={kind: fluid_pool, fluid_density: 1000}"  # water
 CLOSED = ("fill.vessel.length=120 mm", "geometry.liner.length=120 mm", "geometry.liner.end_faces=true", "domain=~")
 
 
-def recording(bench, folder, name, speed, *hidden, camera=(), frame=None, length=None):
+def recording(bench, folder, name, speed, *hidden, camera=(), frame=None):
     """recording.yaml of a mill with hidden settings, as a camera would have seen it; made once."""
     run = "diagnose_%s_%d" % (name.split("_")[0], speed)
     summary = bench.run(run, MILL, "mill.speed=%d %%critical" % speed, "seed=%d" % (2026 + speed), *OTHER, *("%s=%g" % f for f in FRICTION.values()),
@@ -28,10 +28,9 @@ def recording(bench, folder, name, speed, *hidden, camera=(), frame=None, length
         bench.call("pept", "synthesize", os.path.relpath(bench.folder / run, ROOT), "-o", os.path.relpath(out / "r.a", ROOT), "--camera", CAMERA, "--force",
                    *(w for c in camera for w in ("--set", c)))
         # What a user knows: no geometry, the power with the meter's error.
-        lines = [line for line in (out / "r.yaml").read_text().splitlines() if not line.strip().startswith(("power:", "geometry:", "mill_length:"))]
+        lines = [line for line in (out / "r.yaml").read_text().splitlines() if not line.strip().startswith(("power:", "geometry:"))]
         lines += ["  power: {value: %.9g W, sem: %.3g W}" % (summary["power_W"]["com"], summary["power_W"]["com_sem"])]
-        lines += ["  mill_length: %s" % (length or "34 mm")] + (["frame: {axis: %s}" % frame] if frame else [])
-        (out / "r.yaml").write_text("\n".join(lines) + "\n")
+        (out / "r.yaml").write_text("\n".join(lines + (["frame: {axis: %s}" % frame] if frame else [])) + "\n")
     return os.path.relpath(out / "r.yaml", ROOT)
 
 
@@ -83,7 +82,7 @@ def verdict_rows(found, wanted):
 def ends(bench):
     """A periodic slice as the base, a closed mill of 120 mm recorded"""
     folder = bench.folder / "diagnose"
-    recordings = {s: recording(bench, folder, "closed", s, *CLOSED, length="120 mm") for s in SPEEDS}
+    recordings = {s: recording(bench, folder, "closed", s, *CLOSED) for s in SPEEDS}
     closed = ", ".join("%s: %s" % tuple(c.split("=")) for c in CLOSED)
     found = diagnosed(bench, folder, "closed", recordings, "hypotheses.end_faces={sentence: The mill has end faces that turn with it., set: {%s}}" % closed)
     return verdict_rows(found, "end_faces") + held_rows(found) + friction_rows(found)
