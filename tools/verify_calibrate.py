@@ -14,7 +14,7 @@ BEADS, SECONDS, SETTLED = 60, 20, 2  # a third of the study's hour, at each spee
 TRUTH = {"CRPP": 0.80, "CFPP": 0.34, "CRPG": 0.55, "CFPG": 0.30}
 # Recordings and simulations alike are four times softer than the study's slice, which halves the time that they take.
 SOFTER = "stiffness_factor=0.0025"
-FEWER = "budget.simulations=24"  # of the emulator; both designs take up to 31
+FEWER = 16  # simulations of the emulator; both designs take 24 to 31
 LONGEST_MIN = 75  # of both designs and the validation on two cores
 # The recordings are of the slice: told as the whole mill, power and mass are those of 270 mm.
 SLICE_LENGTH, MILL_LENGTH = 0.020, 0.270
@@ -37,13 +37,14 @@ def recording(bench, folder, speed):
 
 
 def found(bench, folder, name, *settings):
-    """calibration.json and validation.json of the study with these settings."""
+    """calibration.json and validation.json of the study with these settings, seconds that it took, simulations that were there before."""
     out = folder / name
     common = [w for s in settings for w in ("--set", s)] + ["--cache", os.path.relpath(folder / "cache", ROOT)]
+    known = len(list((folder / "cache").glob("*/task.json")))
     start = time.monotonic()
     bench.call("calibrate", STUDY, "-o", os.path.relpath(out, ROOT), *common, "-q")
     bench.call("validate", STUDY, "--calibration", os.path.relpath(out / "calibration.json", ROOT), "-o", os.path.relpath(out / "validation", ROOT), *common, "-q")
-    return json.loads((out / "calibration.json").read_text()), json.loads((out / "validation" / "validation.json").read_text()), time.monotonic() - start
+    return json.loads((out / "calibration.json").read_text()), json.loads((out / "validation" / "validation.json").read_text()), time.monotonic() - start, known
 
 
 def rows_of(name, calibration, validation):
@@ -65,7 +66,7 @@ def calibrate(bench):
     folder = bench.folder / "calibrate"
     recordings = [s for speed in SPEEDS
                   for s in ("conditions.dry%d.recording=%s" % (speed, recording(bench, folder, speed)), "conditions.dry%d.set.%s" % (speed, SOFTER))]
-    classic, held, seconds = found(bench, folder, "response_surface", *recordings)
+    classic, held, seconds, known = found(bench, folder, "response_surface", *recordings)
     friction = next(p for p in classic["parameters"] if p["name"] == "CFPP")
     place = classic["surface"]["stationary"]
     open_end = place["kind"] != "minimum" or not place["inside"]
@@ -74,9 +75,10 @@ def calibrate(bench):
                 abs(friction["value"] - TRUTH["CFPP"]) <= 0.05 or open_end),
             row("what the surface says of that", place["sentence"]),
             row("lack of fit of the surface", classic["surface"]["lack_of_fit_means"]),
-            row("wall time of designs and validation", "%.0f min" % (seconds / 60), "< %d min on two cores where nothing is cached" % LONGEST_MIN)]
+            row("wall time of designs and validation", "%.0f min, %d simulations from the cache" % (seconds / 60, known), "< %d min on two cores with none" % LONGEST_MIN,
+                None if known else seconds < 60 * LONGEST_MIN)]
     rows += rows_of("response surface", classic, held)
-    modern, held, _ = found(bench, folder, "emulator", *recordings, "method=emulator", FEWER)
+    modern, held, _, _ = found(bench, folder, "emulator", *recordings, "method=emulator", "budget.simulations=%d" % FEWER)
     better = modern["at_best"]["chagas2015"]["value"] < classic["at_best"]["chagas2015"]["value"]
-    rows.append(row("emulator, Eq. 4.3 with 24 simulations", "%.3f" % modern["at_best"]["chagas2015"]["value"], "less than the surface's", better))
+    rows.append(row("emulator, Eq. 4.3 with %d simulations" % FEWER, "%.3f" % modern["at_best"]["chagas2015"]["value"], "less than the surface's", better))
     return rows + rows_of("emulator", modern, held)
