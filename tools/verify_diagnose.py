@@ -15,6 +15,7 @@ OTHER = ("stiffness_factor=0.005", "contact.law.cap=sum")
 FRICTION = {"bead_friction": ("pairs.glass~glass.static_friction", 0.34), "wall_friction": ("pairs.glass~hdpe.static_friction", 0.3)}
 POOL = "body_forces.fluid_pool={kind: fluid_pool, fluid_density: 1000}"  # water up to 50 mm below the axis: a third of the radius deep
 CLOSED = ("fill.vessel.length=120 mm", "geometry.liner.length=120 mm", "geometry.liner.end_faces=true", "domain=~")
+CLOSED_AS_MAP = "{fill: {vessel: {length: 120 mm}}, geometry: {liner: {length: 120 mm, end_faces: true}}, domain: '~'}"
 
 
 def recording(bench, folder, name, speed, *hidden, camera=(), frame=None):
@@ -83,8 +84,7 @@ def ends(bench):
     """A periodic slice as the base, a closed mill of 120 mm recorded"""
     folder = bench.folder / "diagnose"
     recordings = {s: recording(bench, folder, "closed", s, *CLOSED) for s in SPEEDS}
-    closed = ", ".join("%s: %s" % tuple(c.split("=")) for c in CLOSED)
-    found = diagnosed(bench, folder, "closed", recordings, "hypotheses.end_faces={sentence: The mill has end faces that turn with it., set: {%s}}" % closed)
+    found = diagnosed(bench, folder, "closed", recordings, "hypotheses.end_faces={sentence: The mill has end faces that turn with it., set: %s}" % CLOSED_AS_MAP)
     return verdict_rows(found, "end_faces") + held_rows(found) + friction_rows(found)
 
 
