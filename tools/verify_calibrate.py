@@ -5,10 +5,11 @@ import os
 import time
 from pathlib import Path
 
+from verify_recorded import recorded
 from verify_rows import row
 
 ROOT = Path(__file__).resolve().parent.parent
-STUDY, CAMERA = "configs/chagas2015/study.yaml", "configs/cameras/study.yaml"
+STUDY = "configs/chagas2015/study.yaml"
 SPEEDS = (75, 60, 50)
 BEADS, SECONDS, SETTLED = 60, 20, 2  # a third of the study's hour, at each speed
 TRUTH = {"CRPP": 0.80, "CFPP": 0.34, "CRPG": 0.55, "CFPG": 0.30}
@@ -25,15 +26,9 @@ def recording(bench, folder, speed):
     end = SETTLED + SECONDS
     summary = bench.run("calibrate_truth_%d" % speed, "configs/chagas2015/slice_%d.yaml" % speed, "seed=2015", SOFTER, "time.end_s=%d" % end, "time.analyze_from_s=%d" % SETTLED,
                         "output.frames=~", "output.tracks={beads: %d, every_s: 0.0005}" % BEADS)
-    out = folder / ("r%d" % speed)
-    out.mkdir(parents=True, exist_ok=True)
-    if bench.fresh or not (out / "r.yaml").exists():
-        bench.call("pept", "synthesize", os.path.relpath(bench.folder / ("calibrate_truth_%d" % speed), ROOT), "-o", os.path.relpath(out / "r.a", ROOT), "--camera", CAMERA, "--force")
-        factor = MILL_LENGTH / SLICE_LENGTH
-        power = "  power: {value: %.9g W, sem: %.3g W}" % (factor * summary["power_W"]["com"], factor * summary["power_W"]["com_sem"])
-        lines = [line for line in (out / "r.yaml").read_text().splitlines() if not line.strip().startswith(("power:", "geometry:"))]
-        (out / "r.yaml").write_text("\n".join(lines + ["  mill_length: %g mm" % (1e3 * MILL_LENGTH), power]) + "\n")
-    return os.path.relpath(out / "r.yaml", ROOT)
+    factor = MILL_LENGTH / SLICE_LENGTH
+    power = tuple(factor * summary["power_W"][key] for key in ("com", "com_sem"))
+    return recorded(bench, "calibrate_truth_%d" % speed, folder / ("r%d" % speed), power, "  mill_length: %g mm" % (1e3 * MILL_LENGTH))
 
 
 def found(bench, folder, name, *settings):

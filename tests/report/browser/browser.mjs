@@ -1,5 +1,6 @@
 // What both programs share: the browser, the data in a page, complaints.
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, renameSync, writeFileSync } from "node:fs";
+import { dirname } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
@@ -10,6 +11,13 @@ export const PATIENCE = 120000; // ms for what takes a moment on a free machine
 export function stop(message) {
   console.error(message);
   process.exit(2);
+}
+
+/** Writes a file aside and renames it; makes its folder. */
+export function keepFile(path, bytes) {
+  mkdirSync(dirname(path), { recursive: true });
+  writeFileSync(`${path}.tmp`, bytes);
+  renameSync(`${path}.tmp`, path);
 }
 
 /** {pages, options}: --name VALUE for the names that take one. */

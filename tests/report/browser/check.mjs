@@ -1,9 +1,9 @@
 // node check.mjs PAGE.html… [--screens DIR] [--keep DIR] [--compare DIR] [--chromium PATH]: opens each page as a file, wide and narrow, and looks for
 // faults; one line per fault, exit code 1 where there are any. docs of the checks: look.mjs, solid.mjs.
-import { existsSync, mkdirSync, renameSync, writeFileSync } from "node:fs";
+import { existsSync } from "node:fs";
 import { basename, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
-import { PATIENCE, dataOf, launch, readArguments, stop, watch } from "./browser.mjs";
+import { PATIENCE, dataOf, keepFile, launch, readArguments, stop, watch } from "./browser.mjs";
 import { charts, overflow, structure, visit } from "./look.mjs";
 import { hold, keep } from "./reference.mjs";
 import { solid } from "./solid.mjs";
@@ -22,14 +22,8 @@ async function screenshots(page, name) {
   const { width } = page.viewportSize();
   for (let top = 0, part = 1; top < height; top += TALLEST, part += 1) {
     const clip = { x: 0, y: top, width, height: Math.min(TALLEST, height - top) };
-    keepScreenshot(await page.screenshot({ fullPage: true, clip }), `${name}-${part}.png`);
+    keepFile(join(options.screens, `${name}-${part}.png`), await page.screenshot({ fullPage: true, clip }));
   }
-}
-
-function keepScreenshot(bytes, name) {
-  mkdirSync(options.screens, { recursive: true });
-  writeFileSync(join(options.screens, `${name}.tmp`), bytes);
-  renameSync(join(options.screens, `${name}.tmp`), join(options.screens, name));
 }
 
 /** What printing does, without a printer: all opened, all drawn, no controls. */

@@ -1,9 +1,9 @@
 // Every chart and 3-D view of a page as a small picture, so small that a browser's next version makes next to no difference to it and an
 // empty chart, another colour or many marks that are missing do; a single one of twenty may not. The small pictures of a page lie side by side in one PNG that is kept with
 // the tests.
-import { existsSync, mkdirSync, readFileSync, renameSync, writeFileSync } from "node:fs";
-import { dirname } from "node:path";
+import { existsSync, readFileSync } from "node:fs";
 import { PNG } from "pngjs";
+import { keepFile } from "./browser.mjs";
 import { decode } from "./picture.mjs";
 
 const [WIDE, HIGH, ACROSS] = [60, 40, 8]; // cells of a small picture; pictures in a row of the sheet
@@ -57,31 +57,25 @@ async function gather(page) {
   return found;
 }
 
+/** Where on a sheet number `at` of a small picture lies. */
+const place = (sheet, index, at) => {
+  const [row, column] = [Math.floor(at / (3 * WIDE)), Math.floor(at / 3) % WIDE];
+  return 4 * ((Math.floor(index / ACROSS) * HIGH + row) * sheet.width + (index % ACROSS) * WIDE + column) + (at % 3);
+};
+
 function sheetOf(pictures) {
   const sheet = new PNG({ width: ACROSS * WIDE, height: Math.ceil(pictures.length / ACROSS) * HIGH });
   sheet.data.fill(255);
-  pictures.forEach(({ cells }, index) => {
-    const [left, top] = [(index % ACROSS) * WIDE, Math.floor(index / ACROSS) * HIGH];
-    for (let row = 0; row < HIGH; row++)
-      for (let at = 0; at < WIDE * 3; at++) sheet.data[4 * ((top + row) * sheet.width + left + Math.floor(at / 3)) + (at % 3)] = Math.round(cells[row * WIDE * 3 + at]);
-  });
+  pictures.forEach(({ cells }, index) => cells.forEach((value, at) => (sheet.data[place(sheet, index, at)] = Math.round(value))));
   return sheet;
 }
 
 /** The picture with this number on a sheet. */
-function cellsOf(sheet, index) {
-  const [left, top] = [(index % ACROSS) * WIDE, Math.floor(index / ACROSS) * HIGH];
-  const cells = new Float64Array(WIDE * HIGH * 3);
-  for (let row = 0; row < HIGH; row++)
-    for (let at = 0; at < WIDE * 3; at++) cells[row * WIDE * 3 + at] = sheet.data[4 * ((top + row) * sheet.width + left + Math.floor(at / 3)) + (at % 3)];
-  return cells;
-}
+const cellsOf = (sheet, index) => Float64Array.from({ length: WIDE * HIGH * 3 }, (_, at) => sheet.data[place(sheet, index, at)]);
 
 /** Writes the sheet of a page. */
 export async function keep(page, file) {
-  mkdirSync(dirname(file), { recursive: true });
-  writeFileSync(`${file}.tmp`, PNG.sync.write(sheetOf(await gather(page))));
-  renameSync(`${file}.tmp`, file);
+  keepFile(file, PNG.sync.write(sheetOf(await gather(page))));
 }
 
 /** Holds a page against its sheet. */
