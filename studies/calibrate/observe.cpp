@@ -119,15 +119,14 @@ struct Observer::Impl {
   fs::path cache;
   int threads;
   std::vector<RecordedCondition> recorded;
-  /// kg and m, of the charge and the mill that the study's case has in each condition. A slice is scaled to the recorded mill by them; a
-  /// run whose filling is varied keeps what that does to the power, one of another length does not.
-  std::vector<double> case_mass = {}, case_length = {};
-  std::vector<double> case_omega = {};  ///< rad/s
+  std::vector<AnalyzerContext> mill = {};  ///< of the study's case in each condition
 
+  /// A slice is scaled to the recorded mill; a run whose filling is varied keeps what that does to the power, one of another length does
+  /// not.
   double power_factor(std::size_t condition, const BeadPaths& paths) const {
     const double length = paths.mill().context.mill_length;
-    const double longer = length > 0 && case_length[condition] > 0 ? length / case_length[condition] : 1;
-    return recorded[condition].mass / (case_mass[condition] * longer) * paths.power_ratio();
+    const double longer = length > 0 && mill[condition].mill_length > 0 ? length / mill[condition].mill_length : 1;
+    return recorded[condition].mass / (mill[condition].charge_mass * longer) * paths.power_ratio();
   }
 
   /// A folder of its own for each look: several threads and processes may share the cache.
@@ -181,22 +180,19 @@ Observer::Observer(const Study& study, const host::Registry& registry, fs::path 
   for (std::size_t c = 0; c < study.conditions.size(); ++c) {
     if (say) say(fmt::format("looking at the recording of condition '{}'", study.conditions[c].name));
     impl_->recorded.push_back(look_at_recording(c, {study, registry, threads}, impl_->cache));
-    const AnalyzerContext mill = studies::read_mill_of_case(study.base, registry, study.conditions[c].settings).context;
-    impl_->case_mass.push_back(mill.charge_mass);
-    impl_->case_length.push_back(mill.mill_length);
-    impl_->case_omega.push_back(mill.omega);
+    impl_->mill.push_back(studies::read_mill_of_case(study.base, registry, study.conditions[c].settings).context);
   }
 }
 
 Observer::~Observer() = default;
 
-bool Observer::turns_other_way(std::size_t condition) const { return impl_->case_omega[condition] * impl_->recorded[condition].omega < 0; }
+bool Observer::turns_other_way(std::size_t condition) const { return impl_->mill[condition].omega * impl_->recorded[condition].omega < 0; }
 
 const Observation& Observer::recorded(std::size_t condition) const { return impl_->recorded[condition].observation; }
 
 Observation Observer::simulated(std::size_t condition, const fs::path& run, const std::string& key, const std::string& camera) const {
-  std::vector<std::string> depends{impl_->recorded[condition].identity, fmt::format("{:.17g}", impl_->case_mass[condition]),
-                                   fmt::format("{:.17g}", impl_->case_length[condition])};
+  std::vector<std::string> depends{impl_->recorded[condition].identity, fmt::format("{:.17g}", impl_->mill[condition].charge_mass),
+                                   fmt::format("{:.17g}", impl_->mill[condition].mill_length)};
   if (!camera.empty()) depends.push_back(camera);
   const std::string id = key + "-" + hash_of(depends);
   const fs::path file = impl_->cache / ("simulation-" + id + ".json");

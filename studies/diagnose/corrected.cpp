@@ -35,10 +35,6 @@ bool is_named(const Told& t, const Nuisance& n) {
 
 /// `theta`: as fitted. What the camera was found to do is the study's prior from here on: no case could hold it.
 std::string study_text(const Told& t, const VectorXd& theta, const fs::path& folder) {
-  const auto mean_of = [&](const Nuisance& n) {
-    const auto i = static_cast<Index>(t.question.study.parameters.size()) + (&n - t.question.nuisances.data());
-    return n.of_camera() && is_named(t, n) && theta[i] > n.low && theta[i] < n.high ? rounded(theta[i]) : n.mean;
-  };
   std::string out = fmt::format("# The study {} on the corrected case.\nschema_version: 1\nbase: case.yaml\n\nconditions:\n",
                                 t.question.study.file.filename().string());
   for (const calibrate::Condition& c : t.question.study.conditions) {
@@ -53,9 +49,13 @@ std::string study_text(const Told& t, const VectorXd& theta, const fs::path& fol
     fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], tied: [{}]}}\n", p.path, p.name, p.low, p.high,
                    fmt::join(p.tied, ", "));
   if (!t.question.nuisances.empty()) out += "\nnuisances:\n";
-  for (const Nuisance& n : t.question.nuisances)
+  const double* fitted = theta.data() + t.question.study.parameters.size();
+  for (const Nuisance& n : t.question.nuisances) {
+    const double value = *fitted++;
+    const bool moved = n.of_camera() && is_named(t, n) && value > n.low && value < n.high;
     fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], mean: {:.6g}, sigma: {:.6g}}}\n", n.path, n.name,
-                   n.low, n.high, mean_of(n), n.sigma);
+                   n.low, n.high, moved ? rounded(value) : n.mean, n.sigma);
+  }
   return out + choices_text(t.question);
 }
 

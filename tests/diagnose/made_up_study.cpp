@@ -27,18 +27,13 @@ std::map<std::string, std::string> map_of(const std::string& key) {
   return settings;
 }
 
-/// "\ncamera.frame_error.offset_x=0.001" and so on, of a camera file's text.
+/// "\ncamera.frame_error.offset_x=0.001" and so on, of the one link {kind: frame_error, offset_x: 0.001, …} of a camera file's text.
 std::string camera_settings(const std::string& camera) {
   std::string settings;
-  const std::string kind = "kind: ";
-  for (std::size_t at = camera.find(kind); at != std::string::npos; at = camera.find(kind, at + 1)) {
-    const std::string link = camera.substr(at + kind.size(), camera.find('}', at) - at - kind.size());
-    const std::string plugin = link.substr(0, link.find(','));
-    for (std::size_t comma = link.find(", "); comma != std::string::npos; comma = link.find(", ", comma + 1)) {
-      const std::size_t colon = link.find(": ", comma), end = link.find(',', colon);
-      settings +=
-          fmt::format("\ncamera.{}.{}={}", plugin, link.substr(comma + 2, colon - comma - 2), link.substr(colon + 2, end - colon - 2));
-    }
+  for (std::size_t comma = camera.find(", "); comma != std::string::npos; comma = camera.find(", ", comma + 1)) {
+    const std::size_t colon = camera.find(": ", comma), end = camera.find_first_of(",}", colon);
+    settings +=
+        fmt::format("\ncamera.frame_error.{}={}", camera.substr(comma + 2, colon - comma - 2), camera.substr(colon + 2, end - colon - 2));
   }
   return settings;
 }
