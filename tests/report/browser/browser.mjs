@@ -1,7 +1,6 @@
 // What both programs share: the browser, the data in a page, complaints.
 import { existsSync, mkdirSync, readFileSync, renameSync, writeFileSync } from "node:fs";
 import { dirname } from "node:path";
-import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
 const PLACES = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
@@ -39,14 +38,11 @@ export function readArguments(program, usage, names) {
   return { pages, options };
 }
 
-/** The one family of fonts in which pages are looked at, where it is installed; else the machine's own. */
-const FONTS = existsSync("/usr/share/fonts/truetype/dejavu") ? { FONTCONFIG_FILE: fileURLToPath(new URL("fonts.conf", import.meta.url)) } : {};
-
 /** Headless, drawing 3-D in software, as build machines have no graphics card. */
 export function launch(program, given) {
   const path = given ?? PLACES.find(existsSync);
   if (!path || !existsSync(path)) stop(`${program}: no browser at ${path ?? PLACES.join(", ")}: apt-get install chromium, or say where with --chromium`);
-  return chromium.launch({ executablePath: path, env: { ...process.env, ...FONTS }, args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", "--force-color-profile=srgb"] });
+  return chromium.launch({ executablePath: path, args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", "--force-color-profile=srgb"] });
 }
 
 /** The document that millscope has put into a page. */

@@ -5,7 +5,7 @@ import { basename, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { PATIENCE, dataOf, keepFile, launch, readArguments, stop, watch } from "./browser.mjs";
 import { charts, overflow, structure, visit } from "./look.mjs";
-import { hold, keep } from "./reference.mjs";
+import { fixTexts, hold, keep } from "./reference.mjs";
 import { solid } from "./solid.mjs";
 
 const PROGRAM = "check.mjs";
@@ -49,10 +49,29 @@ async function printed(page, complain) {
   if (bytes.length < 10000) complain(`printing gives a file of ${bytes.length} bytes`);
 }
 
-async function look(browser, path, data, width, complain) {
+async function newPage(browser, width) {
   const context = await browser.newContext({ viewport: { width, height: 900 }, reducedMotion: "reduce", colorScheme: "light" });
   const page = await context.newPage();
   page.setDefaultTimeout(PATIENCE);
+  return page;
+}
+
+/** Its charts and 3-D views against those that were kept. */
+async function pictured(browser, path, width, complain) {
+  const page = await newPage(browser, width);
+  await page.addInitScript(fixTexts);
+  await page.goto(pathToFileURL(resolve(path)).href);
+  await page.waitForSelector("main > section");
+  await page.evaluate(visit, true);
+  await page.waitForTimeout(400);
+  const name = `${basename(path, ".html")}-${width}.png`;
+  if (options.keep) await keep(page, join(options.keep, name));
+  if (options.compare) await hold(page, join(options.compare, name), complain);
+  await page.context().close();
+}
+
+async function look(browser, path, data, width, complain) {
+  const page = await newPage(browser, width);
   const url = pathToFileURL(resolve(path)).href;
   watch(page, (asked) => asked === url || /^(data|blob):/.test(asked), complain);
   await page.goto(url);
@@ -61,31 +80,22 @@ async function look(browser, path, data, width, complain) {
   if (shown.head !== data.title || shown.title !== data.title) complain(`the title is shown as "${shown.head}", it is "${data.title}"`);
   data.sections.forEach((section, index) => shown.sections[index] !== section.title && complain(`section ${index + 1} is headed "${shown.sections[index]}", not "${section.title}"`));
   (await page.evaluate(overflow)).forEach(complain);
-  const name = `${basename(path, ".html")}-${width}`;
   if (options.screens) {
     await page.evaluate(visit, false);
     await page.waitForTimeout(400);
-    await screenshots(page, name);
-  }
-  if (options.keep || options.compare) {
-    await page.evaluate(visit, true); // before the 3-D is turned
-    await page.waitForTimeout(400);
-    if (options.keep) await keep(page, join(options.keep, `${name}.png`));
-    if (options.compare) await hold(page, join(options.compare, `${name}.png`), complain);
+    await screenshots(page, `${basename(path, ".html")}-${width}`);
   }
   await solid(page, data, width === WIDTHS[0], complain);
   await page.evaluate(visit, true);
   await page.waitForTimeout(300);
   for (const check of [structure, charts, overflow]) (await page.evaluate(check)).forEach(complain);
   if (width === WIDTHS[0]) await printed(page, complain);
-  await context.close();
+  await page.context().close();
 }
 
 /** Without WebGL a sentence stands where the 3-D would be, and the rest works. */
 async function withoutSolid(browser, path, complain) {
-  const context = await browser.newContext({ viewport: { width: WIDTHS[0], height: 900 }, reducedMotion: "reduce", colorScheme: "light" });
-  const page = await context.newPage();
-  page.setDefaultTimeout(PATIENCE);
+  const page = await newPage(browser, WIDTHS[0]);
   page.on("pageerror", (error) => complain(`error: ${error.message}`));
   await page.addInitScript(() => {
     const get = HTMLCanvasElement.prototype.getContext; // charts measure their texts with the flat kind, which every browser has
@@ -101,7 +111,7 @@ async function withoutSolid(browser, path, complain) {
   (await page.evaluate(structure)).forEach(complain);
   const undrawn = await page.evaluate(() => [...document.querySelectorAll(".chart")].filter((chart) => !chart.closest("details:not([open])") && !chart.querySelector("svg")).length);
   if (undrawn > 0) complain(`${undrawn} charts are not drawn`);
-  await context.close();
+  await page.context().close();
 }
 
 const browser = await launch(PROGRAM, options.chromium);
@@ -116,6 +126,7 @@ for (const path of pages) {
     if (data.live) throw new Error("this page is live: check it with live.mjs");
     const solidParts = data.sections.some((section) => section.movie || section.calibration?.surface?.factors?.length > 1);
     for (const width of WIDTHS) await look(browser, path, data, width, complaint(`at ${width} px`));
+    if (options.keep || options.compare) for (const width of WIDTHS) await pictured(browser, path, width, complaint(`at ${width} px`));
     if (solidParts) await withoutSolid(browser, path, complaint("without WebGL"));
   } catch (error) {
     complaint("")(error.message.split("\n")[0]);
