@@ -64,8 +64,8 @@ class Chart {
     if (this.visible || near) this.draw();
   }
 
-  draw(forced = 0) {
-    const width = forced || this.element.clientWidth;
+  draw() {
+    const width = onPaper ? paperWidth(this.element) : this.element.clientWidth; // also for what comes into view while it prints
     if (width === 0 || !this.element.isConnected || (!this.stale && Math.abs(width - this.width) <= 0.5)) return;
     const height = this.height(width);
     this.element.style.height = `${height}px`;
@@ -118,7 +118,7 @@ const redrawAll = (paper) => {
   setPrinting(paper);
   for (const one of charts.values()) {
     one.stale = true;
-    if (one.element.isConnected) one.draw(paper ? paperWidth(one.element) : 0);
+    one.draw();
   }
 };
 
