@@ -23,6 +23,13 @@ double draw_nuisance(const diagnose::Nuisance& n, emulate::Random& random) {
   return n.mean;
 }
 
+/// A nuisance apart is what the challenge sets it to, else what the case says.
+double made(const Challenge& challenge, const diagnose::Question& q, const diagnose::Nuisance& n) {
+  std::vector<std::string> settings = q.study.conditions.front().settings;
+  settings.insert(settings.end(), challenge.truth.begin(), challenge.truth.end());
+  return diagnose::value_in(config::read_case(q.study.base.string(), settings), n.path, n.where);
+}
+
 Eigen::VectorXd draw_theta(const Challenge& challenge, const diagnose::Question& q, emulate::Random& random) {
   const auto parameters = static_cast<Eigen::Index>(q.study.parameters.size());
   Eigen::VectorXd theta(static_cast<Eigen::Index>(q.dimensions()));
@@ -36,8 +43,10 @@ Eigen::VectorXd draw_theta(const Challenge& challenge, const diagnose::Question&
       throw config::UserError(
           fmt::format("{}: the study's constraints leave nothing of the middle of its ranges", challenge.file.string()));
   }
-  for (std::size_t i = 0; i < q.nuisances.size(); ++i)
-    theta[parameters + static_cast<Eigen::Index>(i)] = diagnose::rounded(draw_nuisance(q.nuisances[i], random));
+  for (std::size_t i = 0; i < q.nuisances.size(); ++i) {
+    const diagnose::Nuisance& n = q.nuisances[i];
+    theta[parameters + static_cast<Eigen::Index>(i)] = n.usual ? made(challenge, q, n) : diagnose::rounded(draw_nuisance(n, random));
+  }
   return theta;
 }
 

@@ -25,7 +25,9 @@ constexpr std::size_t kLeastPoints = 30;  // of a bead that the camera saw too l
 
 studies::Condition believed(const diagnose::Question& q, std::size_t condition, const host::Registry& registry) {
   std::vector<std::string> settings = q.study.conditions[condition].settings;
-  for (const diagnose::Nuisance& n : q.nuisances) settings.push_back(fmt::format("{}={:.6g}", n.path, n.mean));
+  for (const diagnose::Nuisance& n : q.nuisances) {
+    if (!n.usual) settings.push_back(fmt::format("{}={:.6g}", n.path, n.mean));
+  }
   const studies::MillOfCase mill = studies::read_mill_of_case(q.study.base, registry, settings);
   const AnalyzerContext& c = mill.context;
   studies::Condition out;

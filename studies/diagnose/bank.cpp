@@ -27,14 +27,20 @@ MatrixXd unit_points(Index points, Index dimensions) {
   return 0.5 * (doe::sobol(std::move(factors), static_cast<int>(points)).coded.array() + 1);
 }
 
-/// The share of an effect has its coordinate after those of the case, those of the camera follow.
-VectorXd theta_of(const Question& q, const VectorXd& unit, bool with_share) {
+/// Coordinates of the case, then what is varied in this group alone (the share of an effect, a nuisance apart), then those of the camera.
+VectorXd theta_of(const Question& q, const VectorXd& unit, const Group& group) {
   VectorXd theta(static_cast<Index>(q.dimensions()));
   const std::vector<Coordinate> coordinates = q.coordinates();
+  const auto own = static_cast<Index>(q.case_dimensions());
+  Index next = own + (group.base() ? 0 : 1);
   for (Index i = 0; i < theta.size(); ++i) {
     const Coordinate& c = coordinates[static_cast<std::size_t>(i)];
-    const bool behind = with_share && i >= static_cast<Index>(q.case_dimensions());
-    theta[i] = rounded(c.low + unit[behind ? i + 1 : i] * (c.high - c.low));
+    if (i == group.apart)
+      theta[i] = rounded(c.natural(2 * unit[own] - 1));
+    else if (c.usual)
+      theta[i] = *c.usual;
+    else
+      theta[i] = rounded(c.low + unit[i < own ? i : next++] * (c.high - c.low));
   }
   return theta;
 }
@@ -50,23 +56,34 @@ campaign::Simulation simulation(const Question& q, const VectorXd& theta, const 
 
 }  // namespace
 
-std::vector<BankPoint> plan_group(const Question& q, int candidate, int count) {
-  const auto d = static_cast<Index>(q.dimensions());
-  const bool base = candidate < 0;
-  const std::string group = base ? "base" : q.candidates[static_cast<std::size_t>(candidate)].name;
-  const auto offset = base ? 0 : static_cast<Index>(kOffsets * (hash(group) % kOffsets));
-  const MatrixXd unit = unit_points(offset + count, d + (base ? 0 : 1));
+std::vector<Group> groups_apart(const Question& q) {
+  std::vector<Group> out;
+  const std::vector<Coordinate> coordinates = q.coordinates();
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    if (coordinates[i].usual) out.push_back({-1, static_cast<Index>(i)});
+  }
+  return out;
+}
+
+std::vector<BankPoint> plan_group(const Question& q, const Group& of, int count) {
+  const bool effect = of.candidate >= 0;
+  const std::string group = of.base() ? "base"
+                            : effect  ? q.candidates[static_cast<std::size_t>(of.candidate)].name
+                                      : q.coordinates()[static_cast<std::size_t>(of.apart)].name;
+  const auto offset = of.base() ? 0 : static_cast<Index>(kOffsets * (hash(group) % kOffsets));
+  const auto d = static_cast<Index>(q.dimensions() - groups_apart(q).size());
+  const MatrixXd unit = unit_points(offset + count, d + (of.base() ? 0 : 1));
   std::vector<BankPoint> points;
   for (int i = 0; i < count; ++i) {
     const VectorXd u = unit.row(offset + i).transpose();
-    BankPoint point{group, i, theta_of(q, u, !base), {}};
-    if (!base) {
-      const Candidate& c = q.candidates[static_cast<std::size_t>(candidate)];
+    BankPoint point{group, i, theta_of(q, u, of), {}};
+    if (effect) {
+      const Candidate& c = q.candidates[static_cast<std::size_t>(of.candidate)];
       const double unit_share = u[static_cast<Index>(q.case_dimensions())];
       const double share = c.on_or_off()     ? 1
                            : c.range.low < 0 ? c.range.low + (1 - c.range.low) * unit_share
                                              : kLeastShare + (1 - kLeastShare) * unit_share;
-      point.effects = {{candidate, rounded_share(c, share)}};
+      point.effects = {{of.candidate, rounded_share(c, share)}};
     }
     if (q.study.allowed(point.theta.head(static_cast<Index>(q.study.parameters.size())))) points.push_back(std::move(point));
   }
@@ -74,10 +91,12 @@ std::vector<BankPoint> plan_group(const Question& q, int candidate, int count) {
 }
 
 std::vector<BankPoint> plan_bank(const Question& q) {
-  std::vector<BankPoint> all = plan_group(q, -1, q.bank.base);
-  for (std::size_t j = 0; j < q.candidates.size(); ++j) {
-    for (BankPoint& p : plan_group(q, static_cast<int>(j), q.bank.each)) all.push_back(std::move(p));
-  }
+  std::vector<BankPoint> all = plan_group(q, {}, q.bank.base);
+  const auto add = [&](const Group& group, int count) {
+    for (BankPoint& p : plan_group(q, group, count)) all.push_back(std::move(p));
+  };
+  for (const Group& group : groups_apart(q)) add(group, q.bank.base);
+  for (std::size_t j = 0; j < q.candidates.size(); ++j) add({static_cast<int>(j), -1}, q.bank.each);
   return all;
 }
 

@@ -15,15 +15,24 @@ namespace millscope::diagnose {
 
 /// One parameter set of the bank.
 struct BankPoint {
-  std::string group;  ///< "base" or a candidate's name
+  std::string group;  ///< "base", or the name of a candidate or of a nuisance apart
   int index = 0;      ///< within the group
   VectorXd theta;
   std::vector<Effect> effects;
 };
 
+/// What is varied in some of the bank's simulations beside the parameters: nothing, a candidate's share, or a nuisance apart.
+struct Group {
+  int candidate = -1;
+  Index apart = -1;  ///< coordinate of θ
+  bool base() const { return candidate < 0 && apart < 0; }
+};
+/// One of every nuisance apart.
+std::vector<Group> groups_apart(const Question& question);
+
 /// Sobol' points over the ranges; what is simulated of a group does not depend on the other groups, on how many are asked for, nor on the
 /// camera's nuisances, so that a bank grows without losing a run. One-sided shares lie in 0.1 … 1.
-std::vector<BankPoint> plan_group(const Question& question, int candidate, int count);
+std::vector<BankPoint> plan_group(const Question& question, const Group& group, int count);
 /// All groups in full.
 std::vector<BankPoint> plan_bank(const Question& question);
 

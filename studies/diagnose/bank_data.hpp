@@ -1,7 +1,7 @@
 // What the numbers of a diagnosis are made of: simulations at parameter sets, with and without an effect, and what was seen of them.
 #pragma once
 
-#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +13,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+/// With what the surrogate multiplies a coordinate, itself apart.
+enum class Products { all, parameters, none };
+
 /// One coordinate of θ: a parameter of the study, or a nuisance with a prior.
 struct Coordinate {
   std::string name;
@@ -20,10 +23,12 @@ struct Coordinate {
   double prior_mean = 0;     ///< of a nuisance
   double prior_sigma = 0;    ///< 0: flat over the range
   bool logarithmic = false;  ///< the surrogate is quadratic in its logarithm
-  bool additive = false;     ///< the surrogate has no products of it with others
+  Products products = Products::all;
+  std::optional<double> usual = {};  ///< of a nuisance that the bank varies apart: its value in all other runs
   bool nuisance() const { return prior_sigma > 0; }
   double coded(double natural) const;  ///< low → −1, high → 1
   double natural(double coded) const;
+  double prior_weight() const;  ///< 1/σ in coded units; 0: flat
 };
 
 /// The effect of a candidate in a run: 0 is without, 1 the far end of its prior range, −1 the other end of a two-sided one.

@@ -53,8 +53,8 @@ std::string study_text(const Told& t, const VectorXd& theta, const fs::path& fol
   for (const Nuisance& n : t.question.nuisances) {
     const double value = *fitted++;
     const bool moved = n.of_camera() && is_named(t, n) && value > n.low && value < n.high;
-    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], mean: {:.6g}, sigma: {:.6g}}}\n", n.path, n.name,
-                   n.low, n.high, moved ? rounded(value) : n.mean, n.sigma);
+    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], mean: {:.6g}, sigma: {:.6g}{}}}\n", n.path, n.name,
+                   n.low, n.high, moved ? rounded(value) : n.mean, n.sigma, n.usual ? ", apart: true" : "");
   }
   return out + choices_text(t.question);
 }

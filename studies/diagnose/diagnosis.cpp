@@ -21,9 +21,12 @@ void say(const Workshop& workshop, const std::string& line) {
 /// The bank's first runs of each candidate tell which cannot matter; the others get all of theirs.
 std::vector<BankPoint> screened(const Question& question, const Workshop& workshop, const std::vector<std::size_t>& fit,
                                 double noise_units) {
-  std::vector<BankPoint> points = plan_group(question, -1, question.bank.base);
+  std::vector<BankPoint> points = plan_group(question, {}, question.bank.base);
+  for (const Group& apart : groups_apart(question)) {
+    for (BankPoint& p : plan_group(question, apart, question.bank.base)) points.push_back(std::move(p));
+  }
   for (std::size_t j = 0; j < question.candidates.size(); ++j) {
-    for (BankPoint& p : plan_group(question, static_cast<int>(j), std::min(question.bank.first, question.bank.each)))
+    for (BankPoint& p : plan_group(question, {static_cast<int>(j), -1}, std::min(question.bank.first, question.bank.each)))
       points.push_back(std::move(p));
   }
   const Problem problem = problem_of(question, workshop, fill_bank(question, workshop, points, fit), fit);
@@ -40,7 +43,7 @@ std::vector<BankPoint> screened(const Question& question, const Workshop& worksh
     }
     say(workshop,
         fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate: looked at closely", c.name, units));
-    for (BankPoint& p : plan_group(question, static_cast<int>(j), question.bank.each)) {
+    for (BankPoint& p : plan_group(question, {static_cast<int>(j), -1}, question.bank.each)) {
       if (p.index >= question.bank.first) points.push_back(std::move(p));
     }
   }

@@ -56,7 +56,7 @@ Model::Model(const BankData& data, const Surrogate& surrogate, const MatrixXd& w
     const Coordinate& c = data.theta[static_cast<std::size_t>(i)];
     if (!c.nuisance()) continue;
     prior_[i] = c.coded(c.prior_mean);
-    if (i != freed) weight_[i] = 0.5 * (c.high - c.low) / c.prior_sigma;
+    if (i != freed) weight_[i] = c.prior_weight();
   }
   for (std::size_t k = 0; k < active_.size(); ++k) {
     low_[theta_ + static_cast<Index>(k)] = ranges[static_cast<std::size_t>(active_[k])].low;

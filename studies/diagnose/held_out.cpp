@@ -175,7 +175,7 @@ std::vector<Alone> fit_alone(const HeldOutRequest& r) {
         up[i] += 0.5, down[i] -= 0.5;
         tangent.col(i) = w * (surrogate.at(up, on) - surrogate.at(down, on));
         const Coordinate& c = one.data.theta[static_cast<std::size_t>(i)];
-        if (c.nuisance()) information(i, i) = std::pow(0.5 * (c.high - c.low) / c.prior_sigma, 2);
+        information(i, i) = std::pow(c.prior_weight(), 2);
       }
       information += tangent.transpose() * tangent;
       const VectorXd sd = information.ldlt().solve(MatrixXd::Identity(d, d)).diagonal().cwiseMax(0).cwiseSqrt();

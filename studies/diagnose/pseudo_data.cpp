@@ -87,7 +87,7 @@ VectorXd PseudoData::pseudo_recording(const LeftOut& left, const Truth& truth, c
   VectorXd u = truth.coded;
   for (Index i = 0; i < u.size(); ++i) {
     const Coordinate& c = problem_.data.theta[static_cast<std::size_t>(i)];
-    if (c.nuisance() && i != truth.freed) u[i] = std::clamp(c.coded(c.prior_mean + c.prior_sigma * random.normal()), -1.0, 1.0);
+    if (c.nuisance() && i != truth.freed) u[i] = std::clamp(c.coded(c.prior_mean) + random.normal() / c.prior_weight(), -1.0, 1.0);
   }
   const double scale = std::sqrt((1 + left.surrogate->leverage(u, truth.effects)) / (1 + left.leverage));
   return left.surrogate->at(u, truth.effects) + scale * left.deviation + noise * random.normals(left.deviation.size());

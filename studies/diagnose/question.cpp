@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kernel/config/units.hpp"
 #include "kernel/config/writer.hpp"
@@ -14,6 +15,8 @@ namespace millscope::diagnose {
 namespace {
 
 using config::Node;
+
+constexpr double kWideRange = 2;  // high over low, from which on a nuisance apart is taken by its logarithm
 
 double number(const Node& node) {
   const config::Quantity q = config::read_quantity(node);
@@ -37,7 +40,7 @@ void collect_nuisances(const Node& node, std::size_t prefix, const host::Registr
   }
   Nuisance n;
   n.path = node.path().substr(prefix);
-  node.expect({"range", "sigma", "mean", "name"});
+  node.expect({"range", "sigma", "mean", "name", "apart"});
   n.where = node.where();
   const std::string unit = n.of_camera() ? camera_frame_unit(node, n.path, registry) : "";
   const auto read = [&](const Node& value) { return n.of_camera() ? config::read_number(value, unit) : number(value); };
@@ -48,6 +51,10 @@ void collect_nuisances(const Node& node, std::size_t prefix, const host::Registr
   if (!(n.mean > n.low && n.mean < n.high))
     node.fail(fmt::format("has its mean {:.6g} outside the range {:.6g} … {:.6g}", n.mean, n.low, n.high));
   if (!(n.sigma > 0)) node.at("sigma").fail("is not above 0; leave out what is known exactly");
+  if (const auto apart = node.find("apart"); apart && config::read_flag(*apart)) {
+    if (n.of_camera()) apart->fail("is true for the camera, which costs no simulation; leave it out");
+    n.usual = std::numeric_limits<double>::quiet_NaN();  // until the case is read
+  }
   out.push_back(std::move(n));
 }
 
@@ -130,6 +137,10 @@ void check_nuisance(const Question& q, const Nuisance& n, const host::Registry& 
                               fmt::format("nuisance '{}' is a parameter, too; keep one of them, or give it another 'name'", n.name));
   }
   if (n.of_camera()) return check_camera_frame(n, registry);
+  if (n.usual && !(*n.usual >= n.low && *n.usual <= n.high))
+    throw config::UserError(n.where, fmt::format("nuisance '{}' is apart, and its range {:.6g} … {:.6g} does not hold {:.6g}, which it is "
+                                                 "in {}; widen the range",
+                                                 n.name, n.low, n.high, *n.usual, q.study.base.string()));
   try {
     const std::string low = resolved(q.study, {fmt::format("{}={:.17g}", n.path, n.low)}, registry);
     if (low != resolved(q.study, {fmt::format("{}={:.17g}", n.path, n.high)}, registry)) return;
@@ -142,6 +153,11 @@ void check_nuisance(const Question& q, const Nuisance& n, const host::Registry& 
 
 /// Why the candidate gives no case that can be run; "" when it does.
 std::string refused(const Question& q, const Candidate& c, const host::Registry& registry) {
+  for (const Nuisance& n : q.nuisances) {
+    if (n.name == c.name) return "is the name of a nuisance, too; give that another 'name'";
+    if (std::find(c.paths.begin(), c.paths.end(), n.path) != c.paths.end())
+      return fmt::format("changes {}, which is the nuisance '{}' already; keep one of them", n.path, n.name);
+  }
   try {
     const std::string without = resolved(q.study, {}, registry);
     if (c.range.low < 0) resolved(q.study, settings_of(c, c.range.low), registry);
@@ -161,6 +177,21 @@ void read_candidates(const Node& node, const Library& library, const host::Regis
   }
 }
 
+/// What nuisances apart are in the case: the same in all conditions.
+void read_usual(Question& q) {
+  for (Nuisance& n : q.nuisances) {
+    if (!n.usual) continue;
+    for (const calibrate::Condition& c : q.study.conditions) {
+      const double value = value_in(config::read_case(q.study.base.string(), c.settings), n.path, n.where);
+      if (&c != &q.study.conditions.front() && value != *n.usual)
+        throw config::UserError(n.where, fmt::format("nuisance '{}' is apart, and is {:.6g} in condition '{}', {:.6g} in '{}'; give it one "
+                                                     "value in all",
+                                                     n.name, *n.usual, q.study.conditions.front().name, value, c.name));
+      n.usual = value;
+    }
+  }
+}
+
 /// Every candidate of the library that gives a case which can be run.
 void take_all(const Library& library, const host::Registry& registry, Question& q) {
   for (const Candidate& c : library.candidates) {
@@ -173,15 +204,34 @@ void take_all(const Library& library, const host::Registry& registry, Question& 
 
 }  // namespace
 
+double value_in(const config::Case& c, const std::string& path, const config::Location& where) {
+  Node node = c.root;
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    const auto found = node.is_map() ? node.find(path.substr(begin, end - begin)) : std::nullopt;
+    if (!found) throw config::UserError(where, fmt::format("'{}' is not in {}; write there what it is", path, c.root.where().file));
+    node = *found;
+    begin = end + 1;
+  }
+  return number(node);
+}
+
 std::vector<Coordinate> Question::coordinates() const {
   std::vector<Coordinate> out;
-  for (const calibrate::Parameter& p : study.parameters) out.push_back({p.name, p.low, p.high, 0, 0, false, false});
-  for (const Nuisance& n : nuisances) out.push_back({n.name, n.low, n.high, n.mean, n.sigma, false, n.of_camera()});
+  for (const calibrate::Parameter& p : study.parameters) out.push_back({p.name, p.low, p.high, 0, 0, false, Products::all, {}});
+  for (const Nuisance& n : nuisances) {
+    const bool wide = n.usual && n.low > 0 && n.high >= kWideRange * n.low;
+    out.push_back({n.name, n.low, n.high, n.mean, n.sigma, wide,
+                   n.of_camera() ? Products::none
+                   : n.usual     ? Products::parameters
+                                 : Products::all,
+                   n.usual});
+  }
   return out;
 }
 
 std::size_t Question::case_dimensions() const {
-  const auto of_case = std::count_if(nuisances.begin(), nuisances.end(), [](const Nuisance& n) { return !n.of_camera(); });
+  const auto of_case = std::count_if(nuisances.begin(), nuisances.end(), [](const Nuisance& n) { return !n.of_camera() && !n.usual; });
   return study.parameters.size() + static_cast<std::size_t>(of_case);
 }
 
@@ -201,8 +251,9 @@ std::vector<std::string> Question::settings(const VectorXd& theta, const std::ve
     for (const std::string& path : study.parameters[i].tied) out.push_back(path + "=" + value);
   }
   for (std::size_t i = 0; i < nuisances.size(); ++i) {
-    if (nuisances[i].of_camera()) continue;
-    out.push_back(fmt::format("{}={:.4g}", nuisances[i].path, theta[static_cast<Index>(study.parameters.size() + i)]));
+    const Nuisance& n = nuisances[i];
+    const std::string value = fmt::format("{:.4g}", theta[static_cast<Index>(study.parameters.size() + i)]);
+    if (!n.of_camera() && !(n.usual && value == fmt::format("{:.4g}", *n.usual))) out.push_back(n.path + "=" + value);
   }
   for (const Effect& e : effects) {
     for (std::string& s : settings_of(candidates[static_cast<std::size_t>(e.candidate)], e.share)) out.push_back(std::move(s));
@@ -215,7 +266,9 @@ Question read_question(const std::filesystem::path& file, const std::vector<std:
   q.study = calibrate::read_study(file, overrides, calibrate::kDiagnoseSections);
   const Node& root = q.study.root;
   if (const auto node = root.find("nuisances")) collect_nuisances(*node, node->path().size() + 1, registry, q.nuisances);
-  std::stable_partition(q.nuisances.begin(), q.nuisances.end(), [](const Nuisance& n) { return !n.of_camera(); });
+  const auto rank = [](const Nuisance& n) { return n.of_camera() ? 2 : n.usual ? 1 : 0; };
+  std::stable_sort(q.nuisances.begin(), q.nuisances.end(), [&](const Nuisance& a, const Nuisance& b) { return rank(a) < rank(b); });
+  read_usual(q);
   const config::Case base = config::read_case(q.study.base.string(), q.study.conditions.front().settings);
   for (const calibrate::Condition& c : q.study.conditions) {
     const config::Case at = config::read_case(q.study.base.string(), c.settings);

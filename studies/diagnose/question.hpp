@@ -2,6 +2,7 @@
 //
 //   nuisances:                                   # beside the parameters; with a prior
 //     fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %, name: filling}
+//     stiffness_factor: {range: [0.001, 0.01], mean: 0.003, sigma: 0.003, apart: true} # varied in simulations of its own only
 //     camera.frame_error.offset_x: {range: [-5 mm, 5 mm], sigma: 1 mm, name: axis_x}   # of the camera: no simulation more
 //   hypotheses:                                  # without this map: all that are loaded and apply
 //     rolling_resistance: {}
@@ -12,6 +13,7 @@
 //   power_error: 0.5 %                           # of speed and meter together
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,7 @@ struct Nuisance {
   std::string path, name;    ///< of the camera: camera.frame_error.PARAMETER
   double low = 0, high = 0;  ///< what the bank covers
   double mean = 0, sigma = 0;
+  std::optional<double> usual;  ///< varied apart: the case's own value, which all other simulations have
   config::Location where;
 
   bool of_camera() const { return path.starts_with("camera."); }
@@ -39,14 +42,14 @@ struct BankSize {
 
 struct Question {
   calibrate::Study study;
-  std::vector<Nuisance> nuisances;  ///< those of the case first, those of the camera after them
+  std::vector<Nuisance> nuisances;  ///< those of the case, those of the case that are varied apart, those of the camera
   std::vector<Candidate> candidates;
   std::vector<std::string> left_out;  ///< hypotheses that do not apply, and why
   BankSize bank;
   std::vector<double> speed;  ///< |Ω| of every condition, rad/s
 
   std::size_t dimensions() const { return study.parameters.size() + nuisances.size(); }
-  /// Of θ, that a simulation depends on.
+  /// Of θ, that vary in every simulation.
   std::size_t case_dimensions() const;
   std::vector<Coordinate> coordinates() const;
   /// "path=value" of a parameter set, rounded as the bank rounds.
@@ -54,6 +57,9 @@ struct Question {
   /// A camera file with what the recording's camera does besides at θ, before all else; "" where the study has no such nuisance.
   std::string camera(const VectorXd& theta) const;
 };
+
+/// A number of the case at a path. Throws config::UserError at `where` when the case does not say it.
+double value_in(const config::Case& c, const std::string& path, const config::Location& where);
 
 /// Throws config::UserError with file:line: unknown keys, hypotheses that no loaded plugin has, a prior outside the range.
 Question read_question(const std::filesystem::path& file, const std::vector<std::string>& overrides, const host::Registry& registry);

@@ -30,7 +30,7 @@ VectorXd retuned_to_power(const BankData& data, const Surrogate& surrogate, cons
     for (Index i = 0; i < u.size(); ++i) {
       const Coordinate& c = data.theta[static_cast<std::size_t>(i)];
       if (c.nuisance())
-        u[i] = c.coded(c.prior_mean);
+        u[i] = c.coded(c.usual.value_or(c.prior_mean));
       else
         q += kPull * u[i] * u[i];
     }

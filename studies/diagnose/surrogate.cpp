@@ -31,6 +31,12 @@ double Coordinate::natural(double value) const {
   return low + 0.5 * (value + 1) * (high - low);
 }
 
+/// σ of a logarithm: to first order that of the value over its mean.
+double Coordinate::prior_weight() const {
+  if (!nuisance()) return 0;
+  return logarithmic ? 0.5 * std::log(high / low) * prior_mean / prior_sigma : 0.5 * (high - low) / prior_sigma;
+}
+
 VectorXd BankData::coded(const VectorXd& values) const {
   VectorXd out(values.size());
   for (Index i = 0; i < values.size(); ++i) out[i] = theta[static_cast<std::size_t>(i)].coded(values[i]);
@@ -45,11 +51,15 @@ VectorXd BankData::natural(const VectorXd& values) const {
 
 Features::Features(const BankData& data) {
   const auto d = static_cast<Index>(data.theta.size());
-  const auto additive = [&](Index i) { return data.theta[static_cast<std::size_t>(i)].additive; };
+  const auto multiplied = [&](Index i, Index j) {
+    const Coordinate &a = data.theta[static_cast<std::size_t>(i)], &b = data.theta[static_cast<std::size_t>(j)];
+    if (a.products == Products::none || b.products == Products::none) return false;
+    return (a.products == Products::all || !b.nuisance()) && (b.products == Products::all || !a.nuisance());
+  };
   for (Index i = 0; i < d; ++i) {
     if (!data.theta[static_cast<std::size_t>(i)].nuisance()) interacting_.push_back(i);
     for (Index j = i; j < d; ++j) {
-      if (i == j || !(additive(i) || additive(j))) products_.emplace_back(i, j);
+      if (i == j || multiplied(i, j)) products_.emplace_back(i, j);
     }
   }
   base_size_ = 1 + d + static_cast<Index>(products_.size());

@@ -25,7 +25,7 @@ Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const
     up[i] += 0.5, down[i] -= 0.5;
     tangent_.col(i).head(n) = whitening * (surrogate.at(up) - surrogate.at(down));
     const Coordinate& c = problem.data.theta[static_cast<std::size_t>(i)];
-    tangent_(n + i, i) = c.nuisance() ? 0.5 * (c.high - c.low) / c.prior_sigma : kFlat;
+    tangent_(n + i, i) = c.nuisance() ? c.prior_weight() : kFlat;
   }
   run_noise_ =
       (whitening * surrogate.residual_covariance() * whitening.transpose()).trace() * static_cast<double>(n - d) / static_cast<double>(n);

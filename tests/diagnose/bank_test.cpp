@@ -32,14 +32,14 @@ TEST_CASE("a bank that grows keeps every earlier run") {
   const Scratch folder;
   const Question q = question_of(folder, kSections);
   for (const int group : {-1, 0, 1, 2}) {
-    const auto few = plan_group(q, group, 8), many = plan_group(q, group, 40);
+    const auto few = plan_group(q, {group}, 8), many = plan_group(q, {group}, 40);
     REQUIRE(few.size() == 8);
     REQUIRE(many.size() == 40);
     for (std::size_t i = 0; i < few.size(); ++i) CHECK(settings(q, few[i]) == settings(q, many[i]));
   }
   // A group's runs do not change when other groups come.
   const Question alone = question_of(folder, kNuisance + "hypotheses: {rolling_resistance: {}}\n");
-  const auto with = plan_group(q, candidate(q, "rolling_resistance"), 5), without = plan_group(alone, 0, 5);
+  const auto with = plan_group(q, {candidate(q, "rolling_resistance")}, 5), without = plan_group(alone, {0}, 5);
   for (std::size_t i = 0; i < with.size(); ++i) CHECK(settings(q, with[i]) == settings(alone, without[i]));
 }
 
@@ -70,7 +70,7 @@ TEST_CASE("shares cover what they are meant to, and agree with the rounded value
   const Question q = question_of(folder, kSections);
   const int rolling = candidate(q, "rolling_resistance"), angle = candidate(q, "lifter_face_angle");
   double least = 1, most = 0, lowest = 1;
-  for (const BankPoint& p : plan_group(q, rolling, 64)) {
+  for (const BankPoint& p : plan_group(q, {rolling}, 64)) {
     REQUIRE(p.effects.size() == 1);
     const double share = p.effects[0].share;
     CHECK(share >= 0.1 - 1e-3);
@@ -81,17 +81,17 @@ TEST_CASE("shares cover what they are meant to, and agree with the rounded value
   }
   CHECK(least < 0.2);
   CHECK(most > 0.9);
-  for (const BankPoint& p : plan_group(q, angle, 64)) lowest = std::min(lowest, p.effects[0].share);
+  for (const BankPoint& p : plan_group(q, {angle}, 64)) lowest = std::min(lowest, p.effects[0].share);
   CHECK(lowest < -0.8);
   CHECK(lowest >= q.candidates[static_cast<std::size_t>(angle)].range.low - 1e-3);
-  for (const BankPoint& p : plan_group(q, candidate(q, "end_faces_at_rest"), 8)) CHECK(p.effects[0].share == 1);
-  for (const BankPoint& p : plan_group(q, -1, 8)) CHECK(p.effects.empty());
+  for (const BankPoint& p : plan_group(q, {candidate(q, "end_faces_at_rest")}, 8)) CHECK(p.effects[0].share == 1);
+  for (const BankPoint& p : plan_group(q, {-1}, 8)) CHECK(p.effects.empty());
 }
 
 TEST_CASE("parameters stay within their ranges, have four digits and break no constraint") {
   const Scratch folder;
   const Question q = question_of(folder, kSections + "constraints: [wall_friction < bead_friction]\n");
-  const auto points = plan_group(q, -1, 40);
+  const auto points = plan_group(q, {-1}, 40);
   CHECK(points.size() < 40);
   CHECK(points.size() > 10);
   const std::vector<Coordinate> theta = q.coordinates();
@@ -110,7 +110,7 @@ TEST_CASE("a parameter set of which one condition failed is left out, and said")
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, {}, {});
   mill.fails = [](const auto& s) { return s.at("mill.speed") == "60 %critical" && std::stod(s.at("fill.filling")) > 0.315; };
-  const std::vector<BankPoint> points = plan_group(q, -1, 16);
+  const std::vector<BankPoint> points = plan_group(q, {-1}, 16);
   const Bank bank = fill_bank(q, mill.workshop(), points, {0, 1});
   CHECK(mill.computed() == 32);
   std::size_t failed = 0;
@@ -137,7 +137,7 @@ TEST_CASE("numbers stand under their condition when the first parameter set has 
   const Scratch folder;
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, {}, {});
-  const std::vector<BankPoint> points = plan_group(q, -1, 8);
+  const std::vector<BankPoint> points = plan_group(q, {-1}, 8);
   const std::string first = settings(q, points[0])[1];
   mill.fails = [&](const auto& s) {
     return "pairs.glass~glass.static_friction=" + s.at("pairs.glass~glass.static_friction") == first &&
@@ -161,10 +161,10 @@ TEST_CASE("what the camera is doubted of costs no simulation") {
       question_of(folder, "nuisances: {" + camera + ", fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %}}\n" + hypotheses);
   REQUIRE(doubted.dimensions() == 5);
   CHECK(doubted.case_dimensions() == 3);
-  CHECK(plain.camera(plan_group(plain, -1, 1)[0].theta).empty());
+  CHECK(plain.camera(plan_group(plain, {-1}, 1)[0].theta).empty());
   std::set<std::string> cameras;
   for (const int group : {-1, 0, 1, 2}) {
-    const auto with = plan_group(doubted, group, 20), without = plan_group(plain, group, 20);
+    const auto with = plan_group(doubted, {group}, 20), without = plan_group(plain, {group}, 20);
     for (std::size_t i = 0; i < with.size(); ++i) {
       CHECK(settings(doubted, with[i]) == settings(plain, without[i]));
       CHECK(with[i].theta[3] >= -0.005);
@@ -177,7 +177,52 @@ TEST_CASE("what the camera is doubted of costs no simulation") {
   theta << 0.3, 0.4, 0.313, 0.004, -0.01;
   CHECK(doubted.camera(theta) == "schema_version: 1\nobservations:\n  doubted_frame: {kind: frame_error, offset_x: 0.004, scale: -0.01}\n");
   MadeUpMill mill(doubted, {}, {});
-  const BankData data = data_of(doubted, fill_bank(doubted, mill.workshop(), plan_group(doubted, -1, 8), {0}), {0});
-  CHECK(data.theta[3].additive);
-  CHECK_FALSE(data.theta[2].additive);
+  const BankData data = data_of(doubted, fill_bank(doubted, mill.workshop(), plan_group(doubted, {-1}, 8), {0}), {0});
+  CHECK(data.theta[3].products == Products::none);
+  CHECK(data.theta[2].products == Products::all);
+}
+
+TEST_CASE("a nuisance apart is varied in a group of its own, and costs the other groups nothing") {
+  const Scratch folder;
+  const std::string hypotheses = "hypotheses: {lifter_face_angle: {}, rolling_resistance: {}, end_faces_at_rest: {}}\n";
+  const std::string stiffness = "stiffness_factor: {range: [0.001, 0.01], mean: 0.004, sigma: 0.003, name: stiffness, apart: true}";
+  const Question plain = question_of(folder, kSections);
+  // Named first; it stands behind the filling and before the camera.
+  const Question q = question_of(folder, "nuisances: {camera.frame_error.scale: {range: [-2 %, 2 %], sigma: 0.5 %}, " + stiffness +
+                                             ", fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %}}\n" + hypotheses);
+  REQUIRE(q.dimensions() == 5);
+  CHECK(q.case_dimensions() == 3);
+  for (const int group : {-1, 0, 1, 2}) {
+    const auto with = plan_group(q, {group}, 20), without = plan_group(plain, {group}, 20);
+    for (std::size_t i = 0; i < with.size(); ++i) {
+      CHECK(settings(q, with[i]) == settings(plain, without[i]));
+      CHECK(with[i].theta[3] == 0.001);
+    }
+  }
+  REQUIRE(groups_apart(plain).empty());
+  REQUIRE(groups_apart(q).size() == 1);
+  const std::vector<BankPoint> points = plan_group(q, groups_apart(q)[0], 32);
+  int stiff = 0;
+  double most = 0;
+  for (const BankPoint& p : points) {
+    CHECK(p.group == "stiffness");
+    CHECK(p.effects.empty());
+    const std::vector<std::string> s = settings(q, p);
+    CHECK_THAT(s[4], Catch::StartsWith("stiffness_factor=0.00"));
+    stiff += p.theta[3] > 0.00316 ? 1 : 0;  // half of them, as it is spread by its logarithm
+    most = std::max(most, p.theta[3]);
+  }
+  CHECK(stiff >= 14);
+  CHECK(stiff <= 18);
+  CHECK(most > 0.008);
+  CHECK(most <= 0.01);
+  CHECK(plan_bank(q).size() == plan_bank(plain).size() + static_cast<std::size_t>(q.bank.base));
+  // Linear, square and × the two frictions.
+  MadeUpMill mill(q, {}, {});
+  BankData data = data_of(q, fill_bank(q, mill.workshop(), plan_bank(q), {0}), {0});
+  const Index with = Features(data).base_size();
+  data.theta[3].products = Products::none;
+  CHECK(with == Features(data).base_size() + 2);
+  CHECK(data.theta[3].logarithmic);
+  CHECK_THAT(data.theta[3].prior_weight(), WithinRel(0.5 * std::log(10.0) * 0.004 / 0.003, 1e-12));
 }

@@ -80,7 +80,8 @@ calibrate::Observation MadeUpMill::observation(std::size_t condition, const std:
   const std::uint64_t own = 100 * (condition + 1);
   for (std::size_t i = 0; i < paths_.size(); ++i) {
     const auto found = settings.find(paths_[i]);
-    const double u = found == settings.end() ? 0 : theta_[i].coded(std::stod(found->second));
+    const double left_alone = theta_[i].usual ? theta_[i].coded(*theta_[i].usual) : 0;
+    const double u = found == settings.end() ? left_alone : theta_[i].coded(std::stod(found->second));
     y += (3 - static_cast<double>(i)) * direction(own + i) * u + 0.4 * direction(own + 10 + i) * u * u;
   }
   for (const Physics& p : physics_) {

@@ -133,6 +133,27 @@ TEST_CASE("nuisances that cannot be are refused at their line") {
              StartsWith("study.yaml:10: ") && Contains("is a parameter, too"));
 }
 
+TEST_CASE("a nuisance apart has one value in the case, which its range holds, and no candidate's, or it is refused at its line") {
+  const auto apart = [](const std::string& range, const std::string& more = "") {
+    return refused("nuisances:\n  stiffness_factor: {range: " + range + ", sigma: 0.002, apart: true}\n" + more);
+  };
+  CHECK_THAT(apart("[0.002, 0.01]"), StartsWith("study.yaml:10: ") && Contains("0.002 … 0.01 does not hold 0.001, which it is"));
+  CHECK_THAT(apart("[0.001, 0.01]", "hypotheses:\n  contact_stiffness: {}\n"),
+             StartsWith("study.yaml:12: ") && Contains("changes stiffness_factor, which is the nuisance 'stiffness_factor' already"));
+  CHECK_THAT(refused("nuisances:\n  pairs.glass~glass.rolling_friction: {range: [0, 0.1], sigma: 0.1, apart: true}\n"),
+             StartsWith("study.yaml:10: 'pairs.glass~glass.rolling_friction' is not in ") && Contains("write there what it is"));
+  CHECK_THAT(refused("nuisances:\n  mill.speed: {range: [4, 10], sigma: 1, apart: true}\n"),
+             StartsWith("study.yaml:10: ") && Contains("in condition 'speed75'") && Contains("give it one value in all"));
+  CHECK_THAT(refused("nuisances:\n  camera.frame_error.scale: {range: [-2 %, 2 %], sigma: 0.5 %, apart: true}\n"),
+             StartsWith("study.yaml:10: ") && Contains("costs no simulation"));
+  CHECK_THAT(refused("nuisances:\n  fill.filling: {range: [30 %, 32 %], sigma: 1 %, name: lifter_wear}\nhypotheses:\n  lifter_wear: {}\n"),
+             StartsWith("study.yaml:12: ") && Contains("is the name of a nuisance, too"));
+  const Scratch folder;
+  const Question all = question_of(folder, "nuisances: {stiffness_factor: {range: [0.001, 0.01], sigma: 0.002, apart: true}}\n");
+  CHECK(std::any_of(all.left_out.begin(), all.left_out.end(), [](const std::string& s) { return s.starts_with("contact_stiffness:"); }));
+  CHECK(all.coordinates()[2].usual == 0.001);
+}
+
 TEST_CASE("of the camera its frame alone may be doubted, in units that fit, or it is refused at its line") {
   const Scratch folder;
   const Question q =
