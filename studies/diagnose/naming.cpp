@@ -39,13 +39,18 @@ std::vector<double> collect(const std::vector<PseudoData::Drawn>& drawn, Of of) 
   return out;
 }
 
-/// Natural parameters of fit number `k` in every draw, as intervals about `fit`.
+/// Natural parameters about `fit`, by how far fit number `k` of every draw is from what was drawn. Where the draws' truth is the fit itself
+/// their fits are taken as they are, so that an interval at the end of a range does not shrink to it.
 std::vector<Interval> theta_intervals(const BankData& data, const FitResult& fit, const std::vector<PseudoData::Drawn>& drawn,
                                       std::size_t k) {
   std::vector<Interval> out;
   for (Index i = 0; i < fit.coded.size(); ++i) {
     const Coordinate& c = data.theta[static_cast<std::size_t>(i)];
-    out.push_back(interval(collect(drawn, [&](const auto& d) { return c.natural(d.fit[k].coded[i]); }), c.natural(fit.coded[i])));
+    const auto about = [&](const auto& d) {
+      const double drawn_from = d.truth[i], found = d.fit[k].coded[i];
+      return c.natural(drawn_from == fit.coded[i] ? found : std::clamp(fit.coded[i] + drawn_from - found, -1.0, 1.0));
+    };
+    out.push_back(interval(collect(drawn, about), c.natural(fit.coded[i])));
   }
   return out;
 }

@@ -83,12 +83,17 @@ Truth PseudoData::truth(const Choice& choice, const FitResult& fit) const {
   return truth;
 }
 
-VectorXd PseudoData::pseudo_recording(const LeftOut& left, const Truth& truth, const MatrixXd& noise, emulate::Random& random) const {
+VectorXd PseudoData::drawn_theta(const Truth& truth, emulate::Random& random) const {
   VectorXd u = truth.coded;
   for (Index i = 0; i < u.size(); ++i) {
     const Coordinate& c = problem_.data.theta[static_cast<std::size_t>(i)];
     if (c.nuisance() && i != truth.freed) u[i] = std::clamp(c.coded(c.prior_mean) + random.normal() / c.prior_weight(), -1.0, 1.0);
   }
+  return u;
+}
+
+VectorXd PseudoData::pseudo_recording(const LeftOut& left, const Truth& truth, const MatrixXd& noise, emulate::Random& random) const {
+  const VectorXd& u = truth.coded;
   const double scale = std::sqrt((1 + left.surrogate->leverage(u, truth.effects)) / (1 + left.leverage));
   return left.surrogate->at(u, truth.effects) + scale * left.deviation + noise * random.normals(left.deviation.size());
 }
@@ -105,7 +110,8 @@ std::vector<PseudoData::Drawn> PseudoData::draw(const Truth& truth, const std::v
   studies::for_each_item(out.size(), studies::worker_count(options_.threads, out.size()), [&](std::size_t b, std::size_t) {
     emulate::Random random(options_.seed + stream, b);
     const std::size_t r = b / laws() % runs.size();
-    const VectorXd y = pseudo_recording(*runs[r], truth, noise_factors_[b % laws()], random);
+    out[b].truth = drawn_theta(truth, random);
+    const VectorXd y = pseudo_recording(*runs[r], {out[b].truth, truth.effects, truth.freed}, noise_factors_[b % laws()], random);
     for (const Model& m : models[r]) out[b].fit.push_back(m.fit(y));
     const FitResult& first = out[b].fit.front();
     out[b].residual = y - runs[r]->surrogate->at(first.coded, models[r].front().effects(first));

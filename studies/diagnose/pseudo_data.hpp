@@ -35,6 +35,7 @@ class PseudoData {
   /// questions apart.
   struct Drawn {
     std::vector<FitResult> fit;
+    VectorXd truth;     ///< coded θ, nuisances as they were drawn
     VectorXd residual;  ///< of the first choice: y* − m
   };
   std::vector<Drawn> draw(const Truth& truth, const std::vector<Choice>& choices, int draws, std::uint64_t stream) const;
@@ -48,6 +49,8 @@ class PseudoData {
   };
   std::vector<const LeftOut*> fitting(const Truth& truth) const;
   Model model(const Surrogate& surrogate, const Choice& choice) const;
+  /// θ of the truth with nuisances from their priors.
+  VectorXd drawn_theta(const Truth& truth, emulate::Random& random) const;
   VectorXd pseudo_recording(const LeftOut& left, const Truth& truth, const MatrixXd& noise, emulate::Random& random) const;
 
   const Problem& problem_;

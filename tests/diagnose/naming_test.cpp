@@ -1,4 +1,5 @@
 // Naming on a mill that is a formula: what is there is named, what is not there is not, what friction imitates is said to be concealed.
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -87,20 +88,28 @@ TEST_CASE("a filling beyond its prior is a nuisance, not physics") {
   CHECK(n.judged[3].theta[2].high90 >= n.judged[3].theta[2].value);
 }
 
-TEST_CASE("false alarms stay at the level, and p-values are spread evenly where nothing is missing") {
+TEST_CASE("false alarms stay at the level, p-values are spread evenly and intervals hold the truth where nothing is missing") {
   int alarms = 0, below_half = 0;
+  std::array<int, 3> inside{};  // the last is a nuisance
   const int sets = 60;
   for (int k = 0; k < sets; ++k) {
     emulate::Random random(77, static_cast<std::uint64_t>(k));
-    const Problem p = made_up_problem({}, point(1.2 * random.uniform() - 0.6, 1.2 * random.uniform() - 0.6, 0.3 * random.normal()),
-                                      {0, 0, 0}, 100 + static_cast<std::uint64_t>(k));
+    const VectorXd truth = point(1.2 * random.uniform() - 0.6, 1.2 * random.uniform() - 0.6, 0.3 * random.normal());
+    const Problem p = made_up_problem({}, truth, {0, 0, 0}, 100 + static_cast<std::uint64_t>(k));
     const Naming n = name_physics(p, quick(240));
     alarms += n.best >= 0 ? 1 : 0;
     below_half += n.base_p < 0.5 ? 1 : 0;
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+      const Interval& found = n.base_theta[i];
+      CHECK(found.low90 <= found.value);
+      CHECK(found.value <= found.high90);
+      inside[i] += truth[static_cast<Index>(i)] >= found.low90 && truth[static_cast<Index>(i)] <= found.high90 ? 1 : 0;
+    }
   }
   CHECK(alarms <= 8);  // of 60 at 5 %: 3 expected, more than 8 by chance once in 250
   CHECK(below_half >= 15);
   CHECK(below_half <= 48);
+  for (const int held : inside) CHECK(held >= 46);  // of 60 at 90 %: 54 expected, fewer than 46 by chance once in 900
 }
 
 TEST_CASE("false alarms stay at the level where errors are correlated in the one way or the other") {
