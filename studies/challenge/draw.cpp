@@ -24,13 +24,14 @@ double draw_nuisance(const diagnose::Nuisance& n, emulate::Random& random) {
 }
 
 /// A nuisance apart is what the challenge sets it to, else what the case says.
-double made(const Challenge& challenge, const diagnose::Question& q, const diagnose::Nuisance& n) {
+double made(const Challenge& challenge, const SetsOf& sets, const diagnose::Question& q, const diagnose::Nuisance& n) {
   std::vector<std::string> settings = q.study.conditions.front().settings;
   settings.insert(settings.end(), challenge.truth.begin(), challenge.truth.end());
+  settings.insert(settings.end(), sets.settings.begin(), sets.settings.end());
   return diagnose::value_in(config::read_case(q.study.base.string(), settings), n.path, n.where);
 }
 
-Eigen::VectorXd draw_theta(const Challenge& challenge, const diagnose::Question& q, emulate::Random& random) {
+Eigen::VectorXd draw_theta(const Challenge& challenge, const SetsOf& sets, const diagnose::Question& q, emulate::Random& random) {
   const auto parameters = static_cast<Eigen::Index>(q.study.parameters.size());
   Eigen::VectorXd theta(static_cast<Eigen::Index>(q.dimensions()));
   for (int trial = 0;; ++trial) {
@@ -45,7 +46,7 @@ Eigen::VectorXd draw_theta(const Challenge& challenge, const diagnose::Question&
   }
   for (std::size_t i = 0; i < q.nuisances.size(); ++i) {
     const diagnose::Nuisance& n = q.nuisances[i];
-    theta[parameters + static_cast<Eigen::Index>(i)] = n.usual ? made(challenge, q, n) : diagnose::rounded(draw_nuisance(n, random));
+    theta[parameters + static_cast<Eigen::Index>(i)] = n.usual ? made(challenge, sets, q, n) : diagnose::rounded(draw_nuisance(n, random));
   }
   return theta;
 }
@@ -64,7 +65,7 @@ std::vector<Truth> draw_truths(const Challenge& challenge, const diagnose::Quest
     for (int i = 0; i < sets.count; ++i) {
       const std::uint64_t stream = kConditions * (1 + truths.size());
       emulate::Random random(challenge.seed, stream);
-      Truth t{sets.kind, sets.name, draw_theta(challenge, question, random), {}, sets.settings, stream};
+      Truth t{sets.kind, sets.name, draw_theta(challenge, sets, question, random), {}, sets.settings, stream};
       for (const std::string& name : sets.hypotheses) t.effects.push_back(draw_effect(sets, name, question, random));
       truths.push_back(std::move(t));
     }

@@ -19,8 +19,8 @@ struct Truth {
   std::uint64_t stream = 0;           ///< of the random numbers of its runs
 };
 
-/// Contact parameters evenly from the middle 70 % of their ranges, nuisances from their priors, strengths evenly; in a drawn order, so that
-/// a set's number tells nothing.
+/// Contact parameters evenly from the middle 70 % of their ranges, nuisances from their priors (those apart are what the challenge sets
+/// them to), strengths evenly; in a drawn order, so that a set's number tells nothing.
 std::vector<Truth> draw_truths(const Challenge& challenge, const diagnose::Question& question);
 
 /// The run that a recording of one condition is made of. `label` tells nothing of the truth.

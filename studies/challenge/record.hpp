@@ -10,7 +10,8 @@
 
 namespace millscope::challenge {
 
-/// What the user believes of a condition: the base case with the nuisances at their prior means. It names no case file.
+/// What the user believes of a condition: the base case with the nuisances at their prior means, those apart as they are in the case. It
+/// names no case file.
 studies::Condition believed(const diagnose::Question& question, std::size_t condition, const host::Registry& registry);
 
 struct PowerOfRun {

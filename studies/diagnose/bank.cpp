@@ -12,6 +12,7 @@ namespace millscope::diagnose {
 namespace {
 
 constexpr double kLeastShare = 0.1;
+constexpr std::size_t kSpareApart = 2;  // runs beyond the coefficients of a nuisance apart: linear, square, × every parameter
 constexpr std::uint64_t kOffsets = 16;  // blocks of Sobol's sequence among which groups are spread, of as many points
 
 std::uint64_t hash(const std::string& text) {
@@ -52,6 +53,21 @@ campaign::Simulation simulation(const Question& q, const VectorXd& theta, const 
   for (std::string& setting : q.settings(theta, effects)) s.settings.push_back(std::move(setting));
   for (std::string& setting : calibrate::observed_outputs()) s.settings.push_back(std::move(setting));
   return s;
+}
+
+/// The surrogate has no other runs that tell what a nuisance apart does.
+void check_apart(const Question& q, const BankData& data) {
+  for (const Group& group : groups_apart(q)) {
+    const Coordinate& c = data.theta[static_cast<std::size_t>(group.apart)];
+    const auto varied = static_cast<std::size_t>(
+        std::count_if(data.rows.begin(), data.rows.end(), [&](const BankRow& row) { return row.theta[group.apart] != *c.usual; }));
+    const std::size_t least = 2 + q.study.parameters.size() + kSpareApart;
+    if (varied < least)
+      throw config::UserError(
+          fmt::format("{} finished simulations of the bank vary the nuisance '{}', {} are needed; raise bank.base, or leave "
+                      "the nuisance out",
+                      varied, c.name, least));
+  }
 }
 
 }  // namespace
@@ -169,6 +185,7 @@ BankData data_of(const Question& q, const Bank& bank, const std::vector<std::siz
   }
   data.value.resize(static_cast<Index>(values.size()), values.front().size());
   for (std::size_t r = 0; r < values.size(); ++r) data.value.row(static_cast<Index>(r)) = values[r].transpose();
+  check_apart(q, data);
   return data;
 }
 

@@ -13,6 +13,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+inline constexpr double kWideRange = 2;  ///< high over low, from which on a logarithm may serve better
+
 /// With what the surrogate multiplies a coordinate, itself apart.
 enum class Products { all, parameters, none };
 
@@ -20,7 +22,7 @@ enum class Products { all, parameters, none };
 struct Coordinate {
   std::string name;
   double low = 0, high = 1;  ///< natural units; what the bank covers
-  double prior_mean = 0;     ///< of a nuisance
+  double prior_mean = 0;     ///< of a nuisance; the median of a logarithmic one
   double prior_sigma = 0;    ///< 0: flat over the range
   bool logarithmic = false;  ///< the surrogate is quadratic in its logarithm
   Products products = Products::all;
@@ -52,6 +54,8 @@ struct BankData {
 
   VectorXd coded(const VectorXd& natural) const;
   VectorXd natural(const VectorXd& coded) const;
+  /// Whether every nuisance apart has its usual value in a run.
+  bool usual(const BankRow& row) const;
 };
 
 }  // namespace millscope::diagnose

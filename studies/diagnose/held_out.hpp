@@ -38,8 +38,8 @@ struct HeldOut {
   bool contradicts = false;  ///< that against some rival lies below 0
 };
 
-/// θ that matches the powers of the fit conditions, nuisances at their priors, as near the middle of the ranges as that allows: the
-/// practice.
+/// θ that matches the powers of the fit conditions, nuisances at their priors' means (those apart as they are in the case), as near the
+/// middle of the ranges as that allows: the practice.
 VectorXd retuned_to_power(const BankData& data, const Surrogate& surrogate, const VectorXd& observed, const MatrixXd& covariance,
                           const std::vector<Index>& powers);
 

@@ -88,7 +88,7 @@ class Namer {
     out_.base_theta = theta_intervals(p_.data, out_.base, drawn, 0);
     for (Index i = 0; i < out_.base.coded.size(); ++i) {
       const Coordinate& c = p_.data.theta[static_cast<std::size_t>(i)];
-      if (!c.nuisance() && std::fabs(out_.base.coded[i]) > kAtLimit) out_.at_limit.push_back(c.name);
+      if (std::fabs(out_.base.coded[i]) > kAtLimit) out_.at_limit.push_back(c.name);
     }
     std::vector<std::vector<double>> delta(count());
     for (std::size_t j = 0; j < count(); ++j) {

@@ -45,7 +45,7 @@ PseudoData::PseudoData(const Problem& problem, const NamingOptions& options)
     left.deviation = data.value.row(static_cast<Index>(r)).transpose() - left.surrogate->at(u, effects);
     left.leverage = left.surrogate->leverage(u, effects);
     left.candidate = effects.empty() ? -1 : effects.front().candidate;
-    base += effects.empty() ? 1 : 0;
+    base += effects.empty() && data.usual(data.rows[r]) ? 1 : 0;
     left_out_.push_back(std::move(left));
   }
   if (base < kLeastBase)
@@ -87,7 +87,10 @@ VectorXd PseudoData::drawn_theta(const Truth& truth, emulate::Random& random) co
   VectorXd u = truth.coded;
   for (Index i = 0; i < u.size(); ++i) {
     const Coordinate& c = problem_.data.theta[static_cast<std::size_t>(i)];
-    if (c.nuisance() && i != truth.freed) u[i] = std::clamp(c.coded(c.prior_mean) + random.normal() / c.prior_weight(), -1.0, 1.0);
+    if (!c.nuisance() || i == truth.freed) continue;
+    const double centre = c.coded(c.prior_mean), sigma = 1 / c.prior_weight();
+    do u[i] = centre + sigma * random.normal();
+    while (std::fabs(u[i]) > 1);  // the prior's mean lies within the range
   }
   return u;
 }

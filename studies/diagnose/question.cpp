@@ -16,8 +16,6 @@ namespace {
 
 using config::Node;
 
-constexpr double kWideRange = 2;  // high over low, from which on a nuisance apart is taken by its logarithm
-
 double number(const Node& node) {
   const config::Quantity q = config::read_quantity(node);
   return q.has_unit ? q.unit.to_si(q.number) : q.number;
@@ -131,13 +129,18 @@ void check_parameters(const Question& q, const host::Registry& registry) {
 }
 
 void check_nuisance(const Question& q, const Nuisance& n, const host::Registry& registry) {
+  if (n.name == "base") throw config::UserError(n.where, "nuisance 'base' has the name of the bank's first group; give it another 'name'");
+  for (const Nuisance& other : q.nuisances) {
+    if (&other != &n && other.name == n.name)
+      throw config::UserError(n.where, fmt::format("there are two nuisances '{}'; give one of them another 'name'", n.name));
+  }
   for (const calibrate::Parameter& p : q.study.parameters) {
     if (p.path == n.path || p.name == n.name)
       throw config::UserError(n.where,
                               fmt::format("nuisance '{}' is a parameter, too; keep one of them, or give it another 'name'", n.name));
   }
   if (n.of_camera()) return check_camera_frame(n, registry);
-  if (n.usual && !(*n.usual >= n.low && *n.usual <= n.high))
+  if (n.usual && !(rounded(*n.usual) >= rounded(n.low) && rounded(*n.usual) <= rounded(n.high)))
     throw config::UserError(n.where, fmt::format("nuisance '{}' is apart, and its range {:.6g} … {:.6g} does not hold {:.6g}, which it is "
                                                  "in {}; widen the range",
                                                  n.name, n.low, n.high, *n.usual, q.study.base.string()));
@@ -155,7 +158,8 @@ void check_nuisance(const Question& q, const Nuisance& n, const host::Registry& 
 std::string refused(const Question& q, const Candidate& c, const host::Registry& registry) {
   for (const Nuisance& n : q.nuisances) {
     if (n.name == c.name) return "is the name of a nuisance, too; give that another 'name'";
-    if (std::find(c.paths.begin(), c.paths.end(), n.path) != c.paths.end())
+    const bool sets = std::any_of(c.set.begin(), c.set.end(), [&](const std::string& s) { return s.starts_with(n.path + "="); });
+    if (sets || std::find(c.paths.begin(), c.paths.end(), n.path) != c.paths.end())
       return fmt::format("changes {}, which is the nuisance '{}' already; keep one of them", n.path, n.name);
   }
   try {

@@ -14,7 +14,6 @@
 namespace millscope::diagnose {
 namespace {
 
-constexpr double kWideRange = 2;       // high over low, from which on a logarithm may serve better
 constexpr std::size_t kForSquare = 3;  // different shares
 constexpr std::size_t kSpare = 2;      // runs beyond the coefficients of a candidate's block
 constexpr double kMostLeverage = 0.95;
@@ -47,6 +46,13 @@ VectorXd BankData::natural(const VectorXd& values) const {
   VectorXd out(values.size());
   for (Index i = 0; i < values.size(); ++i) out[i] = theta[static_cast<std::size_t>(i)].natural(values[i]);
   return out;
+}
+
+bool BankData::usual(const BankRow& row) const {
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    if (theta[i].usual && row.theta[static_cast<Index>(i)] != *theta[i].usual) return false;
+  }
+  return true;
 }
 
 Features::Features(const BankData& data) {

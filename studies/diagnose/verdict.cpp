@@ -20,6 +20,9 @@ std::string meaning(const Question& q, const Diagnosis& d, int rival) {
   if (r.candidate >= 0) return q.candidates[static_cast<std::size_t>(r.candidate)].sentence;
   const Coordinate& c = d.problem.data.theta[static_cast<std::size_t>(r.freed)];
   const double value = d.naming.judged[static_cast<std::size_t>(rival)].theta[static_cast<std::size_t>(r.freed)].value;
+  if (c.logarithmic)
+    return fmt::format("'{}' is {:.4g} and not {:.4g} times or over {:.2g}.", c.name, value, c.prior_mean,
+                       std::exp(c.prior_sigma / c.prior_mean));
   return fmt::format("'{}' is {:.4g} and not {:.4g} ± {:.2g}.", c.name, value, c.prior_mean, c.prior_sigma);
 }
 

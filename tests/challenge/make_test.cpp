@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "studies/challenge/answer.hpp"
+#include "studies/challenge/draw.hpp"
 #include "studies/challenge/make.hpp"
 #include "studies/challenge/run.hpp"
 #include "studies/recording/recording.hpp"
@@ -94,16 +95,29 @@ TEST_CASE("sets are recordings of drawn mills, and tell nothing of what was draw
   CHECK(testing::refusal([&] { made.make_sets(); }).find("holds sealed sets already") != std::string::npos);
 }
 
+TEST_CASE("a nuisance apart is in every truth what the challenge makes it, or the set itself") {
+  Made made;
+  std::string study = kStudy, text = kChallenge;
+  study.replace(study.find("hypotheses"), 0, "  stiffness_factor: {range: [0.00005, 0.01], mean: 0.002, sigma: 0.002, apart: true}\n");
+  text.replace(text.find("{kind: none}"), 0, "{kind: outside, name: softer, set: {stiffness_factor: 0.0001}}, ");
+  std::ofstream(made.folder / "study.yaml") << study;
+  std::ofstream(made.folder / "c.yaml") << text;
+  const Challenge c = read_challenge(made.folder / "c.yaml");
+  const diagnose::Question q = question_of(c, made.registry);
+  REQUIRE(q.nuisances.back().usual);
+  for (const Truth& t : draw_truths(c, q)) CHECK(t.theta[2] == (t.kind == challenge::Kind::outside ? 0.0001 : 0.001));
+}
+
 TEST_CASE("a set whose diagnosis throws is noted, and the others are tried") {
   Made made;
   seal(made.sets, {{"set_001", challenge::Kind::none, "", {}, {}, {}}, {"set_002", challenge::Kind::none, "", {}, {}, {}}},
        made.folder / "study.yaml");
-  const RunCount count = run(made.sets, made.registry, {}, {});
+  const RunCount count = challenge::run(made.sets, made.registry, {}, {});
   CHECK(count.failed == 2);
   CHECK(read(made.sets / "set_002" / "diagnosis" / "failed.txt").find("study.yaml: no such file") != std::string::npos);
   fs::create_directories(made.sets / "set_001" / "diagnosis");
   std::ofstream(made.sets / "set_001" / "diagnosis" / "diagnosis.json") << "{}";
-  CHECK(run(made.sets, made.registry, {}, {}).known == 1);
+  CHECK(challenge::run(made.sets, made.registry, {}, {}).known == 1);
 }
 
 TEST_CASE("hypotheses that the study does not have are refused") {

@@ -226,3 +226,16 @@ TEST_CASE("a nuisance apart is varied in a group of its own, and costs the other
   CHECK(data.theta[3].logarithmic);
   CHECK_THAT(data.theta[3].prior_weight(), WithinRel(0.5 * std::log(10.0) * 0.004 / 0.003, 1e-12));
 }
+
+TEST_CASE("a nuisance apart whose simulations fail is refused with the remedy") {
+  const Scratch folder;
+  const Question q = question_of(folder,
+                                 "nuisances: {stiffness_factor: {range: [0.001, 0.01], sigma: 0.003, name: stiffness, apart: true}}\n"
+                                 "hypotheses: {rolling_resistance: {}}\n");
+  MadeUpMill mill(q, {}, {});
+  mill.fails = [](const auto& s) { return s.contains("stiffness_factor") && std::stod(s.at("stiffness_factor")) > 0.0012; };
+  const Bank bank = fill_bank(q, mill.workshop(), plan_bank(q), {0});
+  CHECK_THAT(
+      testing::refusal([&] { data_of(q, bank, {0}); }),
+      Contains("finished simulations of the bank vary the nuisance 'stiffness', 6 are needed; raise bank.base, or leave the nuisance out"));
+}

@@ -150,6 +150,21 @@ TEST_CASE("a camera that was found to stand aside is where corrected/ goes on fr
   CHECK_THAT(again.nuisances[0].sigma, WithinRel(0.001, 1e-6));
 }
 
+TEST_CASE("corrected/ has what was varied apart as it was fitted, and doubts it again") {
+  const Scratch folder;
+  // The mill is stiffer than the range allows for: the fit stands at its end, which the corrected case has then.
+  const nlohmann::json j =
+      written(folder, {kBase[0], kBase[1], "stiffness_factor=0.012", kRolling + "=0.12"},
+              "nuisances: {stiffness_factor: {range: [0.001, 0.0100004], mean: 0.004, sigma: 0.004, name: stiffness, apart: true}}\n", 0.4);
+  REQUIRE(j["hypotheses"][0]["name"] == "rolling_resistance");
+  const config::Case c = config::read_case((folder / "out/corrected/case.yaml").string());
+  CHECK_THAT(c.stiffness_factor, WithinRel(j["contact_parameters"]["unmasked"]["stiffness"]["value"].get<double>(), 1e-3));
+  CHECK(c.stiffness_factor > 0.002);
+  const Question again = read_question(folder / "out/corrected/study.yaml", {}, registry());
+  REQUIRE(again.nuisances.size() == 1);
+  CHECK(again.nuisances[0].usual == c.stiffness_factor);
+}
+
 TEST_CASE("where nothing was found there is no corrected case, an older one goes") {
   const Scratch folder;
   std::filesystem::create_directories(folder / "out/corrected");

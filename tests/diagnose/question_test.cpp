@@ -146,6 +146,13 @@ TEST_CASE("a nuisance apart has one value in the case, which its range holds, an
              StartsWith("study.yaml:10: ") && Contains("in condition 'speed75'") && Contains("give it one value in all"));
   CHECK_THAT(refused("nuisances:\n  camera.frame_error.scale: {range: [-2 %, 2 %], sigma: 0.5 %, apart: true}\n"),
              StartsWith("study.yaml:10: ") && Contains("costs no simulation"));
+  CHECK_THAT(apart("[0.001, 0.01]", "hypotheses:\n  soft: {sentence: Softer., set: {stiffness_factor: 0.002}}\n"),
+             StartsWith("study.yaml:12: ") && Contains("changes stiffness_factor, which is the nuisance"));
+  CHECK_THAT(refused("nuisances:\n  fill.filling: {range: [30 %, 32 %], sigma: 1 %, name: a}\n  stiffness_factor: {range: [0.001, 0.01], "
+                     "sigma: 0.1, name: a}\n"),
+             StartsWith("study.yaml:1") && Contains("there are two nuisances 'a'"));
+  CHECK_THAT(refused("nuisances:\n  fill.filling: {range: [30 %, 32 %], sigma: 1 %, name: base}\n"),
+             StartsWith("study.yaml:10: ") && Contains("give it another 'name'"));
   CHECK_THAT(refused("nuisances:\n  fill.filling: {range: [30 %, 32 %], sigma: 1 %, name: lifter_wear}\nhypotheses:\n  lifter_wear: {}\n"),
              StartsWith("study.yaml:12: ") && Contains("is the name of a nuisance, too"));
   const Scratch folder;

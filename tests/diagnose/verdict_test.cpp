@@ -222,11 +222,13 @@ TEST_CASE("a camera that stands aside is named, and no physics") {
 TEST_CASE("a mill that is stiffer than the fitted one is no missing physics where that is a nuisance, and its friction is covered") {
   const Scratch folder;
   const auto diagnosed_with = [&](const std::string& nuisances) {
-    const Question q = question_of(folder, nuisances + "hypotheses: {rolling_resistance: {}, lifter_wear: {}}\nbank: {base: 24, each: 10}\n");
+    const Question q =
+        question_of(folder, nuisances + "hypotheses: {rolling_resistance: {}, lifter_wear: {}}\nbank: {base: 24, each: 10}\n");
     MadeUpMill mill(q, usual(), {kTheta[0], kTheta[1], "stiffness_factor=0.008"}, 0.4);
     if (q.nuisances.empty()) {  // the formula needs what the study does not doubt
       const Question doubted = question_of(
-          folder, "nuisances: {stiffness_factor: {range: [0.001, 0.01], mean: 0.004, sigma: 0.004, apart: true}}\nhypotheses: {lifter_wear: {}}\n");
+          folder,
+          "nuisances: {stiffness_factor: {range: [0.001, 0.01], mean: 0.004, sigma: 0.004, apart: true}}\nhypotheses: {lifter_wear: {}}\n");
       mill = MadeUpMill(doubted, usual(), {kTheta[0], kTheta[1], "stiffness_factor=0.008"}, 0.4);
     }
     return diagnose::diagnose(q, mill.workshop(), quick());
