@@ -48,8 +48,9 @@ void print_help() {
   for (const Command& c : kCommands) {
     if (c.what != nullptr) fmt::print("  {:<10} {}\n", c.name, c.what);
   }
-  fmt::print("\n'millscope COMMAND --help' explains one, with an example.\n\nExample:\n  millscope run configs/demo.yaml -o demo-out\n\n"
-             "Exit codes:");
+  fmt::print(
+      "\n'millscope COMMAND --help' explains one, with an example.\n\nExample:\n  millscope run configs/demo.yaml -o demo-out\n\n"
+      "Exit codes:");
   const char* before = " ";
   for (const ExitCode& e : kExitCodes) {
     fmt::print("{}{} {}", before, e.code, e.means);
@@ -86,13 +87,16 @@ int main(int count, char** words) {
   app::command_line.assign(words, words + count);
   try {
     const int code = app::dispatch(app::Arguments(words + 1, words + count));
-    if (std::fflush(stdout) != 0) throw config::UserError(fmt::format("standard output cannot be written ({}); send it elsewhere", std::strerror(errno)), app::kCannotWrite);
+    if (std::fflush(stdout) != 0)
+      throw config::UserError(fmt::format("standard output cannot be written ({}); send it elsewhere", std::strerror(errno)),
+                              app::kCannotWrite);
     return code;
   } catch (const config::UserError& e) {
     fmt::print(stderr, "millscope: {}\n", e.what());
     return e.exit_code();
   } catch (const std::filesystem::filesystem_error& e) {
-    fmt::print(stderr, "millscope: {}: {}; check the path, its permissions and the room on its disk\n", e.path1().string(), e.code().message());
+    fmt::print(stderr, "millscope: {}: {}; check the path, its permissions and the room on its disk\n", e.path1().string(),
+               e.code().message());
     return app::kCannotWrite;
   } catch (const std::system_error& e) {  // standard output, or a thread
     fmt::print(stderr, "millscope: {}; check the room on the disk and this session's limits (ulimit -a)\n", e.what());

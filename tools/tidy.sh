@@ -4,7 +4,7 @@ set -eu
 cd "$(dirname "$0")/.."
 build=$1
 shift
-[ $# -gt 0 ] || set -- $(git ls-files 'kernel/*.cpp' 'plugins/*.cpp' 'geometry/*.cpp' 'app/*.cpp' 'bench/*.cpp' 'tests/*.cpp')
+[ $# -gt 0 ] || set -- $(git ls-files '*.cpp')
 for tool in clang-tidy clang-format; do
   command -v $tool >/dev/null || { echo "millscope: $tool is missing; apt-get install clang-tidy clang-format" >&2; exit 1; }
 done

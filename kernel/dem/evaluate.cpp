@@ -165,9 +165,9 @@ System::Scratch::Scratch(int history_count) {
                       &batch.torque_i, &batch.torque_j, &batch.moment_i, &batch.moment_j}) {
     for (double*& p : *group) p = take();
   }
-  for (double** p : {&batch.overlap, &batch.radius_i, &batch.radius_j, &batch.radius, &batch.mass, &batch.arm_i, &batch.arm_j,
-                     &batch.normal_force, &batch.normal_stiffness, &batch.added_force, &batch.added_cap, &batch.restitution,
-                     &batch.friction, &query_radius, &wall.overlap}) {
+  for (double** p :
+       {&batch.overlap, &batch.radius_i, &batch.radius_j, &batch.radius, &batch.mass, &batch.arm_i, &batch.arm_j, &batch.normal_force,
+        &batch.normal_stiffness, &batch.added_force, &batch.added_cap, &batch.restitution, &batch.friction, &query_radius, &wall.overlap}) {
     *p = take();
   }
   for (double*& p : batch.power) p = take();
