@@ -177,7 +177,7 @@ BankData data_of(const Question& q, const Bank& bank, const std::vector<std::siz
     }
     if (!whole) continue;
     data.rows.push_back({bank.points[p].theta, bank.points[p].effects});
-    values.push_back(Eigen::Map<const VectorXd>(row.data(), static_cast<Index>(row.size())));
+    values.emplace_back(Eigen::Map<const VectorXd>(row.data(), static_cast<Index>(row.size())));
   }
   if (values.empty()) {
     throw config::UserError(fmt::format("no simulation of the bank has come to its end{}{}; correct the base case or the ranges",

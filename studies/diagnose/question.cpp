@@ -252,12 +252,12 @@ std::vector<std::string> Question::settings(const VectorXd& theta, const std::ve
   for (std::size_t i = 0; i < study.parameters.size(); ++i) {
     const std::string value = fmt::format("{:.4g}", theta[static_cast<Index>(i)]);
     out.push_back(study.parameters[i].path + "=" + value);
-    for (const std::string& path : study.parameters[i].tied) out.push_back(path + "=" + value);
+    for (const std::string& path : study.parameters[i].tied) out.push_back(fmt::format("{}={}", path, value));
   }
   for (std::size_t i = 0; i < nuisances.size(); ++i) {
     const Nuisance& n = nuisances[i];
     const std::string value = fmt::format("{:.4g}", theta[static_cast<Index>(study.parameters.size() + i)]);
-    if (!n.of_camera() && !(n.usual && value == fmt::format("{:.4g}", *n.usual))) out.push_back(n.path + "=" + value);
+    if (!n.of_camera() && !(n.usual && value == fmt::format("{:.4g}", *n.usual))) out.push_back(fmt::format("{}={}", n.path, value));
   }
   for (const Effect& e : effects) {
     for (std::string& s : settings_of(candidates[static_cast<std::size_t>(e.candidate)], e.share)) out.push_back(std::move(s));
