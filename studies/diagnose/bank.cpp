@@ -106,13 +106,13 @@ std::vector<BankPoint> plan_group(const Question& q, const Group& of, int count)
   return points;
 }
 
-std::vector<BankPoint> plan_bank(const Question& q) {
+std::vector<BankPoint> plan_bank(const Question& q, int each) {
   std::vector<BankPoint> all = plan_group(q, {}, q.bank.base);
   const auto add = [&](const Group& group, int count) {
     for (BankPoint& p : plan_group(q, group, count)) all.push_back(std::move(p));
   };
   for (const Group& group : groups_apart(q)) add(group, q.bank.base);
-  for (std::size_t j = 0; j < q.candidates.size(); ++j) add({static_cast<int>(j), -1}, q.bank.each);
+  for (std::size_t j = 0; j < q.candidates.size(); ++j) add({static_cast<int>(j), -1}, each);
   return all;
 }
 

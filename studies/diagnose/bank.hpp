@@ -33,8 +33,8 @@ std::vector<Group> groups_apart(const Question& question);
 /// Sobol' points over the ranges; what is simulated of a group does not depend on the other groups, on how many are asked for, nor on the
 /// camera's nuisances, so that a bank grows without losing a run. One-sided shares lie in 0.1 … 1.
 std::vector<BankPoint> plan_group(const Question& question, const Group& group, int count);
-/// All groups in full.
-std::vector<BankPoint> plan_bank(const Question& question);
+/// All groups, `each` parameter sets with every candidate.
+std::vector<BankPoint> plan_bank(const Question& question, int each);
 
 campaign::Simulation simulation_of(const Question& question, const BankPoint& point, std::size_t condition);
 

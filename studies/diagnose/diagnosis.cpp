@@ -21,14 +21,7 @@ void say(const Workshop& workshop, const std::string& line) {
 /// The bank's first runs of each candidate tell which cannot matter; the others get all of theirs.
 std::vector<BankPoint> screened(const Question& question, const Workshop& workshop, const std::vector<std::size_t>& fit,
                                 double noise_units) {
-  std::vector<BankPoint> points = plan_group(question, {}, question.bank.base);
-  for (const Group& apart : groups_apart(question)) {
-    for (BankPoint& p : plan_group(question, apart, question.bank.base)) points.push_back(std::move(p));
-  }
-  for (std::size_t j = 0; j < question.candidates.size(); ++j) {
-    for (BankPoint& p : plan_group(question, {static_cast<int>(j), -1}, std::min(question.bank.first, question.bank.each)))
-      points.push_back(std::move(p));
-  }
+  std::vector<BankPoint> points = plan_bank(question, std::min(question.bank.first, question.bank.each));
   const Problem problem = problem_of(question, workshop, fill_bank(question, workshop, points, fit), fit);
   const Surrogate surrogate(problem.data);
   const MatrixXd whitening = whitener(problem.covariance + surrogate.residual_covariance());
