@@ -42,14 +42,19 @@ class Path {
     }
   }
 
-  double mean(int axis, double from, double to) const {
-    return view_.position[axis][0] + (integral(axis, to) - integral(axis, from)) / (to - from);
+  /// The last sample before `t` that has one behind it, sought from `i` on: a window's ends only move forward, or, shrinking, stand still.
+  std::int64_t interval(std::int64_t i, double t) const {
+    while (i + 2 < view_.count && view_.time[i + 1] <= t) ++i;
+    return i;
+  }
+
+  /// Over [from, to], which begin in the intervals `first` and `last`.
+  double mean(int axis, std::int64_t first, double from, std::int64_t last, double to) const {
+    return view_.position[axis][0] + (integral(axis, last, to) - integral(axis, first, from)) / (to - from);
   }
 
  private:
-  double integral(int axis, double t) const {
-    const std::int64_t i =
-        std::clamp<std::int64_t>(std::upper_bound(view_.time, view_.time + view_.count, t) - view_.time - 1, 0, view_.count - 2);
+  double integral(int axis, std::int64_t i, double t) const {
     const double* x = view_.position[axis];
     const double s = t - view_.time[i], slope = (x[i + 1] - x[i]) / (view_.time[i + 1] - view_.time[i]);
     return integral_[axis][static_cast<std::size_t>(i)] + s * (x[i] - x[0] + 0.5 * slope * s);
@@ -70,10 +75,14 @@ class LocationBlur {
       throw Refusal("the samples lie farther apart than the window; put location_blur before sampling, and record tracks more often");
     }
     const Path path(view);
+    std::int64_t first = 0, last = 0;
     for (TrackSample& s : out) {
       const double half = std::min({0.5 * window_, s.time - view.time[0], view.time[view.count - 1] - s.time});
       if (half <= 0.0) continue;
-      for (int axis = 0; axis < 3; ++axis) s.position[axis] = path.mean(axis, s.time - half, s.time + half);
+      const double from = s.time - half, to = s.time + half;
+      first = path.interval(first, from);
+      last = path.interval(last, to);
+      for (int axis = 0; axis < 3; ++axis) s.position[axis] = path.mean(axis, first, from, last, to);
     }
     return out;
   }

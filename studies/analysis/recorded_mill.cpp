@@ -119,10 +119,16 @@ void find_radius(const MillMotion& motion, RecordedMill& known) {
 
 }  // namespace
 
-RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCase>& mill) {
+RecordedMill stated_mill(const Recording& recording, const std::optional<MillOfCase>& mill) {
   RecordedMill known;
   known.context = stated(recording, mill);
   if (recording.frame) known.axis = recording.frame->axis;
+  weigh_charge(recording.condition, known.context);
+  return known;
+}
+
+RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCase>& mill) {
+  RecordedMill known = stated_mill(recording, mill);
   const MillMotion motion = estimate_motion(recording);
   if (!recording.frame) find_axis(recording, motion, known);
   check_speed(recording, motion, known);

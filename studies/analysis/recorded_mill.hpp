@@ -20,4 +20,7 @@ struct RecordedMill {
 /// the tracer contradicts the speed or the sense that are stated.
 RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCase>& mill);
 
+/// What is stated, taken as it stands and held against nothing: for the film of a simulation, whose mill is known.
+RecordedMill stated_mill(const Recording& recording, const std::optional<MillOfCase>& mill);
+
 }  // namespace millscope::studies

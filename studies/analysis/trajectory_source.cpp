@@ -24,6 +24,13 @@ double covered(const Trajectory& t) {
   return sum;
 }
 
+/// How many parts a trajectory of `own` seconds out of `total` gets: its share of `most`, none shorter than `duration`.
+std::size_t parts_of(double own, double total, double duration, std::size_t most) {
+  const double fair = total > 0 ? std::floor(static_cast<double>(most) * own / total + 1e-6) : 1;
+  const double fit = duration > 0 ? std::floor(own / duration + 1e-6) : fair;
+  return static_cast<std::size_t>(std::max(1.0, std::min(fair, fit)));
+}
+
 double mass_of(const Trajectory& t) { return t.density * std::numbers::pi / 6 * t.diameter * t.diameter * t.diameter; }
 
 }  // namespace
@@ -106,21 +113,15 @@ std::vector<BasicSeries> TrajectorySource::survey() const {
 
 std::unique_ptr<FrameSource::Scratch> TrajectorySource::make_scratch() const { return std::make_unique<TrajectoryScratch>(); }
 
-std::size_t TrajectorySource::parts_of(std::size_t trajectory, double duration, std::size_t most) const {
-  double total = 0;
-  for (const Trajectory& t : trajectories_) total += covered(t);
-  const double own = covered(trajectories_[trajectory]);
-  const double fair = total > 0 ? std::floor(static_cast<double>(most) * own / total + 1e-6) : 1;
-  const double fit = duration > 0 ? std::floor(own / duration + 1e-6) : fair;
-  return static_cast<std::size_t>(std::max(1.0, std::min(fair, fit)));
-}
-
 void TrajectorySource::cut(double duration, std::size_t most) {
   arrays_.clear();
   chunks_.clear();
   std::size_t longest = 0;
+  std::vector<double> own;
+  for (const Trajectory& t : trajectories_) own.push_back(covered(t));
+  const double total = std::accumulate(own.begin(), own.end(), 0.0);
   for (std::size_t k = 0; k < trajectories_.size(); ++k) {
-    lay_out(k, parts_of(k, duration, most));
+    lay_out(k, parts_of(own[k], total, duration, most));
     longest = std::max(longest, arrays_.back()->size());
   }
   first_.resize(longest + 1);

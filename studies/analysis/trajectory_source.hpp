@@ -40,7 +40,6 @@ class TrajectorySource : public FrameSource {
   };
 
   void tell_trimmed();
-  std::size_t parts_of(std::size_t trajectory, double duration, std::size_t most) const;
   void lay_out(std::size_t trajectory, std::size_t parts);
 
   std::vector<Trajectory> trajectories_;

@@ -151,7 +151,7 @@ struct Observer::Impl {
       options.noise = r.noise;
       options.noise_correlation = r.noise_correlation;
     }
-    const studies::ResultSet results = process(recording, options, how);
+    const studies::ResultSet results = process_in(studies::stated_mill(recording, paths.mill()), recording, options, how);
     std::vector<std::string> done;
     return mirror ? studies::mirrored(results, done) : results;
   }

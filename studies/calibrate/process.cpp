@@ -7,7 +7,6 @@
 
 #include "studies/analysis/engine.hpp"
 #include "studies/analysis/parallel.hpp"
-#include "studies/analysis/recorded_mill.hpp"
 #include "studies/analysis/trajectory_source.hpp"
 #include "studies/calibrate/recorded.hpp"
 
@@ -71,10 +70,14 @@ Fitted fit(const studies::Recording& recording, const studies::TrajectoryOptions
 
 }  // namespace
 
-studies::ResultSet process(const studies::Recording& recording, const studies::TrajectoryOptions& wished, const Processing& how) {
+studies::ResultSet process(const studies::Recording& recording, const studies::TrajectoryOptions& options, const Processing& how) {
   std::optional<studies::MillOfCase> mill;
   if (!recording.condition.geometry.empty()) mill = studies::read_mill_of_case(recording.condition.geometry, how.registry);
-  const studies::RecordedMill known = studies::know_mill(recording, mill);
+  return process_in(studies::know_mill(recording, mill), recording, options, how);
+}
+
+studies::ResultSet process_in(const studies::RecordedMill& known, const studies::Recording& recording,
+                              const studies::TrajectoryOptions& wished, const Processing& how) {
   studies::TrajectoryOptions options = wished;
   options.axis = known.axis;
   Fitted fitted = fit(recording, options, how.threads);

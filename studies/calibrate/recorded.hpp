@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "studies/analysis/instances.hpp"
+#include "studies/analysis/recorded_mill.hpp"
 #include "studies/analysis/results.hpp"
 #include "studies/analysis/source.hpp"
 #include "studies/calibrate/bead_paths.hpp"
@@ -38,8 +39,13 @@ struct Processing {
   std::string analyzers = {};  ///< as in analysis.yaml; empty: those of the observables and the study's own
 };
 
-/// Tracks through spline and analyzers; runs of which nothing is left after cleaning are left out and noted. `z_range` cuts the samples.
+/// Tracks through spline and analyzers; runs of which nothing is left after cleaning are left out and noted. What is stated of the mill is
+/// held against the tracks, and found in them where nothing is.
 studies::ResultSet process(const studies::Recording& recording, const studies::TrajectoryOptions& options, const Processing& how);
+
+/// The same in a mill that is known.
+studies::ResultSet process_in(const studies::RecordedMill& known, const studies::Recording& recording,
+                              const studies::TrajectoryOptions& options, const Processing& how);
 
 /// Reads, estimates the camera, analyses; `cache`: a folder for the outcome.
 RecordedCondition look_at_recording(std::size_t condition, const Processing& how, const std::filesystem::path& cache);
