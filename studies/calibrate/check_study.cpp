@@ -8,6 +8,7 @@
 #include "kernel/config/writer.hpp"
 #include "studies/analysis/mill.hpp"
 #include "studies/calibrate/study.hpp"
+#include "studies/calibrate/velocity_profile.hpp"
 #include "studies/recording/recording.hpp"
 
 namespace millscope::calibrate {
@@ -69,7 +70,13 @@ void compare(const Study& study, const Condition& condition, const Shared& s) {
 void check_condition(const Study& study, const Condition& condition, const host::Registry& registry) {
   resolved(study, condition.settings, registry, condition.where, fmt::format("condition '{}'", condition.name));
   const studies::MillOfCase mill = studies::read_mill_of_case(study.base, registry, condition.settings);
-  const studies::Condition recorded = studies::read_recording(condition.recording).condition;
+  const auto profile = read_profile(condition.recording);
+  if (profile && study.objective.kind == ObjectiveKind::chagas2015)
+    throw UserError(condition.where,
+                    fmt::format("condition '{}': {} is a velocity profile, and chagas2015 compares tracks; take 'objective: "
+                                "likelihood'",
+                                condition.name, condition.recording.string()));
+  const studies::Condition recorded = profile ? profile->condition : studies::read_recording(condition.recording).condition;
   const AnalyzerContext& c = mill.context;
   constexpr double kRpm = 30 / std::numbers::pi;
   compare(study, condition, {"mill diameter", recorded.mill_diameter.value_or(0), 2 * c.mill_radius, 0.005, 1e3, "mm"});

@@ -35,6 +35,8 @@ struct Observation {
   double bead_seconds = 0;  ///< behind it
   double blocks = 0;        ///< independent blocks, median over the observables
   std::vector<std::string> notes;
+  /// Something of single beads lies behind it, not only a profile.
+  bool of_tracks() const { return bead_seconds > 0; }
 };
 
 nlohmann::ordered_json to_json(const Observation& observation);

@@ -11,6 +11,7 @@
 #include "kernel/output/summary.hpp"
 #include "studies/analysis/parallel.hpp"
 #include "studies/calibrate/recorded.hpp"
+#include "studies/calibrate/velocity_profile.hpp"
 #include "studies/camera/camera.hpp"
 #include "studies/camera/ctrack_writer.hpp"
 #include "studies/compare/mirror.hpp"
@@ -156,8 +157,16 @@ struct Observer::Impl {
     return mirror ? studies::mirrored(results, done) : results;
   }
 
+  /// The charge as a whole, without a camera.
+  Observation profile(const RecordedCondition& r, const fs::path& run) const {
+    Observation o = summarise(profile_of_run(run, r, {study, registry, threads}), r.summaries);
+    o.power = whole_charge_power(run, 1);
+    return o;
+  }
+
   Observation simulated(std::size_t condition, const fs::path& run, const std::string& camera) const {
     const RecordedCondition& r = recorded[condition];
+    if (!r.analyzers.empty()) return profile(r, run);
     const BeadPaths paths(run, study.observing.beads, r.place, registry);
     const studies::ResultSet results = seen(condition, paths, camera, {study, registry, threads});
     Observation o = summarise(results, r.summaries);

@@ -56,6 +56,7 @@ void distributions(const std::string& name, const Observation& recorded, const O
     p.curves = {curve_of("recording", seen), curve_of("simulation", made)};
     drawer.curves(p, fmt::format("{}_{}", file_name(name), what[0] == 'x' ? "x" : "speed"));
   };
+  if (!recorded.of_tracks()) return;
   draw(recorded.x, simulated.x, "x", "m");
   draw(recorded.speed, simulated.speed, "speed over shell speed", "1");
 }

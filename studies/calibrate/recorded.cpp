@@ -9,6 +9,7 @@
 
 #include "kernel/output/summary.hpp"
 #include "studies/analysis/open_source.hpp"
+#include "studies/calibrate/velocity_profile.hpp"
 #include "studies/camera/estimate_camera.hpp"
 #include "studies/inspect/mill_motion.hpp"
 #include "studies/trajectory/trajectory.hpp"
@@ -218,6 +219,7 @@ studies::ResultSet results_of_recording(std::size_t condition, const RecordedCon
 }
 
 RecordedCondition look_at_recording(std::size_t condition, const Processing& how, const std::filesystem::path& cache) {
+  if (const auto profile = read_profile(how.study.conditions[condition].recording)) return look_at_profile(*profile, condition, how);
   const studies::Recording recording = studies::read_recording(how.study.conditions[condition].recording);
   const std::string id = identity(recording, how, condition);
   const std::filesystem::path file = cache / ("recording-" + id + ".json");

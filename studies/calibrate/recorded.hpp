@@ -20,6 +20,7 @@ namespace millscope::calibrate {
 struct RecordedCondition {
   Observation observation;
   std::vector<Summary> summaries;
+  std::string analyzers;          ///< of a velocity profile: what simulations are asked for; empty: tracks were recorded
   std::string camera;             ///< text of the camera file
   std::array<double, 3> noise{};  ///< m, that decides the smoothing
   double noise_correlation = 0;

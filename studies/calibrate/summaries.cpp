@@ -82,6 +82,7 @@ double evaluate(const ResultSet& results, const Summary& s, std::optional<std::s
     return array.value[c] + (draw ? static_cast<double>(array.draws[*draw * array.size() + c]) : 0.0);
   };
   if (s.kind == Summary::number) return s.factor * at(values, 0);
+  if (s.kind == Summary::between) return s.factor * ((1 - s.upper) * at(values, s.cells[0]) + s.upper * at(values, s.cells[1]));
   double sum = 0, weight = 0;
   const ResultArray* weights = s.kind == Summary::mean ? &array_of(results, s.analyzer, s.weight) : nullptr;
   for (const std::size_t c : s.cells) {

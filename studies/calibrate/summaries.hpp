@@ -15,11 +15,12 @@ namespace millscope::calibrate {
 /// One summary and how it is made of results.
 struct Summary {
   Observable observable;
-  enum Kind { number, sum, mean } kind = number;
+  enum Kind { number, sum, mean, between } kind = number;
   std::string analyzer, result;
   std::string weight;              ///< mean: the result of the same analyzer that weighs
-  std::vector<std::size_t> cells;  ///< sum, mean: of these values
+  std::vector<std::size_t> cells;  ///< sum, mean: of these values; between: of these two
   double factor = 1;
+  double upper = 0;  ///< between: share of the second one
 };
 
 struct SummaryChoice {

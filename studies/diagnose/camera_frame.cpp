@@ -48,6 +48,9 @@ void check_recorded_frames(const Question& q, const calibrate::Observer& observe
     if (!n.of_camera()) continue;
     for (std::size_t c = 0; c < q.study.conditions.size(); ++c) {
       const calibrate::Condition& condition = q.study.conditions[c];
+      if (!observer.recorded(c).of_tracks())
+        throw config::UserError(n.where, fmt::format("nuisance '{}': no camera saw {}, it is a velocity profile; leave the nuisance out",
+                                                     n.name, condition.recording.string()));
       if (observer.turns_other_way(c))
         throw config::UserError(n.where,
                                 fmt::format("nuisance '{}' would change its sign in condition '{}': {} turns the other way than the "

@@ -84,6 +84,7 @@ std::vector<MissingForce> missing_force(const HeldOutRequest& r) {
   if (!r.workshop.results) return out;
   const VectorXd theta = r.problem.data.natural(r.naming.base.coded);
   for (const std::size_t condition : r.fit) {
+    if (!r.workshop.recorded[condition].of_tracks()) continue;
     std::vector<campaign::Simulation> simulations;
     for (int replicate = 1; replicate <= kSeeds; ++replicate)
       simulations.push_back(simulation_at(r.question, theta, {}, condition, replicate, "retuned to all observables"));

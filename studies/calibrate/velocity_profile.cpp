@@ -1,0 +1,192 @@
+#include "studies/calibrate/velocity_profile.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "kernel/config/case.hpp"
+#include "kernel/config/units.hpp"
+#include "kernel/output/frame_reader.hpp"
+#include "studies/analysis/engine.hpp"
+#include "studies/analysis/frames_source.hpp"
+#include "studies/analysis/open_source.hpp"
+#include "studies/doe/table.hpp"
+#include "studies/recording/description.hpp"
+
+namespace millscope::calibrate {
+namespace {
+
+namespace fs = std::filesystem;
+using config::Node;
+using config::UserError;
+
+constexpr const char* kVersion = "profile 1";  // grows when what is computed here changes
+constexpr std::size_t kMostValues = 12;
+constexpr std::size_t kFewestPoints = 4;
+constexpr std::size_t kPlaces = 51;  // of bed_profile, from shell to shell
+constexpr double kAsStated = 1e4;    // blocks behind errors that are stated, not estimated
+
+bool is_profile(const fs::path& file) {
+  const std::string ending = file.extension().string();
+  return (ending == ".yaml" || ending == ".yml") && config::load_document(file.string()).has("profile");
+}
+
+/// One column in SI.
+std::vector<double> column(const Node& node, const doe::Table& table, const char* unit) {
+  node.expect({"column", "unit"});
+  const Node name = node.at("column", "the head of the column"), in = node.at("unit", "e.g. mm or m/s");
+  if (!table.has(name.text())) name.fail(fmt::format("is '{}', which is no column of {}", name.text(), table.file()));
+  config::Unit factor;
+  try {
+    factor = config::parse_unit(in.text());
+  } catch (const std::exception& e) {
+    in.fail(fmt::format("is '{}': {}", in.text(), e.what()));
+  }
+  if (factor.dimension != config::parse_unit(unit).dimension) in.fail(fmt::format("is '{}', not a unit like {}", in.text(), unit));
+  std::vector<double> values = table.numbers(table.index_of(name.text())).value;
+  for (double& v : values) v = factor.to_si(v);
+  return values;
+}
+
+void keep(VelocityProfile& profile, double from, double to) {
+  std::vector<std::size_t> order(profile.position.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::erase_if(order, [&](std::size_t i) { return profile.position[i] < from || profile.position[i] > to; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return profile.position[a] < profile.position[b]; });
+  std::vector<double> position, velocity;
+  for (const std::size_t i : order) position.push_back(profile.position[i]), velocity.push_back(profile.velocity[i]);
+  profile.position = std::move(position), profile.velocity = std::move(velocity);
+}
+
+VelocityProfile read_section(const Node& section) {
+  section.expect({"file", "position", "velocity", "position_error", "velocity_error", "from", "to", "z"});
+  VelocityProfile profile;
+  const Node file = section.at("file", "the table of points, e.g. points.csv");
+  profile.points = config::resolve_file(file);
+  const doe::Table table = doe::Table::read(profile.points);
+  profile.position = column(section.at("position", "{column: NAME, unit: mm}"), table, "m");
+  profile.velocity = column(section.at("velocity", "{column: NAME, unit: m/s}"), table, "m/s");
+  const auto error = [&](const char* key, const char* example, const char* unit) {
+    return config::read_number(section.at(key, example), unit, config::positive("it is the standard error of a point"));
+  };
+  profile.position_error = error("position_error", "e.g. 1 mm", "m");
+  profile.velocity_error = error("velocity_error", "e.g. 0.01 m/s", "m/s");
+  const auto place = [&](const char* key, double otherwise) {
+    const auto node = section.find(key);
+    return node ? config::read_number(*node, "m") : otherwise;
+  };
+  constexpr double kAll = std::numeric_limits<double>::infinity();
+  keep(profile, place("from", -kAll), place("to", kAll));
+  if (profile.position.size() < kFewestPoints)
+    file.fail(fmt::format("has {} points between 'from' and 'to', and fewer than {} are no profile; widen the range",
+                          profile.position.size(), kFewestPoints));
+  if (const auto z = section.find("z")) {
+    const auto ends = z->items();
+    if (ends.size() != 2) z->fail("wants two lengths, e.g. [0 mm, 360 mm]");
+    profile.z_low = config::read_number(ends[0], "m"), profile.z_high = config::read_number(ends[1], "m");
+    if (!(*profile.z_high > *profile.z_low)) z->fail("must rise");
+  }
+  return profile;
+}
+
+/// Neighbouring points as one: mean position, mean velocity, its standard error.
+struct Value {
+  double position, velocity, error;
+};
+
+/// σ² = (σ_v² + (dv/dp)² σ_p²)/n, the slope through the group and its neighbours.
+std::vector<Value> values_of(const VelocityProfile& p) {
+  const std::size_t n = p.position.size(), groups = std::min(n, kMostValues);
+  std::vector<Value> out;
+  for (std::size_t g = 0; g < groups; ++g) {
+    const std::size_t first = g * n / groups, last = (g + 1) * n / groups, left = first > 0 ? first - 1 : first,
+                      right = std::min(last, n - 1);
+    const auto mean = [&](const std::vector<double>& v) {
+      return std::accumulate(v.begin() + static_cast<std::ptrdiff_t>(first), v.begin() + static_cast<std::ptrdiff_t>(last), 0.0) /
+             static_cast<double>(last - first);
+    };
+    const double run = p.position[right] - p.position[left], slope = run > 0 ? (p.velocity[right] - p.velocity[left]) / run : 0;
+    out.push_back({mean(p.position), mean(p.velocity),
+                   std::hypot(p.velocity_error, slope * p.position_error) / std::sqrt(static_cast<double>(last - first))});
+  }
+  return out;
+}
+
+std::string identity(const VelocityProfile& profile, const Processing& how, std::size_t condition) {
+  const Condition& c = how.study.conditions[condition];
+  std::vector<std::string> parts{kVersion, std::to_string(how.study.observing.draws), studies::file_hash(how.study.base),
+                                 studies::file_hash(c.recording), studies::file_hash(profile.points)};
+  parts.insert(parts.end(), c.settings.begin(), c.settings.end());
+  for (const host::PluginRecord& r : how.registry.records()) {
+    if (r.kind == "analyzer") parts.push_back(r.name + r.file_hash);
+  }
+  return hash_of(parts);
+}
+
+}  // namespace
+
+std::optional<VelocityProfile> read_profile(const fs::path& recording) {
+  if (!is_profile(recording)) return std::nullopt;
+  const Node root = config::load_document(recording.string());
+  root.expect({"profile", "condition"});
+  VelocityProfile profile = read_section(root.at("profile"));
+  if (const auto node = root.find("condition")) profile.condition = studies::read_condition(*node);
+  root.finish();
+  return profile;
+}
+
+RecordedCondition look_at_profile(const VelocityProfile& profile, std::size_t condition, const Processing& how) {
+  const Condition& c = how.study.conditions[condition];
+  const AnalyzerContext mill = studies::read_mill_of_case(how.study.base, how.registry, c.settings).context;
+  const double radius = mill.mill_radius, step = 2 * radius / static_cast<double>(kPlaces - 1);
+  const std::vector<Value> values = values_of(profile);
+  RecordedCondition r;
+  r.omega = mill.omega;
+  r.identity = identity(profile, how, condition);
+  r.analyzers = fmt::format("{}  bed_profile: {{points: {}{}}}\n", kAnalyzers, kPlaces,
+                            profile.z_low ? fmt::format(", z_from: {:.9g}, z_to: {:.9g}", *profile.z_low, *profile.z_high) : "");
+  Observation& o = r.observation;
+  const auto n = static_cast<Eigen::Index>(values.size());
+  o.value.resize(n);
+  o.covariance = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Value& v = values[static_cast<std::size_t>(i)];
+    if (std::fabs(v.position) >= radius)
+      throw UserError(c.where,
+                      fmt::format("condition '{}': {} has points {:.4g} mm from the axis, but the mill of {} has a radius of {:.4g} mm",
+                                  c.name, c.recording.string(), 1e3 * std::fabs(v.position), how.study.base.string(), 1e3 * radius));
+    const double place = (v.position + radius) / step;
+    const auto at = static_cast<std::size_t>(place);
+    const Observable what{fmt::format("velocity at {:.3g} mm", 1e3 * v.position), "m/s", "profile"};
+    r.summaries.push_back({what, Summary::between, "bed_profile", "velocity", "", {at, at + 1}, 1, place - static_cast<double>(at)});
+    o.observables.push_back(what);
+    o.value[i] = v.velocity;
+    o.covariance(i, i) = v.error * v.error;
+  }
+  o.blocks = kAsStated;
+  o.power = {std::numeric_limits<double>::quiet_NaN(), 0, "a velocity profile tells no power"};
+  o.notes.push_back(fmt::format("{} points of {} as {} values, with the errors that are stated", profile.position.size(),
+                                profile.points.filename().string(), values.size()));
+  return r;
+}
+
+studies::ResultSet profile_of_run(const fs::path& run, const RecordedCondition& recorded, const Processing& how) {
+  const fs::path case_file = run / "case.resolved.yaml";
+  const studies::MillOfCase mill = studies::read_mill_of_case(case_file, how.registry);
+  studies::FramesSource source(output::FrameReader(run / "frames.h5"), mill.context,
+                               config::read_case(case_file.string()).time.analyze_from, std::nullopt);
+  studies::EngineOptions engine;
+  engine.draws = static_cast<std::size_t>(how.study.observing.draws);
+  engine.threads = how.threads;
+  const Node section = config::parse_document(recorded.analyzers, "calibrate");
+  studies::ResultSet results =
+      studies::run_analyzers(source, studies::choose_analyzers(section, true, {}, how.registry, source.context()).instances, engine);
+  results.meta.context = source.context();
+  results.meta.description = run.string();
+  return results;
+}
+
+}  // namespace millscope::calibrate

@@ -1,0 +1,163 @@
+// A published velocity profile in the place of a recording.
+#include "studies/calibrate/velocity_profile.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "kernel/output/frames.hpp"
+#include "tests/calibrate/made_up_mill.hpp"
+
+using namespace millscope;
+using calibrate::RecordedCondition;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+
+namespace {
+
+constexpr double kRadius = 0.1, kSurface = -0.02;  // m
+
+const host::Registry& registry() {
+  static const host::Registry registry({{MILLSCOPE_BINARY_DIR "/lib/millscope/plugins"}, false, {}});
+  return registry;
+}
+
+const std::string kDrum = R"(schema_version: 1
+materials: {glass: {density: 2500, young_modulus: 1e8, poisson_ratio: 0.23}}
+beads: {charge: {material: glass, diameter: 4 mm}}
+fill: {count: 10}
+contact: {law: {kind: hertz_mindlin}}
+pairs: {glass~glass: {restitution: 0.8, static_friction: 0.3}}
+body_forces: {gravity: {kind: gravity}}
+mill: {diameter: 200 mm, speed: 2 rad/s}
+geometry: {shell: {kind: cylinder, radius: 100 mm, length: 50 mm, end_faces: false, material: glass, motion: mill}}
+domain: {periodic: {z: [0, 50 mm]}}
+time: {end_s: 1, analyze_from_s: 0}
+)";
+
+/// Positions in mm and velocities in mm/s, in no order.
+const std::string kPoints = "# digitised\np,v\n-90,180\n-30,-120\n-80,150\n-70,110\n-60,60\n-50,0\n-40,-60\n";
+const std::string kRecording =
+    "profile:\n  file: points.csv\n  position: {column: p, unit: mm}\n  velocity: {column: v, unit: mm/s}\n  position_error: 1 mm\n"
+    "  velocity_error: 0.01 m/s\n";
+
+struct Drum {
+  testing::Folder folder;
+  calibrate::Study study;
+
+  explicit Drum(const std::string& recording = kRecording, const std::string& points = kPoints, const std::string& more = "") {
+    folder.write("drum.yaml", kDrum);
+    folder.write("points.csv", points);
+    folder.write("r.yaml", recording);
+    study = calibrate::read_study(folder.write("study.yaml",
+                                               "base: drum.yaml\nconditions: {dry: {recording: r.yaml, role: fit}}\n"
+                                               "parameters: {pairs.glass~glass.static_friction: {range: [0.1, 0.8]}}\n" +
+                                                   more));
+  }
+  std::optional<calibrate::VelocityProfile> profile() const { return calibrate::read_profile(study.conditions[0].recording); }
+  RecordedCondition look() const { return calibrate::look_at_profile(*profile(), 0, {study, registry(), 1}); }
+};
+
+/// Beads of a segment, seen six times, that move along its surface as fast as their depth says; gravity's side is down.
+template <class Flow>
+void write_run(const testing::Folder& folder, const Flow& flow) {
+  folder.write("case.resolved.yaml", kDrum);
+  std::vector<double> position, velocity;
+  for (double p = -kRadius; p <= kSurface; p += 0.0005) {
+    for (double s = -0.1; s <= 0.1; s += 0.001) {
+      if (std::hypot(p, s) > kRadius) continue;
+      position.insert(position.end(), {s, p, 0.025});
+      velocity.insert(velocity.end(), {flow(p), 0.0, 0.0});
+    }
+  }
+  const std::size_t n = position.size() / 3;
+  std::vector<std::uint32_t> id(n), material(n, 0);
+  for (std::size_t i = 0; i < n; ++i) id[i] = static_cast<std::uint32_t>(i);
+  const std::vector<double> radius(n, 0.002), mass(n, 1e-4), spin(3 * n, 0.0), work{0.0};
+  auto writer = output::FrameWriter::create(folder.path / "frames.h5", {id, radius, mass, material, {"glass"}, {"shell"}, {}});
+  for (int f = 0; f < 6; ++f) writer.append({0.01 * f, 0.02 * f, 2, work, {}, {}, position, velocity, spin});
+  writer.close();
+}
+
+}  // namespace
+
+TEST_CASE("a profile is its points by position, in SI, with the errors that are stated") {
+  const Drum drum;
+  const auto profile = drum.profile();
+  REQUIRE(profile);
+  CHECK(profile->position.size() == 7);
+  CHECK_THAT(profile->position.front(), WithinRel(-0.09, 1e-12));
+  CHECK_THAT(profile->velocity.front(), WithinRel(0.18, 1e-12));
+  CHECK_THAT(profile->velocity.back(), WithinRel(-0.12, 1e-12));
+  const RecordedCondition r = drum.look();
+  REQUIRE(r.observation.value.size() == 7);
+  CHECK(r.observation.observables[5].name == "velocity at -40 mm");
+  CHECK_THAT(r.observation.value[5], WithinRel(-0.06, 1e-12));
+  CHECK_THAT(std::sqrt(r.observation.covariance(5, 5)), WithinRel(std::hypot(0.01, 6 * 0.001), 1e-9));  // 6 m/s per m on both sides
+  CHECK_FALSE(r.observation.of_tracks());
+  CHECK(std::isnan(r.observation.power.value));
+}
+
+TEST_CASE("neighbours are taken together where there are more than twelve points, and their error is smaller") {
+  std::string points = "p,v\n";
+  for (int i = 0; i < 36; ++i) points += fmt::format("{},{}\n", -90 + i, 2 * i);
+  const RecordedCondition r = Drum(kRecording, points).look();
+  REQUIRE(r.observation.value.size() == 12);
+  CHECK_THAT(r.observation.value[0], WithinRel(2e-3, 1e-12));
+  CHECK_THAT(std::sqrt(r.observation.covariance(4, 4)), WithinRel(std::hypot(0.01, 2 * 0.001) / std::sqrt(3.0), 1e-9));
+}
+
+TEST_CASE("a simulation is seen between the analyzer's places, where the measured points lie") {
+  const auto flow = [](double p) { return -6 * (p + 0.05) + 20 * (p + 0.05) * (p + 0.05); };
+  std::string points = "p,v\n";
+  for (const double p : {-0.0873, -0.0712, -0.0555, -0.0491, -0.0337}) points += fmt::format("{},{}\n", 1e3 * p, 1e3 * flow(p));
+  const Drum drum(kRecording, points);
+  write_run(drum.folder, flow);
+  const RecordedCondition r = drum.look();
+  const auto seen = calibrate::summarise(calibrate::profile_of_run(drum.folder.path, r, {drum.study, registry(), 1}), r.summaries);
+  REQUIRE(seen.value.size() == r.observation.value.size());
+  for (Eigen::Index i = 0; i < seen.value.size(); ++i) CHECK_THAT(seen.value[i], WithinAbs(r.observation.value[i], 0.002));
+}
+
+TEST_CASE("a simulation without beads where a point was measured says so") {
+  const Drum drum(kRecording, "p,v\n-90,1\n-70,1\n-50,1\n20,1\n");
+  write_run(drum.folder, [](double) { return 0.1; });
+  const RecordedCondition r = drum.look();
+  const std::string said = testing::message_of([&] {
+    calibrate::summarise(calibrate::profile_of_run(drum.folder.path, r, {drum.study, registry(), 1}), r.summaries);
+  });
+  CHECK(said.find("'velocity at 20 mm' is undefined") != std::string::npos);
+}
+
+TEST_CASE("a recording of tracks is no profile") {
+  const testing::Folder folder;
+  CHECK_FALSE(calibrate::read_profile(folder.write("r.yaml", "files: [a.a]\n")));
+  CHECK_FALSE(calibrate::read_profile(folder.write("r.a", "1 2 3\n")));
+}
+
+TEST_CASE("what is wrong with a profile is said with its place") {
+  const auto said = [](const std::string& from, const std::string& to) {
+    std::string text = kRecording;
+    text.replace(text.find(from), from.size(), to);
+    const Drum drum(text);
+    return testing::message_of([&] { drum.profile(); });
+  };
+  CHECK(said("column: p", "column: q").find("r.yaml:3") != std::string::npos);
+  CHECK(said("column: p", "column: q").find("no column of") != std::string::npos);
+  CHECK(said("unit: mm/s", "unit: mm").find("not a unit like m/s") != std::string::npos);
+  CHECK(said("unit: mm/s", "unit: furlong").find("furlong") != std::string::npos);
+  CHECK(said("  position_error: 1 mm\n", "").find("position_error") != std::string::npos);
+  CHECK(said("position_error: 1 mm", "position_error: 0 mm").find("standard error") != std::string::npos);
+  CHECK(said("file: points.csv", "file: points.csv\n  from: -60 mm\n  to: -45 mm").find("2 points between") != std::string::npos);
+  CHECK(said("file: points.csv", "file: points.csv\n  z: [20 mm, 10 mm]").find("must rise") != std::string::npos);
+  CHECK(said("file: points.csv", "file: points.csv\n  shade: 1").find("unknown key 'shade'") != std::string::npos);
+}
+
+TEST_CASE("points outside the case's mill, another mill's speed and an objective of tracks are refused") {
+  const Drum wide(kRecording, "p,v\n-130,1\n-70,1\n-50,1\n-40,1\n");
+  CHECK(testing::message_of([&] { wide.look(); }).find("130 mm from the axis") != std::string::npos);
+  const auto checked = [](const Drum& drum) { return testing::message_of([&] { calibrate::check_study(drum.study, registry()); }); };
+  CHECK(checked(Drum()).empty());
+  CHECK(checked(Drum(kRecording + "condition: {speed: 3 rad/s}\n")).find("turning speed") != std::string::npos);
+  CHECK(checked(Drum(kRecording, kPoints, "objective: chagas2015\n")).find("velocity profile") != std::string::npos);
+}
