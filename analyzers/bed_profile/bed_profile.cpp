@@ -21,7 +21,7 @@ namespace {
 constexpr std::int64_t kCells = 80;  // from shell to shell
 
 constexpr Parameter kParameters[] = {
-    integer_parameter("points", 51, 5, 1000, "Positions from the shell beneath the bed through the axis to the shell above it."),
+    integer_parameter("points", 51, 5, 81, "Positions from the shell beneath the bed through the axis to the shell above it."),
     number_parameter("band", "1", 0.2, 0.01, 2, "Width of the strip about the bed's normal, in radii of the shell."),
     kAxialFrom,
     kAxialTo,
@@ -90,7 +90,8 @@ class BedProfile {
                 {"position"}, kNotNegative);
     results.add("surface_angle", "deg", kDegrees * angle_of(sense_ * x, -y),
                 "Angle of the free surface from the horizontal: that of the charge's centre from 6 o'clock, in the turning sense.");
-    results.add("still_position", "m", still(position, velocity), "Where the velocity changes sign, counted from the shell; NaN: nowhere.");
+    results.add("still_position", "m", still(position, velocity),
+                "Position of the first change of sign, going from the shell beneath the bed; NaN: nowhere.");
   }
 
  private:

@@ -33,16 +33,20 @@ campaign::Simulation simulation(const Study& study, const Eigen::VectorXd& point
   return s;
 }
 
+/// Eq. 4.3 compares distributions: its mean is that over the conditions that have some.
 void score(const Study& study, const std::vector<Observation>& recorded, Trial& trial) {
+  const auto tracks =
+      std::count_if(trial.conditions.begin(), trial.conditions.end(), [&](std::size_t c) { return recorded[c].of_tracks(); });
   for (std::size_t k = 0; k < trial.conditions.size(); ++k) {
     const Observation& of = recorded[trial.conditions[k]];
-    const double share = 1.0 / static_cast<double>(trial.conditions.size());
+    trial.misfit += misfit(of, trial.observed[k]);
+    if (!of.of_tracks()) continue;
+    const double share = 1.0 / static_cast<double>(tracks);
     const ChagasObjective one = chagas2015(of, trial.observed[k], study.objective.terms);
     trial.chagas.power += share * one.power;
     trial.chagas.x += share * one.x;
     trial.chagas.speed += share * one.speed;
     trial.chagas.terms += share * one.terms;
-    trial.misfit += misfit(of, trial.observed[k]);
   }
   if (!std::isfinite(trial.misfit) || !std::isfinite(trial.chagas.value())) {
     trial.failed = true;

@@ -1,6 +1,7 @@
 // What is compared: a vector of summaries of a recording, or of a simulation seen in the same way, with its covariance.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,9 @@ struct Histogram {
 };
 
 struct PowerFigure {
-  double value = 0, sem = 0;  ///< W of the recorded mill
-  std::string how;            ///< "measured", "whole charge, scaled by mass 11.3", …
+  double value = 0, sem = 0;                           ///< W of the recorded mill
+  std::string how;                                     ///< "measured", "whole charge, scaled by mass 11.3", …
+  bool known() const { return std::isfinite(value); }  ///< a velocity profile tells none
 };
 
 struct Observation {

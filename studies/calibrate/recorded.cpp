@@ -20,7 +20,6 @@ namespace {
 using config::UserError;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kVersion = "observations 2";  // grows when what is computed here changes
 constexpr const char* kExactCamera = "observations: {rate: {kind: sampling, rate: 1000 Hz, shape: 1000}}\n";
 constexpr double kEvenStep = 0.002;  // s between the even times: recordings have a location every 5 ms
 constexpr double kNormal90 = 1.645;
@@ -33,7 +32,7 @@ std::string file_text(const std::filesystem::path& file) {
 /// Everything that the results of a recording depend on.
 std::string identity(const studies::Recording& recording, const Processing& how, std::size_t condition) {
   const Study& study = how.study;
-  std::vector<std::string> parts{kVersion, kAnalyzers, std::to_string(study.observing.draws), std::to_string(study.observing.beads),
+  std::vector<std::string> parts{kObservations, kAnalyzers, std::to_string(study.observing.draws), std::to_string(study.observing.beads),
                                  study.observing.camera};
   if (std::filesystem::is_regular_file(study.observing.camera)) parts.push_back(file_text(study.observing.camera));
   if (study.observing.z_low) parts.push_back(fmt::format("{:.17g} {:.17g}", *study.observing.z_low, *study.observing.z_high));

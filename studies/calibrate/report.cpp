@@ -99,8 +99,8 @@ void conditions(const Evaluator& evaluator, std::string& out) {
   out += "## Recordings\n\n| condition | role | power (W) | which power | seconds of beads |\n|---|---|---|---|---|\n";
   for (std::size_t c = 0; c < study.conditions.size(); ++c) {
     const Observation& o = evaluator.machinery().recorded[c];
-    add(out, "| {} | {} | {:.4g} ± {:.2g} | {} | {:.4g} |\n", study.conditions[c].name,
-        study.conditions[c].role == Role::fit ? "fit" : "held out", o.power.value, o.power.sem, o.power.how, o.bead_seconds);
+    add(out, "| {} | {} | {} | {} | {:.4g} |\n", study.conditions[c].name, study.conditions[c].role == Role::fit ? "fit" : "held out",
+        o.power.known() ? fmt::format("{:.4g} ± {:.2g}", o.power.value, o.power.sem) : "", o.power.how, o.bead_seconds);
   }
   out += "\n";
   for (std::size_t c = 0; c < study.conditions.size(); ++c) {
@@ -108,7 +108,7 @@ void conditions(const Evaluator& evaluator, std::string& out) {
   }
   if (!evaluator.trials().empty()) {
     for (const Trial& t : evaluator.trials()) {
-      if (t.failed) continue;
+      if (t.failed || !t.observed.front().of_tracks()) continue;
       add(out, "- Simulations: {:.4g} s of beads seen through the same camera; power: {}.\n", t.observed.front().bead_seconds,
           t.observed.front().power.how);
       break;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -76,13 +77,33 @@ void add_regions(const ResultSet& recorded, const Study& study, std::vector<Summ
   }
 }
 
+/// A straight line between the values on both sides of a place; NaN where one of them is missing or rests on too little.
+template <class Value>
+double between(const std::vector<double>& axis, const ResultArray& values, const Value& at, double place) {
+  const auto above = std::lower_bound(axis.begin(), axis.end(), place);
+  if (above == axis.end() || (above == axis.begin() && place < axis.front())) return std::numeric_limits<double>::quiet_NaN();
+  const auto k = static_cast<std::size_t>(above - axis.begin());
+  const auto known = [&](std::size_t i) {
+    const bool vague = i < values.flags.size() && (values.flags[i] & (studies::kOftenUndefined | studies::kNoUncertainty)) != 0;
+    return vague ? std::numeric_limits<double>::quiet_NaN() : at(values, i);
+  };
+  if (axis[k] == place) return known(k);
+  const double share = (place - axis[k - 1]) / (axis[k] - axis[k - 1]);
+  return (1 - share) * known(k - 1) + share * known(k);
+}
+
 double evaluate(const ResultSet& results, const Summary& s, std::optional<std::size_t> draw) {
   const ResultArray& values = array_of(results, s.analyzer, s.result);
   const auto at = [&](const ResultArray& array, std::size_t c) {
     return array.value[c] + (draw ? static_cast<double>(array.draws[*draw * array.size() + c]) : 0.0);
   };
   if (s.kind == Summary::number) return s.factor * at(values, 0);
-  if (s.kind == Summary::between) return s.factor * ((1 - s.upper) * at(values, s.cells[0]) + s.upper * at(values, s.cells[1]));
+  if (s.kind == Summary::along) {
+    const std::vector<double>& axis = results.axis(values, 0)->value;
+    double all = 0;
+    for (const double place : s.places) all += between(axis, values, at, place);
+    return s.factor * all / static_cast<double>(s.places.size());
+  }
   double sum = 0, weight = 0;
   const ResultArray* weights = s.kind == Summary::mean ? &array_of(results, s.analyzer, s.weight) : nullptr;
   for (const std::size_t c : s.cells) {
@@ -164,8 +185,11 @@ Observation summarise(const ResultSet& results, const std::vector<Summary>& summ
   for (std::size_t i = 0; i < summaries.size(); ++i) {
     const double value = evaluate(results, summaries[i], std::nullopt);
     if (!std::isfinite(value)) {
-      throw UserError(
-          fmt::format("'{}' is undefined in {}: no bead was seen there", summaries[i].observable.name, results.meta.description));
+      throw UserError(fmt::format("'{}' is undefined in {}: {}", summaries[i].observable.name, results.meta.description,
+                                  summaries[i].kind == Summary::along
+                                      ? "too few beads were seen there; narrow 'from' and 'to' of the profile to where "
+                                        "beads always are"
+                                      : "no bead was seen there"));
     }
     o.observables.push_back(summaries[i].observable);
     o.value[static_cast<Eigen::Index>(i)] = value;

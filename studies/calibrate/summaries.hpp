@@ -15,12 +15,12 @@ namespace millscope::calibrate {
 /// One summary and how it is made of results.
 struct Summary {
   Observable observable;
-  enum Kind { number, sum, mean, between } kind = number;
+  enum Kind { number, sum, mean, along } kind = number;
   std::string analyzer, result;
   std::string weight;              ///< mean: the result of the same analyzer that weighs
-  std::vector<std::size_t> cells;  ///< sum, mean: of these values; between: of these two
+  std::vector<std::size_t> cells;  ///< sum, mean: of these values
   double factor = 1;
-  double upper = 0;  ///< between: share of the second one
+  std::vector<double> places = {};  ///< along: mean over these places on the result's axis, between its values
 };
 
 struct SummaryChoice {

@@ -125,10 +125,12 @@ Json validation_json(const Validation& v, const Evaluator& evaluator) {
     if (c.failed) {
       one["failed"] = c.message;
     } else {
-      one["power"] = judged_json(c.power);
-      one["power"]["percent"] = 100 * c.power.difference / c.power.recorded;
-      one["chagas2015"] = {
-          {"value", c.chagas.value()}, {"power_W", c.chagas.power}, {"x_percent", c.chagas.x}, {"speed_percent", c.chagas.speed}};
+      if (std::isfinite(c.power.recorded)) {
+        one["power"] = judged_json(c.power);
+        one["power"]["percent"] = 100 * c.power.difference / c.power.recorded;
+        one["chagas2015"] = {
+            {"value", c.chagas.value()}, {"power_W", c.chagas.power}, {"x_percent", c.chagas.x}, {"speed_percent", c.chagas.speed}};
+      }
       one["misfit"] = c.misfit;
       for (const Judged& o : c.observables) one["observables"].push_back(judged_json(o));
     }
@@ -148,11 +150,12 @@ std::string validation_text(const Validation& v, const Evaluator& evaluator) {
       out += "The simulation failed: " + c.message + "\n\n";
       continue;
     }
-    fmt::format_to(std::back_inserter(out),
-                   "Power {:.4g} W recorded, {:.4g} W simulated: {:+.2f} % ({:+.2f} … {:+.2f} %), {}. Eq. 4.3: {:.3g}. Misfit {:.4g} of {} "
-                   "observables.\n\n",
-                   c.power.recorded, c.power.simulated, 100 * c.power.difference / c.power.recorded, 100 * c.power.low / c.power.recorded,
-                   100 * c.power.high / c.power.recorded, c.power.pass ? "pass" : "fail", c.chagas.value(), c.misfit, c.observables.size());
+    if (std::isfinite(c.power.recorded))
+      fmt::format_to(std::back_inserter(out),
+                     "Power {:.4g} W recorded, {:.4g} W simulated: {:+.2f} % ({:+.2f} … {:+.2f} %), {}. Eq. 4.3: {:.3g}. ",
+                     c.power.recorded, c.power.simulated, 100 * c.power.difference / c.power.recorded, 100 * c.power.low / c.power.recorded,
+                     100 * c.power.high / c.power.recorded, c.power.pass ? "pass" : "fail", c.chagas.value());
+    fmt::format_to(std::back_inserter(out), "Misfit {:.4g} of {} observables.\n\n", c.misfit, c.observables.size());
     out += "| observable | unit | recorded | simulated | difference | 90 % interval | |\n|---|---|---|---|---|---|---|\n";
     for (const Judged& j : c.observables) add_row(out, j);
     out += "\n";

@@ -1,6 +1,7 @@
 #include "studies/calibrate/velocity_profile.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +27,9 @@ using config::UserError;
 constexpr const char* kVersion = "profile 1";  // grows when what is computed here changes
 constexpr std::size_t kMostValues = 12;
 constexpr std::size_t kFewestPoints = 4;
-constexpr std::size_t kPlaces = 51;  // of bed_profile, from shell to shell
-constexpr double kAsStated = 1e4;    // blocks behind errors that are stated, not estimated
+constexpr std::size_t kNeighbours = 2;  // points on either side of a group that its slope is taken from, too
+constexpr int kPlaces = 81;             // of bed_profile, from shell to shell
+constexpr double kAsStated = 1e4;       // blocks behind errors that are stated, not estimated
 
 bool is_profile(const fs::path& file) {
   const std::string ending = file.extension().string();
@@ -38,7 +40,8 @@ bool is_profile(const fs::path& file) {
 std::vector<double> column(const Node& node, const doe::Table& table, const char* unit) {
   node.expect({"column", "unit"});
   const Node name = node.at("column", "the head of the column"), in = node.at("unit", "e.g. mm or m/s");
-  if (!table.has(name.text())) name.fail(fmt::format("is '{}', which is no column of {}", name.text(), table.file()));
+  if (!table.has(name.text()))
+    name.fail(fmt::format("is '{}', which is no column of {}; it has {}", name.text(), table.file(), fmt::join(table.names(), ", ")));
   config::Unit factor;
   try {
     factor = config::parse_unit(in.text());
@@ -62,7 +65,7 @@ void keep(VelocityProfile& profile, double from, double to) {
 }
 
 VelocityProfile read_section(const Node& section) {
-  section.expect({"file", "position", "velocity", "position_error", "velocity_error", "from", "to", "z"});
+  section.expect({"file", "position", "velocity", "position_error", "velocity_error", "origin_error", "from", "to", "z"});
   VelocityProfile profile;
   const Node file = section.at("file", "the table of points, e.g. points.csv");
   profile.points = config::resolve_file(file);
@@ -74,6 +77,8 @@ VelocityProfile read_section(const Node& section) {
   };
   profile.position_error = error("position_error", "e.g. 1 mm", "m");
   profile.velocity_error = error("velocity_error", "e.g. 0.01 m/s", "m/s");
+  if (const auto node = section.find("origin_error"))
+    profile.origin_error = config::read_number(*node, "m", config::between(0, 1, "it is the standard error of all positions together"));
   const auto place = [&](const char* key, double otherwise) {
     const auto node = section.find(key);
     return node ? config::read_number(*node, "m") : otherwise;
@@ -92,33 +97,75 @@ VelocityProfile read_section(const Node& section) {
   return profile;
 }
 
-/// Neighbouring points as one: mean position, mean velocity, its standard error.
+/// Neighbouring points as one: where they lie, their mean velocity, the slope there.
 struct Value {
-  double position, velocity, error;
+  std::vector<double> places;
+  double velocity = 0, slope = 0;
 };
 
-/// σ² = (σ_v² + (dv/dp)² σ_p²)/n, the slope through the group and its neighbours.
+/// Slope of the straight line of least squares through points first … last − 1; 0 where they lie at one place.
+double slope_of(const VelocityProfile& p, std::size_t first, std::size_t last) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    n += 1, x += p.position[i], y += p.velocity[i];
+    xx += p.position[i] * p.position[i], xy += p.position[i] * p.velocity[i];
+  }
+  const double spread = xx - x * x / n;
+  return spread > 0 ? (xy - x * y / n) / spread : 0;
+}
+
 std::vector<Value> values_of(const VelocityProfile& p) {
   const std::size_t n = p.position.size(), groups = std::min(n, kMostValues);
   std::vector<Value> out;
   for (std::size_t g = 0; g < groups; ++g) {
-    const std::size_t first = g * n / groups, last = (g + 1) * n / groups, left = first > 0 ? first - 1 : first,
-                      right = std::min(last, n - 1);
-    const auto mean = [&](const std::vector<double>& v) {
-      return std::accumulate(v.begin() + static_cast<std::ptrdiff_t>(first), v.begin() + static_cast<std::ptrdiff_t>(last), 0.0) /
-             static_cast<double>(last - first);
-    };
-    const double run = p.position[right] - p.position[left], slope = run > 0 ? (p.velocity[right] - p.velocity[left]) / run : 0;
-    out.push_back({mean(p.position), mean(p.velocity),
-                   std::hypot(p.velocity_error, slope * p.position_error) / std::sqrt(static_cast<double>(last - first))});
+    const std::size_t first = g * n / groups, last = (g + 1) * n / groups;
+    Value v;
+    for (std::size_t i = first; i < last; ++i) {
+      v.places.push_back(p.position[i]);
+      v.velocity += p.velocity[i] / static_cast<double>(last - first);
+    }
+    v.slope = slope_of(p, first - std::min(first, kNeighbours), std::min(n, last + kNeighbours));
+    out.push_back(std::move(v));
   }
   return out;
 }
 
+/// C_ij = δ_ij (σ_v² + s_i² σ_p²)/n_i + s_i s_j σ_0², s the slope dv/dp: σ_v and σ_p are each point's own, σ_0 all share.
+Eigen::MatrixXd covariance_of(const VelocityProfile& p, const std::vector<Value>& values) {
+  const auto n = static_cast<Eigen::Index>(values.size());
+  Eigen::MatrixXd c(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Value& v = values[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < n; ++j) c(i, j) = v.slope * values[static_cast<std::size_t>(j)].slope * p.origin_error * p.origin_error;
+    c(i, i) += (std::pow(p.velocity_error, 2) + std::pow(v.slope * p.position_error, 2)) / static_cast<double>(v.places.size());
+  }
+  return c;
+}
+
+/// The part of the length that is looked at. A slice stands for every part of a long mill: there it is none.
+std::string range_text(const VelocityProfile& p, const Condition& c, const studies::MillOfCase& mill, Observation& o) {
+  if (!p.z_low) return "";
+  if (mill.period > 0) {
+    o.notes.push_back("the case is periodic along z: 'z' of the profile is left out");
+    return "";
+  }
+  if (*p.z_low < mill.context.mill_low || *p.z_high > mill.context.mill_high)
+    throw UserError(c.where,
+                    fmt::format("condition '{}': 'z' of {} goes from {:.4g} to {:.4g} mm, but the case's mill from {:.4g} to {:.4g} "
+                                "mm; correct one of them",
+                                c.name, c.recording.string(), 1e3 * *p.z_low, 1e3 * *p.z_high, 1e3 * mill.context.mill_low,
+                                1e3 * mill.context.mill_high));
+  return fmt::format(", z_from: {:.9g}, z_to: {:.9g}", *p.z_low, *p.z_high);
+}
+
 std::string identity(const VelocityProfile& profile, const Processing& how, std::size_t condition) {
   const Condition& c = how.study.conditions[condition];
-  std::vector<std::string> parts{kVersion, std::to_string(how.study.observing.draws), studies::file_hash(how.study.base),
-                                 studies::file_hash(c.recording), studies::file_hash(profile.points)};
+  std::vector<std::string> parts{kVersion,
+                                 kObservations,
+                                 std::to_string(how.study.observing.draws),
+                                 studies::file_hash(how.study.base),
+                                 studies::file_hash(c.recording),
+                                 studies::file_hash(profile.points)};
   parts.insert(parts.end(), c.settings.begin(), c.settings.end());
   for (const host::PluginRecord& r : how.registry.records()) {
     if (r.kind == "analyzer") parts.push_back(r.name + r.file_hash);
@@ -140,36 +187,38 @@ std::optional<VelocityProfile> read_profile(const fs::path& recording) {
 
 RecordedCondition look_at_profile(const VelocityProfile& profile, std::size_t condition, const Processing& how) {
   const Condition& c = how.study.conditions[condition];
-  const AnalyzerContext mill = studies::read_mill_of_case(how.study.base, how.registry, c.settings).context;
-  const double radius = mill.mill_radius, step = 2 * radius / static_cast<double>(kPlaces - 1);
+  const studies::MillOfCase mill = studies::read_mill_of_case(how.study.base, how.registry, c.settings);
+  const double radius = mill.context.mill_radius, farthest = std::max(-profile.position.front(), profile.position.back());
+  if (farthest >= radius)
+    throw UserError(c.where,
+                    fmt::format("condition '{}': {} has a point {:.4g} mm from the axis, but the mill of {} has a radius of {:.4g} mm; "
+                                "correct one of them, or narrow 'from' and 'to'",
+                                c.name, c.recording.string(), 1e3 * farthest, how.study.base.string(), 1e3 * radius));
   const std::vector<Value> values = values_of(profile);
   RecordedCondition r;
-  r.omega = mill.omega;
+  r.omega = mill.context.omega;
   r.identity = identity(profile, how, condition);
-  r.analyzers = fmt::format("{}  bed_profile: {{points: {}{}}}\n", kAnalyzers, kPlaces,
-                            profile.z_low ? fmt::format(", z_from: {:.9g}, z_to: {:.9g}", *profile.z_low, *profile.z_high) : "");
   Observation& o = r.observation;
-  const auto n = static_cast<Eigen::Index>(values.size());
-  o.value.resize(n);
-  o.covariance = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Value& v = values[static_cast<std::size_t>(i)];
-    if (std::fabs(v.position) >= radius)
-      throw UserError(c.where,
-                      fmt::format("condition '{}': {} has points {:.4g} mm from the axis, but the mill of {} has a radius of {:.4g} mm",
-                                  c.name, c.recording.string(), 1e3 * std::fabs(v.position), how.study.base.string(), 1e3 * radius));
-    const double place = (v.position + radius) / step;
-    const auto at = static_cast<std::size_t>(place);
-    const Observable what{fmt::format("velocity at {:.3g} mm", 1e3 * v.position), "m/s", "profile"};
-    r.summaries.push_back({what, Summary::between, "bed_profile", "velocity", "", {at, at + 1}, 1, place - static_cast<double>(at)});
+  r.analyzers = fmt::format(
+      "analyzers:\n  distributions: {{bins_x: 50, bins_y: 50, bins_speed: 60, largest_speed: 3}}\n"
+      "  bed_profile: {{points: {}{}}}\n",
+      kPlaces, range_text(profile, c, mill, o));
+  o.value.resize(static_cast<Eigen::Index>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::vector<double>& at = values[i].places;
+    const double middle = std::accumulate(at.begin(), at.end(), 0.0) / static_cast<double>(at.size());
+    const Observable what{fmt::format("velocity at {:.1f} mm", 1e3 * middle), "m/s", "profile"};
+    r.summaries.push_back({what, Summary::along, "bed_profile", "velocity", "", {}, 1, at});
     o.observables.push_back(what);
-    o.value[i] = v.velocity;
-    o.covariance(i, i) = v.error * v.error;
+    o.value[static_cast<Eigen::Index>(i)] = values[i].velocity;
   }
+  o.covariance = covariance_of(profile, values);
   o.blocks = kAsStated;
   o.power = {std::numeric_limits<double>::quiet_NaN(), 0, "a velocity profile tells no power"};
   o.notes.push_back(fmt::format("{} points of {} as {} values, with the errors that are stated", profile.position.size(),
                                 profile.points.filename().string(), values.size()));
+  if (profile.condition.power || !how.study.objective.terms.empty())
+    o.notes.push_back("the profile alone is compared: a measured power and terms of the objective are left out");
   return r;
 }
 
@@ -180,7 +229,7 @@ studies::ResultSet profile_of_run(const fs::path& run, const RecordedCondition& 
                                config::read_case(case_file.string()).time.analyze_from, std::nullopt);
   studies::EngineOptions engine;
   engine.draws = static_cast<std::size_t>(how.study.observing.draws);
-  engine.threads = how.threads;
+  engine.threads = 1;  // several runs are looked at at once
   const Node section = config::parse_document(recorded.analyzers, "calibrate");
   studies::ResultSet results =
       studies::run_analyzers(source, studies::choose_analyzers(section, true, {}, how.registry, source.context()).instances, engine);

@@ -5,8 +5,9 @@
 //     file: points.csv                              # a line of names, then numbers
 //     position: {column: y, unit: mm}               # from the mill's axis along the bed's normal, below 0 in the bed
 //     velocity: {column: v, unit: m/s}              # along the free surface, above 0 with the shell beneath the bed
-//     position_error: 1 mm                          # standard errors of a point
+//     position_error: 1 mm                          # standard errors of each point by itself
 //     velocity_error: 0.01 m/s
+//     origin_error: 1 mm                            # of all positions together: where the axis lies in the figure; default: 0
 //     from: -110 mm                                 # what is used of it; default: all
 //     to: -40 mm
 //     z: [0 mm, 360 mm]                             # part of the mill's length that the profile is of; default: all
@@ -28,7 +29,7 @@ struct VelocityProfile {
   std::filesystem::path points;  ///< the file of numbers
   studies::Condition condition;
   std::vector<double> position, velocity;
-  double position_error = 0, velocity_error = 0;
+  double position_error = 0, velocity_error = 0, origin_error = 0;
   std::optional<double> z_low, z_high;
 };
 

@@ -136,10 +136,9 @@ HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) {
   const bool compared = named && !out.scores.empty();
   const Prediction base = simulate(r, r.naming.base.coded, {}, condition, "retuned to all observables");
   if (base.failure.empty()) out.base_p = judge.goodness(base, r.seed);
-  if (const VectorXd tuned = rivals.power_only(); tuned.size() > 0) {
-    add(simulate(r, tuned, {}, condition, "retuned to power"),
-        fmt::format("the base, friction retuned until the power at '{}' matches: the practice",
-                    r.question.study.conditions[r.fit.front()].name));
+  if (const auto metered = rivals.metered()) {
+    add(simulate(r, rivals.power_only(*metered), {}, condition, "retuned to power"),
+        fmt::format("the base, friction retuned until the power at '{}' matches: the practice", r.question.study.conditions[*metered].name));
   }
   add(base, "the base, parameters refitted to all observables");
   if (!compared) return out;

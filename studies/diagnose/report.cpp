@@ -95,16 +95,16 @@ void held_out(const Told& t, std::string& out) {
   out += "## On data that were not fitted\n\n";
   if (t.diagnosis.held_out.empty()) out += "No condition has the role `held_out`: nothing confirms the choice.\n\n";
   for (const HeldOut& h : t.diagnosis.held_out) {
-    const double recorded = t.workshop.recorded[h.condition].power.value;
-    const bool metered = std::isfinite(recorded);  // a velocity profile tells no power
+    const calibrate::PowerFigure& recorded = t.workshop.recorded[h.condition].power;
     add(out,
         "{}, recorded power {}. Misfit: mean squared difference over its variance, about 1 when only chance differs.\n\n"
         "| model | misfit | power | improvement of the corrected model (90 %) |\n|---|---|---|---|\n",
-        t.question.study.conditions[h.condition].name, metered ? fmt::format("{:.4g} W", recorded) : "unknown");
+        t.question.study.conditions[h.condition].name, recorded.known() ? fmt::format("{:.4g} W", recorded.value) : "unknown");
     for (const Score& s : h.scores) {
       const bool compared = t.diagnosis.naming.best >= 0 && s.prediction.name != "corrected";
       add(out, "| {}: {} | {:.2f} | {:.4g} W{} | {} |\n", s.prediction.name, s.prediction.sentence, s.misfit, s.prediction.power,
-          metered ? fmt::format(" ({:+.1f} %)", s.power_percent) : "", compared ? fmt::format("{:.2f} ({:.2f} … {:.2f})", s.improvement, s.low90, s.high90) : "");
+          recorded.known() ? fmt::format(" ({:+.1f} %)", s.power_percent) : "",
+          compared ? fmt::format("{:.2f} ({:.2f} … {:.2f})", s.improvement, s.low90, s.high90) : "");
     }
     if (!h.scores.empty()) add(out, "\nA recording of the refitted base would look as bad with p = {:.2g}.\n", h.base_p);
     out += "\n";

@@ -47,14 +47,27 @@ RivalModels::RivalModels(const HeldOutRequest& request, std::size_t held)
       surrogate_(request.problem.data),
       held_surrogate_(problem_alone(request.question, request.workshop, request.bank, held, request.problem.data).data) {}
 
-VectorXd RivalModels::power_only() const {
-  std::vector<Index> powers;
-  const auto& observables = r_.workshop.recorded[r_.fit.front()].observables;
-  for (std::size_t i = 0; i < observables.size(); ++i) {
-    if (observables[i].group == "power") powers.push_back(static_cast<Index>(i));
+std::optional<std::size_t> RivalModels::metered() const {
+  for (const std::size_t c : r_.fit) {
+    if (!powers_of(c).empty()) return c;
   }
-  if (powers.empty()) return {};
-  return retuned_to_power(r_.problem.data, surrogate_, r_.problem.observed, r_.naming.covariance, powers);
+  return std::nullopt;
+}
+
+std::vector<Index> RivalModels::powers_of(std::size_t condition) const {
+  std::vector<Index> powers;
+  Index at = 0;
+  for (const std::size_t c : r_.fit) {
+    for (const calibrate::Observable& o : r_.workshop.recorded[c].observables) {
+      if (c == condition && o.group == "power") powers.push_back(at);
+      ++at;
+    }
+  }
+  return powers;
+}
+
+VectorXd RivalModels::power_only(std::size_t condition) const {
+  return retuned_to_power(r_.problem.data, surrogate_, r_.problem.observed, r_.naming.covariance, powers_of(condition));
 }
 
 Index RivalModels::partner(Index i, std::size_t fitted) const {

@@ -1,6 +1,7 @@
 // What the practice would do instead of naming physics; for the files of this room.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "studies/diagnose/held_out.hpp"
@@ -11,8 +12,10 @@ class RivalModels {
  public:
   RivalModels(const HeldOutRequest& request, std::size_t held);
 
-  /// Coded θ that matches the power of the first fitted condition; empty where no power was recorded there.
-  VectorXd power_only() const;
+  /// The first fitted condition with a recorded power.
+  std::optional<std::size_t> metered() const;
+  /// Coded θ that matches the power of that condition.
+  VectorXd power_only(std::size_t condition) const;
   /// The base's prediction moved by a parameter of no meaning: each observable by a chance number times its error, the same number in all
   /// conditions, its size fitted together with θ; of several such parameters the one that helps the fitted conditions most.
   Prediction placebo(const Prediction& base) const;
@@ -22,6 +25,8 @@ class RivalModels {
  private:
   /// Observable of the fitted condition that stands for number i of the held-out one: the same group, the same place in it; −1: none.
   Index partner(Index i, std::size_t fitted) const;
+  /// Where the powers of a fitted condition stand among the observables of all fitted ones.
+  std::vector<Index> powers_of(std::size_t condition) const;
 
   const HeldOutRequest& r_;
   std::size_t held_;

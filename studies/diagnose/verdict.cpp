@@ -55,9 +55,10 @@ std::string to_separate(const Question& q, const Workshop& workshop, const Diagn
     const double distance = separation(q, workshop, d, c, best, other);
     if (distance > most) most = distance, where = c;
   }
-  return fmt::format(
-      "Of the conditions that were simulated, '{}' separates {} from {} best: {:.1f} noise units with the {:.0f} s recorded there.",
-      q.study.conditions[where].name, rival_name(d, best), rival_name(d, other), std::sqrt(most), workshop.recorded[where].bead_seconds);
+  const calibrate::Observation& there = workshop.recorded[where];
+  return fmt::format("Of the conditions that were simulated, '{}' separates {} from {} best: {:.1f} noise units with {}.",
+                     q.study.conditions[where].name, rival_name(d, best), rival_name(d, other), std::sqrt(most),
+                     there.of_tracks() ? fmt::format("the {:.0f} s recorded there", there.bead_seconds) : "the errors stated there");
 }
 
 /// λ of a candidate if the recordings were longer by a factor; what the surrogate cannot follow stays.
@@ -80,8 +81,9 @@ std::string to_see(const Workshop& workshop, const Diagnosis& d, double noise_un
   const std::string now = fmt::format("The most visible candidate, {}, stands {:.1f} noise units out at its strongest",
                                       rival_name(d, which), std::sqrt(d.naming.judged[static_cast<std::size_t>(which)].lambda));
   if (longer >= kLongest) return now + "; a longer recording alone would not show it: the bank has to grow (bank.base, bank.each).";
-  return now +
-         fmt::format("; about {:.2g} times the {:.0f} s recorded would bring it to {:.0f}.", longer, seconds(workshop, d.fit), noise_units);
+  const double recorded = seconds(workshop, d.fit);
+  if (!(recorded > 0)) return now + fmt::format("; errors smaller by {:.2g} times would bring it to {:.0f}.", std::sqrt(longer), noise_units);
+  return now + fmt::format("; about {:.2g} times the {:.0f} s recorded would bring it to {:.0f}.", longer, recorded, noise_units);
 }
 
 bool is_nuisance(const Diagnosis& d) { return d.problem.rivals[static_cast<std::size_t>(d.naming.best)].candidate < 0; }

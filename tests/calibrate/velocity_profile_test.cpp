@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "kernel/output/frames.hpp"
+#include "studies/calibrate/methods.hpp"
+#include "studies/calibrate/validate.hpp"
 #include "tests/calibrate/made_up_mill.hpp"
 
 using namespace millscope;
@@ -91,7 +93,7 @@ TEST_CASE("a profile is its points by position, in SI, with the errors that are 
   CHECK_THAT(profile->velocity.back(), WithinRel(-0.12, 1e-12));
   const RecordedCondition r = drum.look();
   REQUIRE(r.observation.value.size() == 7);
-  CHECK(r.observation.observables[5].name == "velocity at -40 mm");
+  CHECK(r.observation.observables[5].name == "velocity at -40.0 mm");
   CHECK_THAT(r.observation.value[5], WithinRel(-0.06, 1e-12));
   CHECK_THAT(std::sqrt(r.observation.covariance(5, 5)), WithinRel(std::hypot(0.01, 6 * 0.001), 1e-9));  // 6 m/s per m on both sides
   CHECK_FALSE(r.observation.of_tracks());
@@ -119,14 +121,36 @@ TEST_CASE("a simulation is seen between the analyzer's places, where the measure
   for (Eigen::Index i = 0; i < seen.value.size(); ++i) CHECK_THAT(seen.value[i], WithinAbs(r.observation.value[i], 0.002));
 }
 
-TEST_CASE("a simulation without beads where a point was measured says so") {
+TEST_CASE("an error of the origin is shared by all points, by their slopes") {
+  std::string text = kRecording + "  origin_error: 2 mm\n";
+  const RecordedCondition with = Drum(text).look(), without = Drum().look();
+  const Eigen::MatrixXd shared = with.observation.covariance - without.observation.covariance;
+  CHECK_THAT(shared(5, 6), WithinRel(6 * 6 * 4e-6, 1e-9));
+  CHECK_THAT(shared(5, 5), WithinRel(6 * 6 * 4e-6, 1e-9));
+  CHECK(without.observation.covariance(5, 6) == 0);
+}
+
+TEST_CASE("the part of the length is left out of a periodic slice and refused beyond the ends of a closed mill") {
+  std::string text = kRecording + "  z: [100 mm, 260 mm]\n";
+  const RecordedCondition slice = Drum(text).look();
+  CHECK(slice.analyzers.find("z_from") == std::string::npos);
+  CHECK(slice.observation.notes.front().find("periodic along z") != std::string::npos);
+  Drum closed(text);
+  std::string drum = kDrum;
+  drum.replace(drum.find("domain:"), drum.find('\n', drum.find("domain:")) + 1 - drum.find("domain:"), "");
+  drum.replace(drum.find("end_faces: false"), 16, "end_faces: true");
+  closed.folder.write("drum.yaml", drum);
+  CHECK(testing::message_of([&] { closed.look(); }).find("'z' of") != std::string::npos);
+}
+
+TEST_CASE("a simulation without enough beads where a point was measured says so") {
   const Drum drum(kRecording, "p,v\n-90,1\n-70,1\n-50,1\n20,1\n");
   write_run(drum.folder, [](double) { return 0.1; });
   const RecordedCondition r = drum.look();
   const std::string said = testing::message_of([&] {
     calibrate::summarise(calibrate::profile_of_run(drum.folder.path, r, {drum.study, registry(), 1}), r.summaries);
   });
-  CHECK(said.find("'velocity at 20 mm' is undefined") != std::string::npos);
+  CHECK(said.find("'velocity at 20.0 mm' is undefined") != std::string::npos);
 }
 
 TEST_CASE("a recording of tracks is no profile") {
@@ -160,4 +184,26 @@ TEST_CASE("points outside the case's mill, another mill's speed and an objective
   CHECK(checked(Drum()).empty());
   CHECK(checked(Drum(kRecording + "condition: {speed: 3 rad/s}\n")).find("turning speed") != std::string::npos);
   CHECK(checked(Drum(kRecording, kPoints, "objective: chagas2015\n")).find("velocity profile") != std::string::npos);
+}
+
+TEST_CASE("calibration and validation go on without distributions and without a power") {
+  const testing::Folder folder;
+  const calibrate::Study study = testing::study_of(folder, "  a.mu: {range: [0.1, 0.8]}\n  a.e: {range: [0.3, 0.9]}\n",
+                                                   "method: emulator\nbudget: {simulations: 16}\n");
+  testing::MadeUpMill mill(study, Eigen::Vector2d(0.42, 0.7), 0.02);
+  calibrate::Machinery machinery = mill.machinery();
+  for (calibrate::Observation& o : machinery.recorded) {
+    o.x = {}, o.speed = {}, o.bead_seconds = 0;
+    o.power.value = std::numeric_limits<double>::quiet_NaN();
+  }
+  calibrate::Evaluator evaluator(study, machinery);
+  const calibrate::Calibration c = calibrate::calibrate(evaluator);
+  CHECK(mill.computed() == 16);
+  CHECK(c.best[0] == Approx(0.42).margin(0.06));
+  REQUIRE(c.at_best);
+  CHECK(c.at_best->chagas.value() == 0);
+  const std::string text =
+      calibrate::validation_text(calibrate::validate(evaluator, c.best, study.with_role(calibrate::Role::fit)), evaluator);
+  CHECK(text.find("nan") == std::string::npos);
+  CHECK(text.find("Misfit") != std::string::npos);
 }

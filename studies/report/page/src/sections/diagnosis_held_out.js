@@ -17,14 +17,15 @@ function condition(held, key, index) {
   const id = `${key}-held-${index + 1}`;
   const { models = [] } = held;
   const gained = models.filter(gain);
+  const metered = isNumber(held.recorded_power_W); // a velocity profile tells no power
   return block(id, `Held out: ${held.condition}`,
-    paragraph(`Recorded power ${quantity(held.recorded_power_W, "W")}. `
+    paragraph((metered ? `Recorded power ${quantity(held.recorded_power_W, "W")}. ` : "")
       + (held.improves_on_every_rival ? "The corrected model predicts this condition better than every rival." : gained.length ? "The corrected model is not surely better than every rival here." : "")),
     element("div", { class: "halves" }, figure("Misfit per number in the condition that was not fitted: about 1 when only chance differs, and smaller where errors were taken cautiously.",
       bars(`${id}-misfit`, { label: models.map((model) => `${model.model} ${number(model.misfit, 3)}`).join(", "), rows: models.map((model) => model.model),
         groups: [{ name: "", values: models.map((model) => model.misfit) }], x: { name: "misfit per number" } })),
-    figure("Error of the predicted power.", bars(`${id}-power`, { label: models.map((model) => `${model.model} ${signed(model.power_percent, 2)} %`).join(", "),
-      rows: models.map((model) => model.model), groups: [{ name: "", values: models.map((model) => model.power_percent) }], x: { name: "predicted less recorded power", unit: "%" } }))),
+    metered ? figure("Error of the predicted power.", bars(`${id}-power`, { label: models.map((model) => `${model.model} ${signed(model.power_percent, 2)} %`).join(", "),
+      rows: models.map((model) => model.model), groups: [{ name: "", values: models.map((model) => model.power_percent) }], x: { name: "predicted less recorded power", unit: "%" } })) : null),
     gained.length ? figure("What the correction gains on each rival, with 90 % intervals: right of zero, it predicts better.", intervals(`${id}-gain`, {
       label: gained.map((model) => `${model.model} ${number(gain(model).value, 3)}`).join(", "), rows: gained.map((model) => model.model),
       groups: [{ name: "", values: gained.map((model) => ({ value: gain(model).value, low: gain(model).low90, high: gain(model).high90 })) }],
