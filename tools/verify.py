@@ -23,6 +23,7 @@ from verify_calibrate import calibrate
 from verify_camera import bbosa, camera, roundtrip
 from verify_compare import differences
 from verify_diagnose import doubts, ends, wet
+from verify_real import drum, uct
 from verify_rows import row, show
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -272,7 +273,7 @@ def single_beads(bench, run):
     return {"single": single, "all": every, "spread": spread, "spread_error": spread / math.sqrt(2 * len(single))}
 
 
-ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts)}
+ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, drum, uct)}
 QUICK = ("crosscheck", "hashes", "memory")
 
 

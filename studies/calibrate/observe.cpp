@@ -186,6 +186,7 @@ struct Observer::Impl {
 Observer::Observer(const Study& study, const host::Registry& registry, fs::path cache, int threads,
                    std::function<void(const std::string&)> say)
     : impl_(new Impl{study, registry, std::move(cache), threads, {}, {}}) {
+  fs::create_directories(impl_->cache);
   for (std::size_t c = 0; c < study.conditions.size(); ++c) {
     if (say) say(fmt::format("looking at the recording of condition '{}'", study.conditions[c].name));
     impl_->recorded.push_back(look_at_recording(c, {study, registry, threads}, impl_->cache));

@@ -228,7 +228,6 @@ RecordedCondition look_at_recording(std::size_t condition, const Processing& how
   }
   RecordedCondition r = look(recording, condition, how);
   r.identity = id;
-  std::filesystem::create_directories(cache);
   output::write_json(file, to_json(r));
   return r;
 }

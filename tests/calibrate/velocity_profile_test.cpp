@@ -7,6 +7,7 @@
 
 #include "kernel/output/frames.hpp"
 #include "studies/calibrate/methods.hpp"
+#include "studies/calibrate/observe.hpp"
 #include "studies/calibrate/validate.hpp"
 #include "tests/calibrate/made_up_mill.hpp"
 
@@ -119,6 +120,17 @@ TEST_CASE("a simulation is seen between the analyzer's places, where the measure
   const auto seen = calibrate::summarise(calibrate::profile_of_run(drum.folder.path, r, {drum.study, registry(), 1}), r.summaries);
   REQUIRE(seen.value.size() == r.observation.value.size());
   for (Eigen::Index i = 0; i < seen.value.size(); ++i) CHECK_THAT(seen.value[i], WithinAbs(r.observation.value[i], 0.002));
+}
+
+TEST_CASE("what a run shows of a profile is kept in a cache that is not there yet") {
+  const Drum drum;
+  write_run(drum.folder, [](double p) { return -6 * (p + 0.05); });
+  drum.folder.write("summary.json", R"({"power_W": {"com": 1.5, "com_sem": 0.1}})");
+  const calibrate::Observer observer(drum.study, registry(), drum.folder.path / "cache" / "observations", 1, {});
+  const calibrate::Observation seen = observer.simulated(0, drum.folder.path, "key");
+  CHECK_THAT(seen.value[0], WithinAbs(0.24, 0.003));
+  CHECK(seen.power.value == 1.5);
+  CHECK(observer.simulated(0, "gone", "key").value == seen.value);  // from the cache
 }
 
 TEST_CASE("an error of the origin is shared by all points, by their slopes") {

@@ -1,0 +1,119 @@
+"""The long checks of `diagnose` on recordings of real mills, for verify.py; what is not there is not checked."""
+
+import json
+import math
+import os
+from pathlib import Path
+
+from verify_diagnose import text_of, verdict_rows
+from verify_rows import row
+
+ROOT = Path(__file__).resolve().parent.parent
+RECORDINGS = ROOT.parent / "shared" / "recordings"
+PROFILE, TRACK = RECORDINGS / "alizadeh2013_depth_velocity.csv", RECORDINGS / "uct_mill_part1.a"
+# What the track's own rides along the shell tell (millscope pept inspect): axis in mm, speed in rpm, diameter in mm with a bead of 10 mm.
+AXIS, RPM, DIAMETER = (-3.14, 13.18), 35.9, 470.6
+
+
+def diagnosed(bench, folder, name, study, condition, recording, *settings):
+    out = folder / name
+    bench.call("diagnose", study, "-o", os.path.relpath(out, ROOT), "--cache", os.path.relpath(folder / "cache", ROOT), "-q",
+               "--set", "conditions.%s.recording=%s" % (condition, recording), *(w for s in settings for w in ("--set", s)))
+    return json.loads((out / "diagnosis.json").read_text())
+
+
+def candidate_rows(found):
+    """Every candidate: how much it helps, and how often chance would."""
+    rows = []
+    for h in found["hypotheses"]:
+        values = "; ".join("%s %s" % (n, text_of(v)) for n, v in h["parameters"].items() if isinstance(v, dict))
+        rows.append(row(h["name"], "delta Q %.1f, p %.2g%s" % (h["delta_q"], h["p_value"], "; " + values if values else "")))
+    return rows
+
+
+def drum(bench):
+    """A published velocity profile of a drum against coarse-bead drums whose end faces stand still, though the real ones turned"""
+    if not PROFILE.exists():
+        return [row("the drum's profile", "absent: not checked")]
+    folder = bench.folder / "drum"
+    folder.mkdir(exist_ok=True)
+    text = (ROOT / "configs/drum/profile.yaml").read_text().replace("points.csv", os.path.relpath(PROFILE, folder))
+    (folder / "profile.yaml").write_text(text)
+    found = diagnosed(bench, folder, "diagnosis", "configs/drum/study.yaml", "drum", folder / "profile.yaml")
+    best = min(found["hypotheses"], key=lambda h: h["p_value"])
+    return [row("the candidate that helps most", "%s (p %.2g)" % (best["name"], best["p_value"]), "turning_ends", best["name"] == "turning_ends")] \
+        + verdict_rows(found, "turning_ends")[1:] + candidate_rows(found)
+
+
+def turned(x, y, angle):
+    dx, dy = x - AXIS[0], y - AXIS[1]
+    return AXIS[0] + math.cos(angle) * dx - math.sin(angle) * dy, AXIS[1] + math.sin(angle) * dx + math.cos(angle) * dy
+
+
+def spiked(change):
+    """The lines of the track, each location (t ms, x, y, z mm) changed."""
+    out = []
+    for line in TRACK.read_text().splitlines():
+        words = line.split()
+        try:
+            place = [float(w) for w in words[:4]]
+        except ValueError:
+            place = []
+        if len(place) < 4 or len(words) < 8:
+            out.append(line)
+            continue
+        place = change(*place)
+        if place is not None:
+            out.append(" ".join(["%.4f" % v for v in place] + words[4:]))
+    return "\n".join(out) + "\n"
+
+
+def thinned(keep=0.3, fast=0.7):
+    """Of locations that lie farther from the one before than a slow bead goes only some are kept, by the last digit of their time."""
+    last = [None]
+
+    def change(t, x, y, z):
+        before, last[0] = last[0], (t, x, y, z)
+        if before is None or not 0 < t - before[0] < 50:
+            return t, x, y, z
+        speed = math.dist((x, y, z), before[1:]) / (t - before[0])
+        return None if speed > fast and (int(10 * t) * 7919) % 1000 > 1000 * keep else (t, x, y, z)
+
+    return change
+
+
+SPIKES = {
+    "as it is": (lambda *p: p, ""),
+    "shifted by 9 mm along x": (lambda t, x, y, z: (t, x + 9, y, z), "axis_x"),
+    "tilted by 80 mrad": (lambda t, x, y, z: (t, *turned(x, y, 0.08), z), "tilt"),
+    "thinned where fast": (thinned(), ""),
+}
+
+
+def uct(bench):
+    """A real recording of 92 s of one tracer in a mill of which little is known: as it is, and with errors that were put in"""
+    if not TRACK.exists():
+        return [row("the recording", "absent: not checked")]
+    folder = bench.folder / "uct"
+    folder.mkdir(exist_ok=True)
+    rows = []
+    for k, (name, (change, wanted)) in enumerate(SPIKES.items()):
+        (folder / ("track%d.a" % k)).write_text(spiked(change))
+        recording = folder / ("track%d.yaml" % k)
+        recording.write_text("files: [track%d.a]\nformat: ctrack\ncondition: {speed: %g rpm, direction: clockwise, mill_diameter: %g mm}\n"
+                             "frame: {axis: [%g mm, %g mm]}\n" % (k, RPM, DIAMETER, *AXIS))
+        found = diagnosed(bench, folder, "diagnosis%d" % k, "configs/mill470/study.yaml", "mill", recording)
+        seen = [h["name"] for h in found["hypotheses"] if h["p_value"] <= 0.05]
+        rows.append(row("%s: significant" % name, ", ".join(seen) or "nothing", wanted or "nothing", seen == ([wanted] if wanted else [])))
+        rows.append(row("%s: in its words" % name, "%s: %s" % (found["verdict"], found["sentence"])))
+        rows += [dict(r, what="%s: %s" % (name, r["what"])) for r in candidate_rows(found)]
+    rows.append(stretched(bench, folder))
+    return rows
+
+
+def stretched(bench, folder):
+    """A clock that is 5 % slow contradicts the speed that is stated: reading refuses it before anything is diagnosed."""
+    (folder / "stretched.a").write_text(spiked(lambda t, x, y, z: (1.05 * t, x, y, z)))
+    found = json.loads(bench.call("pept", "inspect", os.path.relpath(folder / "stretched.a", ROOT), "--json")[0])
+    rpm = [found["mill"]["angular_speed_rad_per_s"][k] * 30 / math.pi for k in ("value", "low", "high")]
+    return row("stretched by 5 % in time: speed from its own rides", "%.2f (%.2f … %.2f) rpm" % tuple(rpm), "%.2f rpm, not %.2f" % (RPM / 1.05, RPM), rpm[2] < RPM)
