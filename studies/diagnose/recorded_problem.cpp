@@ -37,7 +37,8 @@ void add_recorded(const Question& question, const Workshop& workshop, const Bank
     const Index size = o.value.size();
     const VectorXd deviation = o.covariance.diagonal().cwiseSqrt();
     problem.observed.segment(at, size) = o.value;
-    MatrixXd own = o.covariance, simulated = deviation.asDiagonal() * correlation_of(bank, c, size) * deviation.asDiagonal();
+    MatrixXd own = o.covariance, simulated = own;  // a profile's errors are stated, its correlations too
+    if (o.of_tracks()) simulated = deviation.asDiagonal() * correlation_of(bank, c, size) * deviation.asDiagonal();
     for (Index i = 0; i < size; ++i) {
       if (o.observables[static_cast<std::size_t>(i)].group != "power") continue;
       const double variance = std::pow(question.study.power_error * o.value[i], 2);

@@ -1,5 +1,6 @@
 // The bank: which simulations are planned, that it grows without losing one, what becomes of those that fail.
 #include "studies/diagnose/bank.hpp"
+#include "studies/diagnose/recorded_problem.hpp"
 
 #include <catch2/catch.hpp>
 #include <set>
@@ -147,6 +148,21 @@ TEST_CASE("numbers stand under their condition when the first parameter set has 
   REQUIRE(data.condition.size() == 32);
   CHECK(data.condition[15] == 0);
   CHECK(data.condition[16] == 1);
+}
+
+TEST_CASE("errors that a velocity profile states are correlated as it says, those of tracks half as simulations are") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  MadeUpMill mill(q, {}, {});
+  Workshop workshop = mill.workshop();
+  Bank bank = fill_bank(q, workshop, plan_group(q, {-1}, 24), {0});
+  for (auto& run : bank.seen) run[0]->covariance.array() += 0.9 * run[0]->covariance(0, 0);
+  const auto between = [&](std::size_t law) { return problem_of(q, workshop, bank, {0}).noise[law](3, 4); };
+  CHECK(between(0) == 0);
+  CHECK(between(1) > 0);
+  workshop.recorded[0].bead_seconds = 0;
+  CHECK(between(0) == 0);
+  CHECK(between(1) == 0);
 }
 
 TEST_CASE("what the camera is doubted of costs no simulation") {
