@@ -145,9 +145,11 @@ void express_as_cut(CameraLosses& loss, const Recording& recording, const Point&
     weight += w.count;
   }
   margin = weight > 0 ? margin / weight : 0;
-  // u_max − u = s (a − b d − c v) on average; without a column of spreads, s is 1 mm and a bead at rest in the middle has u = 1 mm.
-  const bool known = highest > 0 && sum > 0 && sum / number < highest && margin > 0.5;
-  loss.scatter = known ? (highest - sum / number) / margin : 1e-3;
+  // u_max − u = s (a − b d − c v) on average. Without a column of spreads, or where a bead at rest in the middle would have u < 0 by it
+  // (losses that the spread does not decide), s is 1 mm and such a bead has u = 1 mm: what is kept is the same.
+  const double scale = (highest - sum / number) / margin;
+  const bool known = highest > 0 && sum > 0 && scale > 0 && margin > 0.5 && highest > scale * loss.at_rest.value;
+  loss.scatter = known ? scale : 1e-3;
   loss.cut = known ? highest : loss.scatter * std::max(loss.at_rest.value, 0.0) + 1e-3;
   loss.spread = loss.cut - loss.scatter * loss.at_rest.value;
   loss.spread_per_distance = loss.scatter * loss.per_distance.value;

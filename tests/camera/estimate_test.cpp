@@ -6,6 +6,7 @@
 #include "millscope/observation_adapter.hpp"
 #include "studies/camera/ctrack_writer.hpp"
 #include "studies/camera/estimate_camera.hpp"
+#include "studies/camera/estimate_parts.hpp"
 #include "support.hpp"
 
 using namespace camera_test;
@@ -116,6 +117,29 @@ TEST_CASE("the estimate as YAML is a camera file") {
   std::vector<std::string> kinds;
   for (const CameraLink& link : camera.links()) kinds.push_back(link.plugin.name());
   CHECK(kinds == std::vector<std::string>{"sampling", "error_cut", "noise", "gaps", "outliers", "frame_error"});
+}
+
+TEST_CASE("losses that the tracker's spread does not decide are a cut that can be written, and keep the same") {
+  Recording recording;
+  Run run;
+  for (int i = 0; i < 400; ++i) {
+    run.time.push_back(0.005 * i);
+    for (auto& axis : run.position) axis.push_back(0.001 * (i % 50));
+    run.spread.push_back(0.0005 + 0.00001 * (i % 100));  // 1 mm in the mean, at most 1.5 mm
+  }
+  recording.runs.push_back(run);
+  for (const double at_rest : {1.2, 4.0}) {  // far above the margin of the fast beads in the windows: by the spreads u at rest is below 0
+    CameraLosses loss;
+    loss.found = true, loss.typical_distance = 0.1;
+    loss.at_rest.value = at_rest, loss.per_distance.value = 2, loss.per_speed.value = 3;
+    camera::express_as_cut(loss, recording, {0, 0, 0}, {{0.1, 20, 0.05, 0.1, 0}, {0.1, 400, 0.05, (at_rest - 0.9) / 3, 1}});
+    CHECK(loss.spread >= 0);
+    CHECK(loss.scatter > 0);
+    for (const double v : {0.0, 0.5, 1.5}) {
+      const double margin = (loss.cut - loss.spread - loss.spread_per_distance * 0.05 - loss.spread_per_speed * v) / loss.scatter;
+      CHECK(margin == Approx(at_rest - 2 * 0.05 - 3 * v).margin(1e-9));
+    }
+  }
 }
 
 TEST_CASE("a recording that is too short says so") {
