@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "studies/analysis/parallel.hpp"
 #include "studies/calibrate/observe.hpp"
@@ -28,16 +29,27 @@ MatrixXd unit_points(Index points, Index dimensions) {
   return 0.5 * (doe::sobol(std::move(factors), static_cast<int>(points)).coded.array() + 1);
 }
 
+/// Numbers of a group beside those of the case and of the camera.
+Index own_numbers(const Group& group) { return (group.candidate >= 0 ? 1 : 0) + (group.apart >= 0 ? 1 : 0); }
+
+std::string name_of(const Question& q, const Group& group) {
+  if (group.base()) return "base";
+  const std::string apart = group.apart < 0 ? "" : q.coordinates()[static_cast<std::size_t>(group.apart)].name;
+  if (group.candidate < 0) return apart;
+  const std::string& candidate = q.candidates[static_cast<std::size_t>(group.candidate)].name;
+  return group.both() ? candidate + " x " + apart : candidate;
+}
+
 /// Coordinates of the case, then what is varied in this group alone (the share of an effect, a nuisance apart), then those of the camera.
 VectorXd theta_of(const Question& q, const VectorXd& unit, const Group& group) {
   VectorXd theta(static_cast<Index>(q.dimensions()));
   const std::vector<Coordinate> coordinates = q.coordinates();
   const auto own = static_cast<Index>(q.case_dimensions());
-  Index next = own + (group.base() ? 0 : 1);
+  Index next = own + own_numbers(group);
   for (Index i = 0; i < theta.size(); ++i) {
     const Coordinate& c = coordinates[static_cast<std::size_t>(i)];
     if (i == group.apart)
-      theta[i] = rounded(c.natural(2 * unit[own] - 1));
+      theta[i] = rounded(c.natural(2 * unit[own + (group.both() ? 1 : 0)] - 1));
     else if (c.usual)
       theta[i] = *c.usual;
     else
@@ -55,12 +67,16 @@ campaign::Simulation simulation(const Question& q, const VectorXd& theta, const 
   return s;
 }
 
+void append(std::vector<BankPoint>& to, std::vector<BankPoint> more) {
+  to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
 /// The surrogate has no other runs that tell what a nuisance apart does.
 void check_apart(const Question& q, const BankData& data) {
   for (const Group& group : groups_apart(q)) {
     const Coordinate& c = data.theta[static_cast<std::size_t>(group.apart)];
-    const auto varied = static_cast<std::size_t>(
-        std::count_if(data.rows.begin(), data.rows.end(), [&](const BankRow& row) { return row.theta[group.apart] != *c.usual; }));
+    const auto varied = static_cast<std::size_t>(std::count_if(
+        data.rows.begin(), data.rows.end(), [&](const BankRow& row) { return row.effects.empty() && row.theta[group.apart] != *c.usual; }));
     const std::size_t least = 2 + q.study.parameters.size() + kSpareApart;
     if (varied < least)
       throw config::UserError(
@@ -83,12 +99,10 @@ std::vector<Group> groups_apart(const Question& q) {
 
 std::vector<BankPoint> plan_group(const Question& q, const Group& of, int count) {
   const bool effect = of.candidate >= 0;
-  const std::string group = of.base() ? "base"
-                            : effect  ? q.candidates[static_cast<std::size_t>(of.candidate)].name
-                                      : q.coordinates()[static_cast<std::size_t>(of.apart)].name;
+  const std::string group = name_of(q, of);
   const auto offset = of.base() ? 0 : static_cast<Index>(kOffsets * (hash(group) % kOffsets));
   const auto d = static_cast<Index>(q.dimensions() - groups_apart(q).size());
-  const MatrixXd unit = unit_points(offset + count, d + (of.base() ? 0 : 1));
+  const MatrixXd unit = unit_points(offset + count, d + own_numbers(of));
   std::vector<BankPoint> points;
   for (int i = 0; i < count; ++i) {
     const VectorXd u = unit.row(offset + i).transpose();
@@ -106,13 +120,23 @@ std::vector<BankPoint> plan_group(const Question& q, const Group& of, int count)
   return points;
 }
 
-std::vector<BankPoint> plan_bank(const Question& q, int each) {
+std::vector<BankPoint> plan_screening(const Question& q) {
   std::vector<BankPoint> all = plan_group(q, {}, q.bank.base);
-  const auto add = [&](const Group& group, int count) {
-    for (BankPoint& p : plan_group(q, group, count)) all.push_back(std::move(p));
-  };
-  for (const Group& group : groups_apart(q)) add(group, q.bank.base);
-  for (std::size_t j = 0; j < q.candidates.size(); ++j) add({static_cast<int>(j), -1}, each);
+  for (const Group& group : groups_apart(q)) append(all, plan_group(q, group, q.bank.base));
+  for (int j = 0; j < static_cast<int>(q.candidates.size()); ++j) append(all, plan_group(q, {j, -1}, std::min(q.bank.first, q.bank.each)));
+  return all;
+}
+
+std::vector<BankPoint> plan_rest(const Question& q, int candidate) {
+  std::vector<BankPoint> all = plan_group(q, {candidate, -1}, q.bank.each);
+  std::erase_if(all, [&](const BankPoint& p) { return p.index < q.bank.first; });
+  for (const Group& group : groups_apart(q)) append(all, plan_group(q, {candidate, group.apart}, (q.bank.each + 1) / 2));
+  return all;
+}
+
+std::vector<BankPoint> plan_bank(const Question& q) {
+  std::vector<BankPoint> all = plan_screening(q);
+  for (int j = 0; j < static_cast<int>(q.candidates.size()); ++j) append(all, plan_rest(q, j));
   return all;
 }
 

@@ -15,17 +15,18 @@ namespace millscope::diagnose {
 
 /// One parameter set of the bank.
 struct BankPoint {
-  std::string group;  ///< "base", or the name of a candidate or of a nuisance apart
+  std::string group;  ///< "base", the name of a candidate or of a nuisance apart, or "candidate x nuisance"
   int index = 0;      ///< within the group
   VectorXd theta;
   std::vector<Effect> effects;
 };
 
-/// What is varied in some of the bank's simulations beside the parameters: nothing, a candidate's share, or a nuisance apart.
+/// What is varied in some of the bank's simulations beside the parameters: nothing, a candidate's share, a nuisance apart, or these two.
 struct Group {
   int candidate = -1;
   Index apart = -1;  ///< coordinate of θ
   bool base() const { return candidate < 0 && apart < 0; }
+  bool both() const { return candidate >= 0 && apart >= 0; }
 };
 /// One of every nuisance apart.
 std::vector<Group> groups_apart(const Question& question);
@@ -33,8 +34,13 @@ std::vector<Group> groups_apart(const Question& question);
 /// Sobol' points over the ranges; what is simulated of a group does not depend on the other groups, on how many are asked for, nor on the
 /// camera's nuisances, so that a bank grows without losing a run. One-sided shares lie in 0.1 … 1.
 std::vector<BankPoint> plan_group(const Question& question, const Group& group, int count);
-/// All groups, `each` parameter sets with every candidate.
-std::vector<BankPoint> plan_bank(const Question& question, int each);
+/// What tells which candidates cannot matter: all without a candidate, the first with every candidate alone.
+std::vector<BankPoint> plan_screening(const Question& question);
+/// What a candidate that may matter has besides: the rest of those with it alone, and half as many with it and each nuisance apart, which
+/// tell whether it acts otherwise there (rolling friction does in stiffer contacts).
+std::vector<BankPoint> plan_rest(const Question& question, int candidate);
+/// Both, for all candidates.
+std::vector<BankPoint> plan_bank(const Question& question);
 
 campaign::Simulation simulation_of(const Question& question, const BankPoint& point, std::size_t condition);
 

@@ -52,7 +52,7 @@ std::vector<PlannedRun> planned_runs(const Question& q) {
   for (const std::size_t c : q.study.with_role(calibrate::Role::held_out)) conditions.push_back(c);
   std::vector<PlannedRun> runs;
   for (const std::size_t c : conditions) {
-    for (const BankPoint& p : plan_bank(q, q.bank.each)) runs.push_back({p.group, c, simulation_of(q, p, c)});
+    for (const BankPoint& p : plan_bank(q)) runs.push_back({p.group, c, simulation_of(q, p, c)});
   }
   return runs;
 }

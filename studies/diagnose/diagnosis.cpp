@@ -21,7 +21,7 @@ void say(const Workshop& workshop, const std::string& line) {
 /// The bank's first runs of each candidate tell which cannot matter; the others get all of theirs.
 std::vector<BankPoint> screened(const Question& question, const Workshop& workshop, const std::vector<std::size_t>& fit,
                                 double noise_units) {
-  std::vector<BankPoint> points = plan_bank(question, std::min(question.bank.first, question.bank.each));
+  std::vector<BankPoint> points = plan_screening(question);
   const Problem problem = problem_of(question, workshop, fill_bank(question, workshop, points, fit), fit);
   const Surrogate surrogate(problem.data);
   const MatrixXd whitening = whitener(problem.covariance + surrogate.residual_covariance());
@@ -36,9 +36,7 @@ std::vector<BankPoint> screened(const Question& question, const Workshop& worksh
     }
     say(workshop,
         fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate: looked at closely", c.name, units));
-    for (BankPoint& p : plan_group(question, {static_cast<int>(j), -1}, question.bank.each)) {
-      if (p.index >= question.bank.first) points.push_back(std::move(p));
-    }
+    for (BankPoint& p : plan_rest(question, static_cast<int>(j))) points.push_back(std::move(p));
   }
   return points;
 }

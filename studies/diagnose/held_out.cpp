@@ -138,7 +138,8 @@ HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) {
   if (base.failure.empty()) out.base_p = judge.goodness(base, r.seed);
   if (const auto metered = rivals.metered()) {
     add(simulate(r, rivals.power_only(*metered), {}, condition, "retuned to power"),
-        fmt::format("the base, friction retuned until the power at '{}' matches: the practice", r.question.study.conditions[*metered].name));
+        fmt::format("the base, friction retuned until the power at '{}' matches: the practice",
+                    r.question.study.conditions[*metered].name));
   }
   add(base, "the base, parameters refitted to all observables");
   if (!compared) return out;

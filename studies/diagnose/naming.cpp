@@ -142,10 +142,9 @@ class Namer {
     }
     judged.lambda = seen.lambda(), judged.kappa = seen.kappa(), judged.lambda_found = seen.orthogonal(found);
     judged.undetectable = std::sqrt(judged.lambda) < o_.noise_units;
-    judged.share = {found, found, found};
+    judged.share = without_interval(found);
     for (Index i = 0; i < judged.fit.coded.size(); ++i) {
-      const double value = p_.data.theta[static_cast<std::size_t>(i)].natural(judged.fit.coded[i]);
-      judged.theta.push_back({value, value, value});
+      judged.theta.push_back(without_interval(p_.data.theta[static_cast<std::size_t>(i)].natural(judged.fit.coded[i])));
     }
   }
 

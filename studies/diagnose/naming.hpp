@@ -9,8 +9,10 @@
 // leverages; nuisances in θ̂* are drawn from their priors. So the emulator's error is part of every p-value.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -52,7 +54,12 @@ struct NamingOptions {
 
 struct Interval {
   double value = 0, low90 = 0, high90 = 0;
+  bool known() const { return std::isfinite(low90) && std::isfinite(high90); }
 };
+
+inline constexpr double kNotWorkedOut = std::numeric_limits<double>::quiet_NaN();
+
+inline Interval without_interval(double value) { return {value, kNotWorkedOut, kNotWorkedOut}; }
 
 inline constexpr double kNormal90 = 1.645;  ///< standard errors to either side that hold 90 %
 
@@ -66,11 +73,11 @@ struct Judged {
   double lambda = 0;        ///< s⊥ᵀ Σ⁻¹ s⊥ at full strength
   double lambda_found = 0;  ///< at the fitted share
   bool undetectable = false;
-  int runs = 0;                 ///< of the bank with this candidate; too few: it was not tested
-  Interval share;               ///< interval where it was worked out, else equal ends
-  std::vector<Interval> theta;  ///< natural units; the same
-  double goodness_p = 1;        ///< whether the data look like a draw of this model
-  double against_best_p = 1;    ///< under this candidate: how often the best would be better by so much
+  int runs = 0;                       ///< of the bank with this candidate; too few: it was not tested
+  Interval share;                     ///< its interval is worked out when some candidate is significant
+  std::vector<Interval> theta;        ///< natural units; the same
+  double goodness_p = kNotWorkedOut;  ///< whether the data look like a draw of this model; the same
+  double against_best_p = 1;          ///< under this candidate: how often the best would be better by so much
 };
 
 /// One observable beside what the retuned base makes of it.

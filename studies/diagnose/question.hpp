@@ -36,7 +36,7 @@ struct Nuisance {
 /// How many simulations of each kind the bank has in every condition.
 struct BankSize {
   int base = 24;  ///< without an effect
-  int each = 10;  ///< with each candidate
+  int each = 10;  ///< with each candidate; half as many with it and each nuisance apart
   int first = 4;  ///< of them before the candidate is screened
 };
 

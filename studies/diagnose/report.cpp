@@ -21,7 +21,7 @@ void add(std::string& out, fmt::format_string<Values...> text, Values&&... value
 }
 
 std::string text(const Interval& i) {
-  return i.low90 == i.high90 ? fmt::format("{:.3g}", i.value) : fmt::format("{:.3g} ({:.3g} … {:.3g})", i.value, i.low90, i.high90);
+  return i.known() ? fmt::format("{:.3g} ({:.3g} … {:.3g})", i.value, i.low90, i.high90) : fmt::format("{:.3g}", i.value);
 }
 
 std::string strength(const Told& t, std::size_t j) {

@@ -63,29 +63,46 @@ Features::Features(const BankData& data) {
     return (a.products == Products::all || !b.nuisance()) && (b.products == Products::all || !a.nuisance());
   };
   for (Index i = 0; i < d; ++i) {
-    if (!data.theta[static_cast<std::size_t>(i)].nuisance()) interacting_.push_back(i);
     for (Index j = i; j < d; ++j) {
       if (i == j || multiplied(i, j)) products_.emplace_back(i, j);
     }
   }
   base_size_ = 1 + d + static_cast<Index>(products_.size());
   size_ = base_size_;
-  for (int j = 0; j < data.candidates; ++j) {
-    std::set<double> shares;
-    std::size_t runs = 0;
-    for (const BankRow& row : data.rows) {
-      for (const Effect& e : row.effects) {
-        if (e.candidate == j) shares.insert(e.share), ++runs;
-      }
+  for (int j = 0; j < data.candidates; ++j) add_candidate(data, j);
+}
+
+/// Its runs decide which columns it has: those of the parameters all or none, then of each nuisance apart that some of its runs vary.
+void Features::add_candidate(const BankData& data, int candidate) {
+  std::set<double> shares;
+  std::size_t runs = 0;
+  std::vector<std::size_t> varied(data.theta.size(), 0);  // runs in which a nuisance apart has another value than usual
+  for (const BankRow& row : data.rows) {
+    const auto has = [&](const Effect& e) { return e.candidate == candidate; };
+    const auto effect = std::find_if(row.effects.begin(), row.effects.end(), has);
+    if (effect == row.effects.end()) continue;
+    shares.insert(effect->share), ++runs;
+    for (std::size_t i = 0; i < varied.size(); ++i) {
+      if (const auto& usual = data.theta[i].usual) varied[i] += row.theta[static_cast<Index>(i)] != *usual ? 1 : 0;
     }
-    const bool square = shares.size() >= kForSquare && runs >= 2 + kSpare;
-    const bool product = runs >= 1 + static_cast<std::size_t>(square) + interacting_.size() + kSpare;
-    square_.push_back(square);
-    product_.push_back(product);
-    first_.push_back(size_);
-    count_.push_back(runs == 0 ? 0 : 1 + (square ? 1 : 0) + (product ? static_cast<Index>(interacting_.size()) : 0));
-    size_ += count_.back();
   }
+  const bool square = shares.size() >= kForSquare && runs >= 2 + kSpare;
+  std::vector<Index> multiply;
+  for (std::size_t i = 0; i < varied.size(); ++i) {
+    if (!data.theta[i].nuisance()) multiply.push_back(static_cast<Index>(i));
+  }
+  std::size_t columns = 1 + (square ? 1 : 0) + multiply.size();
+  if (runs < columns + kSpare) multiply.clear();
+  for (std::size_t i = 0; i < varied.size() && !multiply.empty(); ++i) {
+    if (varied[i] < 1 + kSpare || runs < columns + 1 + kSpare) continue;
+    multiply.push_back(static_cast<Index>(i));
+    ++columns;
+  }
+  first_.push_back(size_);
+  count_.push_back(runs == 0 ? 0 : 1 + (square ? 1 : 0) + static_cast<Index>(multiply.size()));
+  size_ += count_.back();
+  square_.push_back(square);
+  multiply_.push_back(std::move(multiply));
 }
 
 VectorXd Features::base(const VectorXd& u) const {
@@ -104,9 +121,7 @@ VectorXd Features::block(int candidate, const VectorXd& u, double share) const {
   Index k = 0;
   x[k++] = share;
   if (square_[j]) x[k++] = share * share;
-  if (product_[j]) {
-    for (const Index i : interacting_) x[k++] = share * u[i];
-  }
+  for (const Index i : multiply_[j]) x[k++] = share * u[i];
   return x;
 }
 

@@ -1,5 +1,5 @@
 // One emulator for the whole bank: quadratic in θ; for each candidate linear and square in its share, and its product with the fitted
-// parameters. All observables share the runs, so that one factorisation serves them all.
+// parameters and with the nuisances apart. All observables share the runs, so that one factorisation serves them all.
 //
 //   m(u, s) = b₀ + Σ b_i u_i + Σ b_ij u_i u_j + Σ_j (c_j s_j + d_j s_j² + Σ_i e_ji s_j u_i),  u: coded θ, s: shares
 #pragma once
@@ -25,11 +25,13 @@ class Features {
   VectorXd all(const VectorXd& coded, const std::vector<Effect>& effects) const;
 
  private:
+  void add_candidate(const BankData& data, int candidate);
+
   Index size_ = 0, base_size_ = 0;
   std::vector<std::pair<Index, Index>> products_;  ///< of coordinates, squares among them
-  std::vector<Index> interacting_;                 ///< coordinates that multiply shares: those without a prior
   std::vector<Index> first_, count_;
-  std::vector<bool> square_, product_;  ///< enough different shares, enough runs
+  std::vector<bool> square_;                  ///< of candidates: enough different shares
+  std::vector<std::vector<Index>> multiply_;  ///< of candidates: coordinates that multiply the share, as far as there are runs enough
 };
 
 class Surrogate {

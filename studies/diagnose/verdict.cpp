@@ -82,8 +82,21 @@ std::string to_see(const Workshop& workshop, const Diagnosis& d, double noise_un
                                       rival_name(d, which), std::sqrt(d.naming.judged[static_cast<std::size_t>(which)].lambda));
   if (longer >= kLongest) return now + "; a longer recording alone would not show it: the bank has to grow (bank.base, bank.each).";
   const double recorded = seconds(workshop, d.fit);
-  if (!(recorded > 0)) return now + fmt::format("; errors smaller by {:.2g} times would bring it to {:.0f}.", std::sqrt(longer), noise_units);
+  if (!(recorded > 0))
+    return now + fmt::format("; errors smaller by {:.2g} times would bring it to {:.0f}.", std::sqrt(longer), noise_units);
   return now + fmt::format("; about {:.2g} times the {:.0f} s recorded would bring it to {:.0f}.", longer, recorded, noise_units);
+}
+
+/// What to do where no candidate suffices: the surest cell of the missing acceleration says where to look.
+std::string to_extend(const Question& q, const Diagnosis& d) {
+  const MissingForce* surest = nullptr;
+  for (const MissingForce& m : d.missing) {
+    if (!m.cells.empty() && (surest == nullptr || m.cells.front().p < surest->cells.front().p)) surest = &m;
+  }
+  return "A candidate of its own, with a 'path' or a 'set' of the case under 'hypotheses', or as a plugin; a longer recording does not "
+         "help." +
+         (surest == nullptr ? ""
+                            : " Acceleration is missing most surely here: " + force_sentence(q, surest->condition, surest->cells.front()));
 }
 
 bool is_nuisance(const Diagnosis& d) { return d.problem.rivals[static_cast<std::size_t>(d.naming.best)].candidate < 0; }
@@ -111,8 +124,7 @@ void reservations(Diagnosis& d) {
   }
 }
 
-void nothing_named(const std::vector<calibrate::Condition>& conditions, const Workshop& workshop, double level, double noise_units,
-                   Diagnosis& d) {
+void nothing_named(const Question& q, const Workshop& workshop, double level, double noise_units, Diagnosis& d) {
   // A nuisance that would be seen says nothing of physics.
   bool blind = true;
   const bool physics = std::any_of(d.problem.rivals.begin(), d.problem.rivals.end(), [](const Rival& r) { return r.candidate >= 0; });
@@ -124,6 +136,7 @@ void nothing_named(const std::vector<calibrate::Condition>& conditions, const Wo
         "The base does not describe the recordings (p = {:.2g}) and no candidate helps significantly: something is missing that is not in "
         "the library.",
         d.naming.base_p);
+    d.next_experiment = to_extend(q, d);
     return;
   }
   d.verdict = blind ? Verdict::undetectable : Verdict::no_mismatch;
@@ -143,9 +156,12 @@ void nothing_named(const std::vector<calibrate::Condition>& conditions, const Wo
       "{:.2g}).",
       d.naming.base_p, least);
   for (const HeldOut& h : d.held_out) {
-    if (h.base_p <= level)
-      d.sentence += fmt::format(" But it does not describe the held-out condition '{}' (p = {:.2g}): something differs there.",
-                                conditions[h.condition].name, h.base_p);
+    if (h.base_p > level) continue;
+    const std::string& name = q.study.conditions[h.condition].name;
+    d.sentence +=
+        fmt::format(" But it does not describe the held-out condition '{}' (p = {:.2g}): something differs there.", name, h.base_p);
+    d.next_experiment =
+        fmt::format("Give '{}' the role fit and hold another condition out: what differs there has to be fitted to be named.", name);
   }
 }
 
@@ -153,7 +169,7 @@ void nothing_named(const std::vector<calibrate::Condition>& conditions, const Wo
 
 void conclude(const Question& q, const Workshop& workshop, double level, double noise_units, Diagnosis& d) {
   reservations(d);
-  if (d.naming.best < 0) return nothing_named(q.study.conditions, workshop, level, noise_units, d);
+  if (d.naming.best < 0) return nothing_named(q, workshop, level, noise_units, d);
   const Judged& best = d.naming.judged[static_cast<std::size_t>(d.naming.best)];
   const std::string name = rival_name(d, d.naming.best);
   for (const int k : d.naming.kept) d.named.push_back(rival_name(d, k));
@@ -177,6 +193,7 @@ void conclude(const Question& q, const Workshop& workshop, double level, double 
         "{:.2g}).",
         name, best.p_family, best.goodness_p);
     d.named.clear();
+    d.next_experiment = to_extend(q, d);
     return;
   }
   if (d.naming.kept.size() > 1) {

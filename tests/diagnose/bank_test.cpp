@@ -47,7 +47,7 @@ TEST_CASE("a bank that grows keeps every earlier run") {
 TEST_CASE("all runs of a bank differ, each has a seed of its own") {
   const Scratch folder;
   const Question q = question_of(folder, kSections + "bank: {base: 24, each: 10}\n");
-  const std::vector<BankPoint> points = plan_bank(q, q.bank.each);
+  const std::vector<BankPoint> points = plan_bank(q);
   CHECK(points.size() == 24 + 3 * 10);
   std::set<std::vector<std::string>> different;
   std::set<std::string> labels, parameters;
@@ -232,10 +232,20 @@ TEST_CASE("a nuisance apart is varied in a group of its own, and costs the other
   CHECK(stiff <= 18);
   CHECK(most > 0.008);
   CHECK(most <= 0.01);
-  CHECK(plan_bank(q, q.bank.each).size() == plan_bank(plain, plain.bank.each).size() + static_cast<std::size_t>(q.bank.base));
+  // Every candidate with it, half as many as alone; screening does without them.
+  CHECK(plan_bank(q).size() == plan_bank(plain).size() + static_cast<std::size_t>(q.bank.base + 3 * q.bank.each / 2));
+  CHECK(plan_screening(q).size() == plan_screening(plain).size() + static_cast<std::size_t>(q.bank.base));
+  std::set<double> shares, stiffnesses;
+  for (const BankPoint& p : plan_group(q, {candidate(q, "rolling_resistance"), 3}, 20)) {
+    CHECK(p.group == "rolling_resistance x stiffness");
+    REQUIRE(p.effects.size() == 1);
+    shares.insert(p.effects[0].share), stiffnesses.insert(p.theta[3]);
+  }
+  CHECK(shares.size() > 15);
+  CHECK(stiffnesses.size() > 15);
   // Linear, square and × the two frictions.
   MadeUpMill mill(q, {}, {});
-  BankData data = data_of(q, fill_bank(q, mill.workshop(), plan_bank(q, q.bank.each), {0}), {0});
+  BankData data = data_of(q, fill_bank(q, mill.workshop(), plan_bank(q), {0}), {0});
   const Index with = Features(data).base_size();
   data.theta[3].products = Products::none;
   CHECK(with == Features(data).base_size() + 2);
@@ -250,7 +260,7 @@ TEST_CASE("a nuisance apart whose simulations fail is refused with the remedy") 
                                  "hypotheses: {rolling_resistance: {}}\n");
   MadeUpMill mill(q, {}, {});
   mill.fails = [](const auto& s) { return s.contains("stiffness_factor") && std::stod(s.at("stiffness_factor")) > 0.0012; };
-  const Bank bank = fill_bank(q, mill.workshop(), plan_bank(q, q.bank.each), {0});
+  const Bank bank = fill_bank(q, mill.workshop(), plan_bank(q), {0});
   CHECK_THAT(
       testing::refusal([&] { data_of(q, bank, {0}); }),
       Contains("finished simulations of the bank vary the nuisance 'stiffness', 6 are needed; raise bank.base, or leave the nuisance out"));

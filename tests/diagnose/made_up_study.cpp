@@ -78,16 +78,19 @@ calibrate::Observation MadeUpMill::observation(std::size_t condition, const std:
   const std::map<std::string, std::string> settings = map_of(key);
   VectorXd y = VectorXd::Zero(kObservables);
   const std::uint64_t own = 100 * (condition + 1);
+  std::vector<double> coded;
   for (std::size_t i = 0; i < paths_.size(); ++i) {
     const auto found = settings.find(paths_[i]);
     const double left_alone = theta_[i].usual ? theta_[i].coded(*theta_[i].usual) : 0;
     const double u = found == settings.end() ? left_alone : theta_[i].coded(std::stod(found->second));
+    coded.push_back(u);
     y += (3 - static_cast<double>(i)) * direction(own + i) * u + 0.4 * direction(own + 10 + i) * u * u;
   }
   for (const Physics& p : physics_) {
     const auto found = settings.find(p.path);
     if (found != settings.end())
-      y += p.size * (std::stod(found->second) - p.null_value) / (p.far - p.null_value) * direction(p.direction.at(condition));
+      y += p.size * (1 + p.growth * (1 + coded.at(p.coordinate))) * (std::stod(found->second) - p.null_value) / (p.far - p.null_value) *
+           direction(p.direction.at(condition));
   }
   emulate::Random random(std::hash<std::string>{}(key) + seed, condition);
   y += noise * random.normals(kObservables);

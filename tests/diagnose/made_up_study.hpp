@@ -25,6 +25,8 @@ struct Physics {
   double null_value = 0, far = 1;
   double size = 3;
   std::vector<std::uint64_t> direction;  ///< of each condition
+  std::size_t coordinate = 0;            ///< of θ, on which the size depends …
+  double growth = 0;                     ///< … for every step of its coded value above −1
 };
 
 class MadeUpMill {

@@ -173,4 +173,10 @@ TEST_CASE("where nothing was found there is no corrected case, an older one goes
   CHECK_FALSE(j["contact_parameters"].contains("unmasked"));
   CHECK_FALSE(std::filesystem::exists(folder / "out/corrected"));
   CHECK(j["hypotheses"][0]["class"] == "not needed");
+  // No interval was worked out, and none is pretended.
+  const auto& strength = j["hypotheses"][0]["parameters"]["rolling_friction"];
+  CHECK(strength["value"].is_number());
+  CHECK(strength["low90"].is_null());
+  CHECK(strength["high90"].is_null());
+  CHECK(j["hypotheses"][0]["p_goodness"].is_null());
 }

@@ -99,6 +99,24 @@ TEST_CASE("what is missing is named, with its strength, the friction behind it a
   for (const Alone& a : d.alone) CHECK_THAT(a.after[0].value, WithinAbs(0.3, 0.06));
 }
 
+TEST_CASE("a strength is right where the effect grows with what is varied apart") {
+  const Scratch folder;
+  const Question q =
+      question_of(folder,
+                  "nuisances: {stiffness_factor: {range: [0.001, 0.0101], mean: 0.003, sigma: 0.003, name: stiffness, apart: true}}\n"
+                  "hypotheses: {rolling_resistance: {}, lifter_wear: {}}\n"
+                  "bank: {base: 24, each: 12}\n");
+  const std::vector<Physics> physics{{kRolling, 0, 0.2, 3, {21, 22, 23}, 2, 0.6}, {kHeight, 0.005, 0.003, 3, {41, 42, 43}}};
+  // Nearly twice as strong as in the case.
+  MadeUpMill mill(q, physics, {kTheta[0], kTheta[1], "stiffness_factor=0.006", kRolling + "=0.12"}, 0.5);
+  const Diagnosis d = diagnose::diagnose(q, mill.workshop(), quick());
+  const Judged& found = judged(d, "rolling_resistance");
+  CHECK(found.p_family < 0.05);
+  CHECK_THAT(found.share.value, WithinAbs(0.6, 0.15));
+  CHECK(found.share.low90 < 0.6);
+  CHECK(found.share.high90 > 0.6);
+}
+
 TEST_CASE("two candidates with one effect are a class, and the condition that would separate them is said") {
   const Scratch folder;
   const Question q = question_of(folder, kSections);
@@ -140,6 +158,7 @@ TEST_CASE("an effect that no candidate has is outside the library") {
   CHECK(d.verdict == Verdict::outside_library);
   CHECK(d.named.empty());
   CHECK(d.naming.base_p < 0.05);
+  CHECK_THAT(d.next_experiment, Contains("A candidate of its own"));
   CHECK(std::fabs(d.naming.mismatch.front().z) > 3);
 }
 
