@@ -36,7 +36,7 @@ def diagnosed(bench, folder, name, recordings, *settings):
 
 
 def text_of(p):
-    return "%.3f (%.3f … %.3f)" % (p["value"], p["low90"], p["high90"])
+    return "%.3f" % p["value"] if p["low90"] is None else "%.3f (%.3f … %.3f)" % (p["value"], p["low90"], p["high90"])
 
 
 def friction_rows(found):
@@ -101,7 +101,7 @@ def doubts(bench):
     for name, (_, _, value) in DOUBTS.items():
         more, found = doubted(bench, folder, "dry_" + name, name, name, priors, "observations.spike={kind: frame_error, %s: %g}" % (name, value))
         p = next(h for h in found["hypotheses"] if h["name"] == name)["parameters"][name]
-        rows += more + [row("%s, as fitted" % name, text_of(p), "%g" % value, p["low90"] <= value <= p["high90"])]
+        rows += more + [row("%s, as fitted" % name, text_of(p), "%g" % value, p["low90"] is not None and p["low90"] <= value <= p["high90"])]
     return rows
 
 

@@ -15,7 +15,7 @@ namespace millscope::challenge {
 
 struct Interval {
   double value = 0, low90 = 0, high90 = 0;
-  bool worked_out() const { return high90 > low90; }  ///< diagnosis.json has equal ends where it was not
+  bool worked_out() const { return high90 > low90; }  ///< diagnosis.json has null ends where it was not
   bool holds(double truth) const { return truth >= low90 && truth <= high90; }
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "studies/analysis/parallel.hpp"
@@ -29,15 +30,19 @@ MatrixXd unit_points(Index points, Index dimensions) {
   return 0.5 * (doe::sobol(std::move(factors), static_cast<int>(points)).coded.array() + 1);
 }
 
-/// Numbers of a group beside those of the case and of the camera.
-Index own_numbers(const Group& group) { return (group.candidate >= 0 ? 1 : 0) + (group.apart >= 0 ? 1 : 0); }
-
 std::string name_of(const Question& q, const Group& group) {
   if (group.base()) return "base";
-  const std::string apart = group.apart < 0 ? "" : q.coordinates()[static_cast<std::size_t>(group.apart)].name;
-  if (group.candidate < 0) return apart;
-  const std::string& candidate = q.candidates[static_cast<std::size_t>(group.candidate)].name;
-  return group.both() ? candidate + " x " + apart : candidate;
+  return group.candidate >= 0 ? q.candidates[static_cast<std::size_t>(group.candidate)].name
+                              : q.coordinates()[static_cast<std::size_t>(group.apart)].name;
+}
+
+/// Where a nuisance apart stands beside a candidate, coded: in turn the places that lie at least half of the range from the case's value,
+/// the farthest first.
+double far_from(double usual, std::size_t turn) {
+  std::vector<double> places{-1, 1, -0.5, 0.5, 0};
+  std::erase_if(places, [&](double u) { return std::fabs(u - usual) < 0.99; });
+  std::stable_sort(places.begin(), places.end(), [&](double a, double b) { return std::fabs(a - usual) > std::fabs(b - usual); });
+  return places[turn % places.size()];
 }
 
 /// Coordinates of the case, then what is varied in this group alone (the share of an effect, a nuisance apart), then those of the camera.
@@ -45,11 +50,11 @@ VectorXd theta_of(const Question& q, const VectorXd& unit, const Group& group) {
   VectorXd theta(static_cast<Index>(q.dimensions()));
   const std::vector<Coordinate> coordinates = q.coordinates();
   const auto own = static_cast<Index>(q.case_dimensions());
-  Index next = own + own_numbers(group);
+  Index next = own + (group.base() ? 0 : 1);
   for (Index i = 0; i < theta.size(); ++i) {
     const Coordinate& c = coordinates[static_cast<std::size_t>(i)];
     if (i == group.apart)
-      theta[i] = rounded(c.natural(2 * unit[own + (group.both() ? 1 : 0)] - 1));
+      theta[i] = rounded(c.natural(2 * unit[own] - 1));
     else if (c.usual)
       theta[i] = *c.usual;
     else
@@ -71,6 +76,24 @@ void append(std::vector<BankPoint>& to, std::vector<BankPoint> more) {
   to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
+/// Runs of a candidate with a nuisance apart that are too few for their product would be taken for what the candidate does without.
+void leave_out_too_few(const Question& q, std::vector<BankRow>& rows, std::vector<VectorXd>& values) {
+  for (const Group& group : groups_apart(q)) {
+    const double usual = *q.coordinates()[static_cast<std::size_t>(group.apart)].usual;
+    for (std::size_t j = 0; j < q.candidates.size(); ++j) {
+      const auto together = [&](const BankRow& row) {
+        return !row.effects.empty() && row.effects[0].candidate == static_cast<int>(j) && row.theta[group.apart] != usual;
+      };
+      if (static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), together)) >= kLeastTogether) continue;
+      for (std::size_t r = rows.size(); r-- > 0;) {
+        if (!together(rows[r])) continue;
+        rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(r));
+        values.erase(values.begin() + static_cast<std::ptrdiff_t>(r));
+      }
+    }
+  }
+}
+
 /// The surrogate has no other runs that tell what a nuisance apart does.
 void check_apart(const Question& q, const BankData& data) {
   for (const Group& group : groups_apart(q)) {
@@ -79,10 +102,10 @@ void check_apart(const Question& q, const BankData& data) {
         data.rows.begin(), data.rows.end(), [&](const BankRow& row) { return row.effects.empty() && row.theta[group.apart] != *c.usual; }));
     const std::size_t least = 2 + q.study.parameters.size() + kSpareApart;
     if (varied < least)
-      throw config::UserError(
-          fmt::format("{} finished simulations of the bank vary the nuisance '{}', {} are needed; raise bank.base, or leave "
-                      "the nuisance out",
-                      varied, c.name, least));
+      throw config::UserError(fmt::format(
+          "{} finished simulations of the bank without a candidate vary the nuisance '{}', {} are needed; raise bank.base, or leave "
+          "the nuisance out",
+          varied, c.name, least));
   }
 }
 
@@ -102,7 +125,7 @@ std::vector<BankPoint> plan_group(const Question& q, const Group& of, int count)
   const std::string group = name_of(q, of);
   const auto offset = of.base() ? 0 : static_cast<Index>(kOffsets * (hash(group) % kOffsets));
   const auto d = static_cast<Index>(q.dimensions() - groups_apart(q).size());
-  const MatrixXd unit = unit_points(offset + count, d + own_numbers(of));
+  const MatrixXd unit = unit_points(offset + count, d + (of.base() ? 0 : 1));
   std::vector<BankPoint> points;
   for (int i = 0; i < count; ++i) {
     const VectorXd u = unit.row(offset + i).transpose();
@@ -127,10 +150,26 @@ std::vector<BankPoint> plan_screening(const Question& q) {
   return all;
 }
 
+std::vector<BankPoint> plan_together(const Question& q, int candidate, Index apart) {
+  std::vector<BankPoint> all;
+  const Coordinate c = q.coordinates()[static_cast<std::size_t>(apart)];
+  for (BankPoint& p : plan_group(q, {candidate, -1}, q.bank.each)) {
+    const bool second = !all.empty() && all.back().index == p.index / 2;
+    if (second && std::fabs(all.back().effects[0].share) >= std::fabs(p.effects[0].share)) continue;
+    p.index /= 2;
+    p.group += "*" + c.name;
+    p.theta[apart] = rounded(c.natural(far_from(c.coded(*c.usual), static_cast<std::size_t>(p.index))));
+    if (second) all.pop_back();
+    all.push_back(std::move(p));
+  }
+  if (all.size() < kLeastTogether) all.clear();
+  return all;
+}
+
 std::vector<BankPoint> plan_rest(const Question& q, int candidate) {
   std::vector<BankPoint> all = plan_group(q, {candidate, -1}, q.bank.each);
   std::erase_if(all, [&](const BankPoint& p) { return p.index < q.bank.first; });
-  for (const Group& group : groups_apart(q)) append(all, plan_group(q, {candidate, group.apart}, (q.bank.each + 1) / 2));
+  for (const Group& group : groups_apart(q)) append(all, plan_together(q, candidate, group.apart));
   return all;
 }
 
@@ -203,6 +242,7 @@ BankData data_of(const Question& q, const Bank& bank, const std::vector<std::siz
     data.rows.push_back({bank.points[p].theta, bank.points[p].effects});
     values.emplace_back(Eigen::Map<const VectorXd>(row.data(), static_cast<Index>(row.size())));
   }
+  leave_out_too_few(q, data.rows, values);
   if (values.empty()) {
     throw config::UserError(fmt::format("no simulation of the bank has come to its end{}{}; correct the base case or the ranges",
                                         bank.failures.empty() ? "" : "; the first: ", bank.failures.empty() ? "" : bank.failures.front()));

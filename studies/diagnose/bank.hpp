@@ -15,18 +15,17 @@ namespace millscope::diagnose {
 
 /// One parameter set of the bank.
 struct BankPoint {
-  std::string group;  ///< "base", the name of a candidate or of a nuisance apart, or "candidate x nuisance"
+  std::string group;  ///< "base", the name of a candidate or of a nuisance apart, or "candidate*nuisance"
   int index = 0;      ///< within the group
   VectorXd theta;
   std::vector<Effect> effects;
 };
 
-/// What is varied in some of the bank's simulations beside the parameters: nothing, a candidate's share, a nuisance apart, or these two.
+/// What is varied in some of the bank's simulations beside the parameters: nothing, a candidate's share, or a nuisance apart.
 struct Group {
   int candidate = -1;
   Index apart = -1;  ///< coordinate of θ
   bool base() const { return candidate < 0 && apart < 0; }
-  bool both() const { return candidate >= 0 && apart >= 0; }
 };
 /// One of every nuisance apart.
 std::vector<Group> groups_apart(const Question& question);
@@ -36,8 +35,10 @@ std::vector<Group> groups_apart(const Question& question);
 std::vector<BankPoint> plan_group(const Question& question, const Group& group, int count);
 /// What tells which candidates cannot matter: all without a candidate, the first with every candidate alone.
 std::vector<BankPoint> plan_screening(const Question& question);
-/// What a candidate that may matter has besides: the rest of those with it alone, and half as many with it and each nuisance apart, which
-/// tell whether it acts otherwise there (rolling friction does in stiffer contacts).
+/// A candidate together with a nuisance apart, which tells whether it acts otherwise there (rolling friction does in stiffer contacts): of
+/// every two of its parameter sets the stronger, with the nuisance far from the case's value. None where they would be too few.
+std::vector<BankPoint> plan_together(const Question& question, int candidate, Index apart);
+/// What a candidate that may matter has besides: the rest of those with it alone, and those with it and each nuisance apart.
 std::vector<BankPoint> plan_rest(const Question& question, int candidate);
 /// Both, for all candidates.
 std::vector<BankPoint> plan_bank(const Question& question);

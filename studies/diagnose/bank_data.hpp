@@ -13,7 +13,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-inline constexpr double kWideRange = 2;  ///< high over low, from which on a logarithm may serve better
+inline constexpr std::size_t kLeastTogether = 3;  ///< runs of a candidate with a nuisance apart, from which on their product is fitted
+inline constexpr double kWideRange = 2;           ///< high over low, from which on a logarithm may serve better
 
 /// With what the surrogate multiplies a coordinate, itself apart.
 enum class Products { all, parameters, none };

@@ -89,12 +89,14 @@ std::string duration_text(double seconds) {
 }
 
 std::string status_text(const Question& q, const BankStatus& s, int slots) {
-  std::string out = fmt::format("{:<28} {:<14} {:>7} {:>5} {:>6} {:>7} {:>7} {:>10}\n", "group", "condition", "planned", "done", "failed",
-                                "running", "waiting", "rest");
+  std::size_t wide = 28;
+  for (const BankCell& c : s.cells) wide = std::max(wide, c.group.size());
+  std::string out = fmt::format("{:<{}} {:<14} {:>7} {:>5} {:>6} {:>7} {:>7} {:>10}\n", "group", wide, "condition", "planned", "done",
+                                "failed", "running", "waiting", "rest");
   const auto row = [&](const std::string& group, const std::string& condition, const BankCell& c) {
     const bool open = c.waiting() + c.running > 0;
-    fmt::format_to(std::back_inserter(out), "{:<28} {:<14} {:>7} {:>5} {:>6} {:>7} {:>7} {:>10}\n", group, condition, c.planned, c.done,
-                   c.failed, c.running, c.waiting(),
+    fmt::format_to(std::back_inserter(out), "{:<{}} {:<14} {:>7} {:>5} {:>6} {:>7} {:>7} {:>10}\n", group, wide, condition, c.planned,
+                   c.done, c.failed, c.running, c.waiting(),
                    !open         ? "-"
                    : s.estimated ? duration_text(c.rest_s)
                                  : "?");

@@ -11,8 +11,9 @@
 namespace millscope::diagnose {
 namespace {
 
-constexpr int kSeeds = 6;             // of every model in a held-out condition
-constexpr double kSurelyBelow = 0.5;  // of the noise units: a candidate that is screened out with its first runs
+constexpr int kSeeds = 6;                   // of every model in a held-out condition
+constexpr double kSurelyBelow = 0.5;        // of the noise units: a candidate that is screened out with its first runs
+constexpr double kSurelyBelowApart = 0.25;  // the same where it may act more strongly with something that is varied apart later
 
 void say(const Workshop& workshop, const std::string& line) {
   if (workshop.say) workshop.say(line);
@@ -26,10 +27,11 @@ std::vector<BankPoint> screened(const Question& question, const Workshop& worksh
   const Surrogate surrogate(problem.data);
   const MatrixXd whitening = whitener(problem.covariance + surrogate.residual_covariance());
   const FitResult base = Model(problem.data, surrogate, whitening, {}, {}).fit(problem.observed);
+  const double surely = groups_apart(question).empty() ? kSurelyBelow : kSurelyBelowApart;
   for (std::size_t j = 0; j < question.candidates.size(); ++j) {
     const double units = std::sqrt(Visibility(problem, surrogate, whitening, base.coded, static_cast<int>(j)).lambda());
     const Candidate& c = question.candidates[j];
-    if (units < kSurelyBelow * noise_units) {
+    if (units < surely * noise_units) {
       say(workshop,
           fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate: it cannot matter here", c.name, units));
       continue;

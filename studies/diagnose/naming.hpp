@@ -9,7 +9,6 @@
 // leverages; nuisances in θ̂* are drawn from their priors. So the emulator's error is part of every p-value.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -54,7 +53,8 @@ struct NamingOptions {
 
 struct Interval {
   double value = 0, low90 = 0, high90 = 0;
-  bool known() const { return std::isfinite(low90) && std::isfinite(high90); }
+  /// False where it was not worked out, and of what could not be otherwise: a candidate that is on or off.
+  bool known() const { return high90 > low90; }
 };
 
 inline constexpr double kNotWorkedOut = std::numeric_limits<double>::quiet_NaN();

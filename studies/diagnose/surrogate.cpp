@@ -72,7 +72,7 @@ Features::Features(const BankData& data) {
   for (int j = 0; j < data.candidates; ++j) add_candidate(data, j);
 }
 
-/// Its runs decide which columns it has: those of the parameters all or none, then of each nuisance apart that some of its runs vary.
+/// Its runs decide which columns it has: first those of nuisances apart that some of them vary, then those of the parameters, all or none.
 void Features::add_candidate(const BankData& data, int candidate) {
   std::set<double> shares;
   std::size_t runs = 0;
@@ -87,17 +87,13 @@ void Features::add_candidate(const BankData& data, int candidate) {
     }
   }
   const bool square = shares.size() >= kForSquare && runs >= 2 + kSpare;
-  std::vector<Index> multiply;
+  std::vector<Index> multiply, parameters;
   for (std::size_t i = 0; i < varied.size(); ++i) {
-    if (!data.theta[i].nuisance()) multiply.push_back(static_cast<Index>(i));
+    if (varied[i] >= kLeastTogether) multiply.push_back(static_cast<Index>(i));
+    if (!data.theta[i].nuisance()) parameters.push_back(static_cast<Index>(i));
   }
-  std::size_t columns = 1 + (square ? 1 : 0) + multiply.size();
-  if (runs < columns + kSpare) multiply.clear();
-  for (std::size_t i = 0; i < varied.size() && !multiply.empty(); ++i) {
-    if (varied[i] < 1 + kSpare || runs < columns + 1 + kSpare) continue;
-    multiply.push_back(static_cast<Index>(i));
-    ++columns;
-  }
+  if (runs >= 1 + (square ? 1 : 0) + multiply.size() + parameters.size() + kSpare)
+    multiply.insert(multiply.end(), parameters.begin(), parameters.end());
   first_.push_back(size_);
   count_.push_back(runs == 0 ? 0 : 1 + (square ? 1 : 0) + static_cast<Index>(multiply.size()));
   size_ += count_.back();

@@ -88,15 +88,14 @@ std::string to_see(const Workshop& workshop, const Diagnosis& d, double noise_un
 }
 
 /// What to do where no candidate suffices: the surest cell of the missing acceleration says where to look.
-std::string to_extend(const Question& q, const Diagnosis& d) {
+std::string to_extend(const Question& q, const Diagnosis& d, double level) {
   const MissingForce* surest = nullptr;
   for (const MissingForce& m : d.missing) {
-    if (!m.cells.empty() && (surest == nullptr || m.cells.front().p < surest->cells.front().p)) surest = &m;
+    if (!m.cells.empty() && m.cells.front().p <= (surest == nullptr ? level : surest->cells.front().p)) surest = &m;
   }
-  return "A candidate of its own, with a 'path' or a 'set' of the case under 'hypotheses', or as a plugin; a longer recording does not "
-         "help." +
+  return "Add a candidate of your own under 'hypotheses', with a 'path' or a 'set' of the case or as a plugin." +
          (surest == nullptr ? ""
-                            : " Acceleration is missing most surely here: " + force_sentence(q, surest->condition, surest->cells.front()));
+                            : " What the retuned base lacks most surely: " + force_sentence(q, surest->condition, surest->cells.front()));
 }
 
 bool is_nuisance(const Diagnosis& d) { return d.problem.rivals[static_cast<std::size_t>(d.naming.best)].candidate < 0; }
@@ -136,7 +135,7 @@ void nothing_named(const Question& q, const Workshop& workshop, double level, do
         "The base does not describe the recordings (p = {:.2g}) and no candidate helps significantly: something is missing that is not in "
         "the library.",
         d.naming.base_p);
-    d.next_experiment = to_extend(q, d);
+    d.next_experiment = to_extend(q, d, level);
     return;
   }
   d.verdict = blind ? Verdict::undetectable : Verdict::no_mismatch;
@@ -155,14 +154,16 @@ void nothing_named(const Question& q, const Workshop& workshop, double level, do
       "The recordings look like the base with its parameters retuned (p = {:.2g}); no candidate improves on it (smallest family-wise p = "
       "{:.2g}).",
       d.naming.base_p, least);
+  std::vector<std::string> differ;
   for (const HeldOut& h : d.held_out) {
     if (h.base_p > level) continue;
-    const std::string& name = q.study.conditions[h.condition].name;
-    d.sentence +=
-        fmt::format(" But it does not describe the held-out condition '{}' (p = {:.2g}): something differs there.", name, h.base_p);
-    d.next_experiment =
-        fmt::format("Give '{}' the role fit and hold another condition out: what differs there has to be fitted to be named.", name);
+    differ.push_back(q.study.conditions[h.condition].name);
+    d.sentence += fmt::format(" But it does not describe the held-out condition '{}' (p = {:.2g}): something differs there.", differ.back(),
+                              h.base_p);
   }
+  if (!differ.empty())
+    d.next_experiment =
+        fmt::format("Give {} the role fit and hold another condition out: only what is fitted can be named.", fmt::join(differ, " and "));
 }
 
 }  // namespace
@@ -193,7 +194,7 @@ void conclude(const Question& q, const Workshop& workshop, double level, double 
         "{:.2g}).",
         name, best.p_family, best.goodness_p);
     d.named.clear();
-    d.next_experiment = to_extend(q, d);
+    d.next_experiment = to_extend(q, d, level);
     return;
   }
   if (d.naming.kept.size() > 1) {

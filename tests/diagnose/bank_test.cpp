@@ -18,6 +18,8 @@ namespace {
 const std::string kNuisance = "nuisances: {fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %}}\n";
 const std::string kSections = kNuisance + "hypotheses: {lifter_face_angle: {}, rolling_resistance: {}, end_faces_at_rest: {}}\n";
 
+const std::string kRolling = "pairs.glass~glass.rolling_friction";
+
 std::vector<std::string> settings(const Question& q, const BankPoint& p) { return simulation_of(q, p, 0).settings; }
 
 int candidate(const Question& q, const std::string& name) {
@@ -235,18 +237,39 @@ TEST_CASE("a nuisance apart is varied in a group of its own, and costs the other
   // Every candidate with it, half as many as alone; screening does without them.
   CHECK(plan_bank(q).size() == plan_bank(plain).size() + static_cast<std::size_t>(q.bank.base + 3 * q.bank.each / 2));
   CHECK(plan_screening(q).size() == plan_screening(plain).size() + static_cast<std::size_t>(q.bank.base));
-  std::set<double> shares, stiffnesses;
-  for (const BankPoint& p : plan_group(q, {candidate(q, "rolling_resistance"), 3}, 20)) {
-    CHECK(p.group == "rolling_resistance x stiffness");
+  const int rolling = candidate(q, "rolling_resistance");
+  const std::vector<BankPoint> alone = plan_group(q, {rolling, -1}, q.bank.each), together = plan_together(q, rolling, 3);
+  REQUIRE(together.size() == 5);
+  for (const BankPoint& p : together) {
+    CHECK(p.group == "rolling_resistance*stiffness");
     REQUIRE(p.effects.size() == 1);
-    shares.insert(p.effects[0].share), stiffnesses.insert(p.theta[3]);
+    const auto pair = static_cast<std::size_t>(2 * p.index);
+    CHECK(p.effects[0].share == std::max(alone[pair].effects[0].share, alone[pair + 1].effects[0].share));
+    CHECK(p.theta[3] >= 0.003);  // the case's 0.001 is the soft end: the stiffer half
   }
-  CHECK(shares.size() > 15);
-  CHECK(stiffnesses.size() > 15);
+  CHECK(together[0].theta[3] == 0.01);
+  CHECK(together[1].theta[3] != together[0].theta[3]);
+  // A bank that grows keeps them; one that is too small for a product has none.
+  Question larger = q, small = q;
+  larger.bank.each = 40, small.bank.each = 4;
+  const std::vector<BankPoint> more = plan_together(larger, rolling, 3);
+  CHECK(more.size() == 20);
+  for (std::size_t i = 0; i < together.size(); ++i) CHECK(settings(q, together[i]) == settings(q, more[i]));
+  CHECK(plan_together(small, rolling, 3).empty());
+  // A candidate of which too few came to their end with it is known without its product.
+  MadeUpMill fragile(q, {}, {});
+  fragile.fails = [](const auto& s) {
+    return s.contains("stiffness_factor") && s.contains(kRolling) && s.at("stiffness_factor") != "0.01";
+  };
+  const BankData few = data_of(q, fill_bank(q, fragile.workshop(), plan_bank(q), {0}), {0});
+  const auto is_rolling = [&](const BankRow& row) { return !row.effects.empty() && row.effects[0].candidate == rolling; };
+  CHECK(std::count_if(few.rows.begin(), few.rows.end(), is_rolling) == q.bank.each);
   // Linear, square and × the two frictions.
   MadeUpMill mill(q, {}, {});
   BankData data = data_of(q, fill_bank(q, mill.workshop(), plan_bank(q), {0}), {0});
   const Index with = Features(data).base_size();
+  CHECK(Features(data).count(rolling) == 5);  // linear, square, × two frictions and × stiffness
+  CHECK(Features(few).count(rolling) == 4);
   data.theta[3].products = Products::none;
   CHECK(with == Features(data).base_size() + 2);
   CHECK(data.theta[3].logarithmic);
@@ -259,9 +282,12 @@ TEST_CASE("a nuisance apart whose simulations fail is refused with the remedy") 
                                  "nuisances: {stiffness_factor: {range: [0.001, 0.01], sigma: 0.003, name: stiffness, apart: true}}\n"
                                  "hypotheses: {rolling_resistance: {}}\n");
   MadeUpMill mill(q, {}, {});
-  mill.fails = [](const auto& s) { return s.contains("stiffness_factor") && std::stod(s.at("stiffness_factor")) > 0.0012; };
+  // Runs with a candidate do not tell what the nuisance does without it.
+  mill.fails = [](const auto& s) {
+    return s.contains("stiffness_factor") && !s.contains(kRolling) && std::stod(s.at("stiffness_factor")) > 0.0012;
+  };
   const Bank bank = fill_bank(q, mill.workshop(), plan_bank(q), {0});
-  CHECK_THAT(
-      testing::refusal([&] { data_of(q, bank, {0}); }),
-      Contains("finished simulations of the bank vary the nuisance 'stiffness', 6 are needed; raise bank.base, or leave the nuisance out"));
+  CHECK_THAT(testing::refusal([&] { data_of(q, bank, {0}); }),
+             Contains("finished simulations of the bank without a candidate vary the nuisance 'stiffness', 6 are needed; raise bank.base, "
+                      "or leave the nuisance out"));
 }

@@ -158,8 +158,21 @@ TEST_CASE("an effect that no candidate has is outside the library") {
   CHECK(d.verdict == Verdict::outside_library);
   CHECK(d.named.empty());
   CHECK(d.naming.base_p < 0.05);
-  CHECK_THAT(d.next_experiment, Contains("A candidate of its own"));
+  CHECK_THAT(d.next_experiment, Contains("Add a candidate of your own"));
   CHECK(std::fabs(d.naming.mismatch.front().z) > 3);
+}
+
+TEST_CASE("what shows in the held-out condition alone is said, and how it could be named") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  MadeUpMill mill(q, usual(), kTheta);
+  Workshop workshop = mill.workshop();
+  workshop.recorded[2].value.array() += 8;
+  const Diagnosis d = diagnose::diagnose(q, workshop, quick());
+  INFO(d.sentence);
+  CHECK(d.verdict == Verdict::no_mismatch);
+  CHECK_THAT(d.sentence, Contains("does not describe the held-out condition 'speed50'"));
+  CHECK_THAT(d.next_experiment, Contains("Give speed50 the role fit"));
 }
 
 TEST_CASE("a filling beyond its prior is named as that, and as no physics") {
