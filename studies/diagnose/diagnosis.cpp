@@ -11,9 +11,8 @@
 namespace millscope::diagnose {
 namespace {
 
-constexpr int kSeeds = 6;                   // of every model in a held-out condition
-constexpr double kSurelyBelow = 0.5;        // of the noise units: a candidate that is screened out with its first runs
-constexpr double kSurelyBelowApart = 0.25;  // the same where it may act more strongly with something that is varied apart later
+constexpr int kSeeds = 6;             // of every model in a held-out condition
+constexpr double kMarginApart = 0.5;  // of the noise units: what is screened at the case's value may act more strongly elsewhere
 
 void say(const Workshop& workshop, const std::string& line) {
   if (workshop.say) workshop.say(line);
@@ -27,17 +26,14 @@ std::vector<BankPoint> screened(const Question& question, const Workshop& worksh
   const Surrogate surrogate(problem.data);
   const MatrixXd whitening = whitener(problem.covariance + surrogate.residual_covariance());
   const FitResult base = Model(problem.data, surrogate, whitening, {}, {}).fit(problem.observed);
-  const double surely = groups_apart(question).empty() ? kSurelyBelow : kSurelyBelowApart;
+  const double limit = noise_units * (groups_apart(question).empty() ? 1 : kMarginApart);
   for (std::size_t j = 0; j < question.candidates.size(); ++j) {
-    const double units = std::sqrt(Visibility(problem, surrogate, whitening, base.coded, static_cast<int>(j)).lambda());
-    const Candidate& c = question.candidates[j];
-    if (units < surely * noise_units) {
-      say(workshop,
-          fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate: it cannot matter here", c.name, units));
-      continue;
-    }
-    say(workshop,
-        fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate: looked at closely", c.name, units));
+    const Visibility seen(problem, surrogate, whitening, base.coded, static_cast<int>(j));
+    const double most = std::sqrt(seen.lambda_high());
+    const std::string what = fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate, surely below {:.1f}",
+                                         question.candidates[j].name, std::sqrt(seen.lambda()), most);
+    say(workshop, what + (most < limit ? ": it cannot matter here" : ": looked at closely"));
+    if (most < limit) continue;
     for (BankPoint& p : plan_rest(question, static_cast<int>(j))) points.push_back(std::move(p));
   }
   return points;

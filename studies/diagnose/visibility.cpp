@@ -27,13 +27,16 @@ Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const
     const Coordinate& c = problem.data.theta[static_cast<std::size_t>(i)];
     tangent_(n + i, i) = c.nuisance() ? c.prior_weight() : kFlat;
   }
-  run_noise_ =
-      (whitening * surrogate.residual_covariance() * whitening.transpose()).trace() * static_cast<double>(n - d) / static_cast<double>(n);
+  run_covariance_ = whitening * surrogate.residual_covariance() * whitening.transpose();
+  run_noise_ = run_covariance_.trace() * static_cast<double>(n - d) / static_cast<double>(n);
   const double full = rival_.freed >= 0 ? 1 : rival_.range.high;
-  lambda_ = orthogonal(full);
+  lambda_ = orthogonal(full), lambda_high_ = high(full);
   const double whole = std::max(0.0, effect(full).squaredNorm() - noise(full));
   kappa_ = whole > 0 ? std::min(1.0, std::sqrt(lambda_ / whole)) : 0;
-  if (rival_.freed >= 0 || rival_.range.low < 0) lambda_ = std::max(lambda_, orthogonal(rival_.freed >= 0 ? -1 : rival_.range.low));
+  if (rival_.freed >= 0 || rival_.range.low < 0) {
+    const double other = rival_.freed >= 0 ? -1 : rival_.range.low;
+    lambda_ = std::max(lambda_, orthogonal(other)), lambda_high_ = std::max(lambda_high_, high(other));
+  }
 }
 
 double Visibility::noise(double share) const {
@@ -54,6 +57,14 @@ VectorXd Visibility::effect(double share) const {
 }
 
 VectorXd Visibility::rest(const VectorXd& s) const { return s - tangent_ * tangent_.completeOrthogonalDecomposition().solve(s); }
+
+double Visibility::high(double share) const {
+  if (rival_.freed >= 0) return orthogonal(share);
+  const double h = surrogate_.leverage_of(coded_, {{rival_.candidate, share}}), square = run_covariance_.squaredNorm();
+  const VectorXd s = rest(effect(share)).head(run_covariance_.rows());
+  const double along = std::max(0.0, s.dot(run_covariance_ * s) - h * square);
+  return orthogonal(share) + kNormal90 * std::sqrt(2 * h * h * square + 4 * h * along);
+}
 
 double Visibility::orthogonal(double share) const { return std::max(0.0, rest(effect(share)).squaredNorm() - noise(share)); }
 

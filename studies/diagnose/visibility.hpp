@@ -3,7 +3,8 @@
 //   s = m(θ̂, full strength) − m(θ̂, none),  s⊥: what is left of it after least squares on ∂m/∂θ with the nuisances' priors
 //   λ = s⊥ᵀ Σ⁻¹ s⊥ − ε,  κ = √(λ / (sᵀ Σ⁻¹ s − ε)):  0 is fully concealed
 //
-// ε = h tr(W S Wᵀ) (n − d)/n is what the surrogate's own noise adds to s⊥ on average: h the leverage of the effect, S one run's covariance.
+// ε = h tr M (n − d)/n is what the surrogate's own noise adds on average: h the leverage of the effect, M = W S Wᵀ one run's covariance in
+// noise units. It makes λ uncertain by σ² = 2 h² tr M² + 4 h (s⊥ᵀ M s⊥ − h tr M²): few runs cannot tell a small λ from none.
 #pragma once
 
 #include "studies/diagnose/naming.hpp"
@@ -16,6 +17,7 @@ class Visibility {
 
   double lambda() const { return lambda_; }  ///< at full strength, the better visible end of a two-sided range
   double kappa() const { return kappa_; }
+  double lambda_high() const { return lambda_high_; }  ///< λ is below it with 95 %, at the same end: λ + 1.645 σ
   /// λ at a share (of a freed nuisance: at its coded value).
   double orthogonal(double share) const;
 
@@ -23,6 +25,7 @@ class Visibility {
   VectorXd effect(double share) const;
   VectorXd rest(const VectorXd& s) const;
   double noise(double share) const;
+  double high(double share) const;
 
   const Problem& problem_;
   const Surrogate& surrogate_;
@@ -30,8 +33,9 @@ class Visibility {
   VectorXd coded_;
   const Rival& rival_;
   MatrixXd tangent_;
-  double run_noise_ = 0;  ///< tr(W S Wᵀ) (n − d)/n
-  double lambda_ = 0, kappa_ = 0;
+  MatrixXd run_covariance_;  ///< M
+  double run_noise_ = 0;     ///< tr M (n − d)/n
+  double lambda_ = 0, kappa_ = 0, lambda_high_ = 0;
 };
 
 }  // namespace millscope::diagnose

@@ -6,6 +6,7 @@
 #include "kernel/config/error.hpp"
 #include "made_up_bank.hpp"
 #include "studies/diagnose/surrogate.hpp"
+#include "studies/diagnose/visibility.hpp"
 #include "studies/emulate/random.hpp"
 
 using namespace millscope;
@@ -76,6 +77,31 @@ TEST_CASE("what friction imitates is concealed, what does nothing is undetectabl
   CHECK(n.judged[1].undetectable);
   CHECK(n.judged[2].undetectable);
   CHECK(n.best == -1);
+}
+
+TEST_CASE("what few runs say of an effect's visibility is below its bound in nineteen of twenty banks") {
+  MadeUp mill;
+  mill.each = 4;
+  const VectorXd u = VectorXd::Zero(3);
+  MadeUp exact = mill;
+  exact.run_noise = 1e-6;
+  const Problem known = made_up_problem(exact, u, {0, 0, 0}, 1);
+  const Surrogate right(known.data);
+  int tried = 0, below = 0;
+  double mean = 0, mean_right = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const Problem p = made_up_problem(mill, u, {0, 0, 0}, seed);
+    const Surrogate surrogate(p.data);
+    const MatrixXd w = whitener(p.covariance + surrogate.residual_covariance());
+    for (const int j : {0, 1, 2}) {
+      const Visibility seen(p, surrogate, w, u, j);
+      const double truth = Visibility(p, right, w, u, j).lambda();
+      ++tried, below += truth <= seen.lambda_high() ? 1 : 0;
+      if (j == 0) mean += seen.lambda() / 100, mean_right += truth / 100;
+    }
+  }
+  CHECK(below >= 0.9 * tried);
+  CHECK_THAT(mean, WithinRel(mean_right, 0.05));
 }
 
 TEST_CASE("a filling beyond its prior is a nuisance, not physics") {
