@@ -2,36 +2,52 @@
 
 import json
 import os
+from dataclasses import dataclass
 from pathlib import Path
 
 from verify_recorded import recorded
 from verify_rows import row
 
 ROOT = Path(__file__).resolve().parent.parent
-STUDY, MILL = "configs/story/challenge_study.yaml", "configs/story/mill.yaml"
 SPEEDS = (75, 60, 50)
-BEADS, SECONDS, SETTLED = 60, 10, 1
-# The mills that are recorded have ten times the stiffness of the fitted one and another rule for the tangential force.
-OTHER = ("stiffness_factor=0.005", "contact.law.cap=sum")
-FRICTION = {"bead_friction": ("pairs.glass~glass.static_friction", 0.34), "wall_friction": ("pairs.glass~hdpe.static_friction", 0.3)}
+FRICTION = {"bead_friction": 0.34, "wall_friction": 0.3}
 POOL = "body_forces.fluid_pool={kind: fluid_pool, fluid_density: 1000}"  # water up to 50 mm below the axis: a third of the radius deep
-CLOSED = ("fill.vessel.length=120 mm", "geometry.liner.length=120 mm", "geometry.liner.end_faces=true", "domain=~")
 
 
-def recording(bench, folder, name, speed, *hidden, camera=(), frame=None):
+@dataclass(frozen=True)
+class Mill:
+    """A mill that is recorded, and the study that is asked about it."""
+
+    study: str
+    case: str
+    wall: str  # pair of bead and liner
+    beads: int
+    seconds: float
+    settled: float  # s
+    numerics: tuple  # other stiffness than that of the fitted mill, and another rule for the tangential force
+
+
+STORY = Mill("configs/story/challenge_study.yaml", "configs/story/mill.yaml", "glass~hdpe", 60, 10, 1, ("stiffness_factor=0.005", "contact.law.cap=sum"))
+LARGE = Mill("configs/mill10/ends.yaml", "configs/mill10/case.yaml", "glass~liner", 100, 8, 2,
+             ("stiffness_factor=0.003", "contact.law.cap=sum", "fill.vessel.length=120 mm", "geometry.liner.length=120 mm"))
+
+
+def recording(bench, folder, name, speed, *hidden, camera=(), frame=None, mill=STORY):
     """recording.yaml of a mill with hidden settings, as a camera would have seen it; made once."""
     run = "diagnose_%s_%d" % (name.split("_")[0], speed)
-    summary = bench.run(run, MILL, "mill.speed=%d %%critical" % speed, "seed=%d" % (2026 + speed), *OTHER, *("%s=%g" % f for f in FRICTION.values()),
-                        "time={end_s: %d, analyze_from_s: %d}" % (SETTLED + SECONDS, SETTLED), "output.tracks={beads: %d, every_s: 0.0005}" % BEADS, *hidden)
+    friction = ["pairs.%s.static_friction=%g" % f for f in zip(("glass~glass", mill.wall), FRICTION.values())]
+    summary = bench.run(run, mill.case, "mill.speed=%d %%critical" % speed, "seed=%d" % (2026 + speed), *mill.numerics, *friction,
+                        "time={end_s: %d, analyze_from_s: %d}" % (mill.settled + mill.seconds, mill.settled),
+                        "output.tracks={beads: %d, every_s: 0.0005}" % mill.beads, *hidden)
     power = summary["power_W"]["com"], summary["power_W"]["com_sem"]
     return recorded(bench, run, folder / name / ("r%d" % speed), power, *(["frame: {axis: %s}" % frame] if frame else []), camera=camera)
 
 
-def diagnosed(bench, folder, name, recordings, *settings):
-    """diagnosis.json of the recordings; all mills share one bank."""
+def diagnosed(bench, folder, name, recordings, *settings, mill=STORY):
+    """diagnosis.json of the recordings; all mills of a study share one bank."""
     out = folder / name / "diagnosis"
     sets = ["conditions.speed%d.recording=%s" % (s, recordings[s]) for s in SPEEDS] + list(settings)
-    bench.call("diagnose", STUDY, "-o", os.path.relpath(out, ROOT), "--cache", os.path.relpath(folder / "cache", ROOT), "-q", *(w for s in sets for w in ("--set", s)))
+    bench.call("diagnose", mill.study, "-o", os.path.relpath(out, ROOT), "--cache", os.path.relpath(folder / "cache", ROOT), "-q", *(w for s in sets for w in ("--set", s)))
     return json.loads((out / "diagnosis.json").read_text())
 
 
@@ -42,7 +58,7 @@ def text_of(p):
 def friction_rows(found):
     """Friction retuned and unmasked against the truth, and fitted to each speed alone."""
     rows = []
-    for name, (_, truth) in FRICTION.items():
+    for name, truth in FRICTION.items():
         for kind, values in found["contact_parameters"].items():
             p = (values or {}).get(name)
             if p:
@@ -73,11 +89,10 @@ def verdict_rows(found, wanted):
 
 
 def ends(bench):
-    """A periodic slice as the base, a closed mill of 120 mm recorded"""
+    """A periodic slice of 300 mm as the base, the same mill with end faces and 120 mm long recorded"""
     folder = bench.folder / "diagnose"
-    recordings = {s: recording(bench, folder, "closed", s, *CLOSED) for s in SPEEDS}
-    found = diagnosed(bench, folder, "closed", recordings, "hypotheses.end_faces.sentence=The mill has end faces that turn with it.",
-                      *("hypotheses.end_faces.set." + c.replace("=~", "='~'") for c in CLOSED))
+    recordings = {s: recording(bench, folder, "long", s, mill=LARGE) for s in SPEEDS}
+    found = diagnosed(bench, folder, "long", recordings, mill=LARGE)
     return verdict_rows(found, "end_faces") + held_rows(found) + friction_rows(found)
 
 

@@ -1,6 +1,7 @@
 // How well diagnoses met the answers: nothing but counting, so that every number can be checked by hand.
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -15,7 +16,7 @@ namespace millscope::challenge {
 
 struct Interval {
   double value = 0, low90 = 0, high90 = 0;
-  bool worked_out() const { return high90 > low90; }  ///< diagnosis.json has null ends where it was not
+  bool worked_out() const { return std::isfinite(low90) && std::isfinite(high90); }  ///< diagnosis.json has null ends where it was not
   bool holds(double truth) const { return truth >= low90 && truth <= high90; }
 };
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <iterator>
 
@@ -36,13 +38,11 @@ std::string name_of(const Question& q, const Group& group) {
                               : q.coordinates()[static_cast<std::size_t>(group.apart)].name;
 }
 
-/// Where a nuisance apart stands beside a candidate, coded: in turn the places that lie at least half of the range from the case's value,
-/// the farthest first.
-double far_from(double usual, std::size_t turn) {
-  std::vector<double> places{-1, 1, -0.5, 0.5, 0};
-  std::erase_if(places, [&](double u) { return std::fabs(u - usual) < 0.99; });
-  std::stable_sort(places.begin(), places.end(), [&](double a, double b) { return std::fabs(a - usual) > std::fabs(b - usual); });
-  return places[turn % places.size()];
+/// Where a nuisance apart stands beside a candidate, coded. A case near the middle of the range: its two ends, in Thue's and Morse's order,
+/// in which no digit of a Sobol' point goes along with it; else three places of the other half.
+double far_from(double usual, int turn) {
+  if (std::fabs(usual) < 0.5) return std::popcount(static_cast<unsigned>(turn)) % 2 == 0 ? 1 : -1;
+  return std::copysign(std::array{1.0, 0.5, 0.0}[static_cast<std::size_t>(turn % 3)], -usual);
 }
 
 /// Coordinates of the case, then what is varied in this group alone (the share of an effect, a nuisance apart), then those of the camera.
@@ -76,15 +76,16 @@ void append(std::vector<BankPoint>& to, std::vector<BankPoint> more) {
   to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-/// Runs of a candidate with a nuisance apart that are too few for their product would be taken for what the candidate does without.
+/// Runs of a candidate with a nuisance apart that are too few for their product, or stand beside too few without it, would be taken for
+/// what the candidate does.
 void leave_out_too_few(const Question& q, std::vector<BankRow>& rows, std::vector<VectorXd>& values) {
   for (const Group& group : groups_apart(q)) {
     const double usual = *q.coordinates()[static_cast<std::size_t>(group.apart)].usual;
     for (std::size_t j = 0; j < q.candidates.size(); ++j) {
-      const auto together = [&](const BankRow& row) {
-        return !row.effects.empty() && row.effects[0].candidate == static_cast<int>(j) && row.theta[group.apart] != usual;
-      };
-      if (static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), together)) >= kLeastTogether) continue;
+      const auto with = [&](const BankRow& row) { return !row.effects.empty() && row.effects[0].candidate == static_cast<int>(j); };
+      const auto together = [&](const BankRow& row) { return with(row) && row.theta[group.apart] != usual; };
+      const auto runs = std::count_if(rows.begin(), rows.end(), together), all = std::count_if(rows.begin(), rows.end(), with);
+      if (static_cast<std::size_t>(std::min(runs, all - runs)) >= kLeastTogether) continue;
       for (std::size_t r = rows.size(); r-- > 0;) {
         if (!together(rows[r])) continue;
         rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(r));
@@ -151,15 +152,19 @@ std::vector<BankPoint> plan_screening(const Question& q) {
 }
 
 std::vector<BankPoint> plan_together(const Question& q, int candidate, Index apart) {
-  std::vector<BankPoint> all;
   const Coordinate c = q.coordinates()[static_cast<std::size_t>(apart)];
-  for (BankPoint& p : plan_group(q, {candidate, -1}, q.bank.each)) {
-    const bool second = !all.empty() && all.back().index == p.index / 2;
-    if (second && std::fabs(all.back().effects[0].share) >= std::fabs(p.effects[0].share)) continue;
+  const int pairs = (q.bank.each + 1) / 2;
+  std::vector<BankPoint> all;
+  for (BankPoint& p : plan_group(q, {candidate, -1}, 2 * pairs)) {
+    const bool second = p.index % 2 != 0 && !all.empty() && all.back().index == p.index / 2;
     p.index /= 2;
+    if (second) {
+      const double before = std::fabs(all.back().effects[0].share), now = std::fabs(p.effects[0].share);
+      if (now < before || (now == before && std::popcount(static_cast<unsigned>(p.index)) % 2 == 0)) continue;
+      all.pop_back();
+    }
     p.group += "*" + c.name;
-    p.theta[apart] = rounded(c.natural(far_from(c.coded(*c.usual), static_cast<std::size_t>(p.index))));
-    if (second) all.pop_back();
+    p.theta[apart] = rounded(c.natural(far_from(c.coded(*c.usual), p.index)));
     all.push_back(std::move(p));
   }
   if (all.size() < kLeastTogether) all.clear();

@@ -11,8 +11,9 @@
 namespace millscope::diagnose {
 namespace {
 
-constexpr int kSeeds = 6;             // of every model in a held-out condition
-constexpr double kMarginApart = 0.5;  // of the noise units: what is screened at the case's value may act more strongly elsewhere
+constexpr int kSeeds = 6;  // of every model in a held-out condition
+constexpr double kMargin =
+    0.7;  // of the noise units: at other frictions, or other values of what is varied apart, it may act more strongly
 
 void say(const Workshop& workshop, const std::string& line) {
   if (workshop.say) workshop.say(line);
@@ -26,12 +27,17 @@ std::vector<BankPoint> screened(const Question& question, const Workshop& worksh
   const Surrogate surrogate(problem.data);
   const MatrixXd whitening = whitener(problem.covariance + surrogate.residual_covariance());
   const FitResult base = Model(problem.data, surrogate, whitening, {}, {}).fit(problem.observed);
-  const double limit = noise_units * (groups_apart(question).empty() ? 1 : kMarginApart);
+  const double limit = kMargin * noise_units;
   for (std::size_t j = 0; j < question.candidates.size(); ++j) {
+    if (surrogate.features().count(static_cast<int>(j)) == 0) {
+      say(workshop, fmt::format("{}: none of its first simulations came to its end: it is not tested", question.candidates[j].name));
+      continue;
+    }
     const Visibility seen(problem, surrogate, whitening, base.coded, static_cast<int>(j));
     const double most = std::sqrt(seen.lambda_high());
-    const std::string what = fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate, surely below {:.1f}",
-                                         question.candidates[j].name, std::sqrt(seen.lambda()), most);
+    const std::string what =
+        fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate, below {:.1f} with 95 %",
+                    question.candidates[j].name, std::sqrt(seen.lambda()), most);
     say(workshop, what + (most < limit ? ": it cannot matter here" : ": looked at closely"));
     if (most < limit) continue;
     for (BankPoint& p : plan_rest(question, static_cast<int>(j))) points.push_back(std::move(p));

@@ -25,7 +25,7 @@ Json strength(const Told& t, std::size_t j) {
     return {{c.name, interval(judged.theta[static_cast<std::size_t>(rival.freed)])}};
   }
   const Candidate& c = t.question.candidates[static_cast<std::size_t>(rival.candidate)];
-  if (c.on_or_off()) return {{"share", interval(judged.share)}};
+  if (c.on_or_off()) return {{"share", interval(without_interval(judged.share.value))}};  // there is nothing between
   Json out = interval(strength_of(c, judged.share));
   out["unit"] = c.unit;
   out["vanishes_at"] = c.null_value;

@@ -9,6 +9,7 @@
 // leverages; nuisances in θ̂* are drawn from their priors. So the emulator's error is part of every p-value.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -53,8 +54,7 @@ struct NamingOptions {
 
 struct Interval {
   double value = 0, low90 = 0, high90 = 0;
-  /// False where it was not worked out, and of what could not be otherwise: a candidate that is on or off.
-  bool known() const { return high90 > low90; }
+  bool known() const { return std::isfinite(low90) && std::isfinite(high90); }  ///< it was worked out
 };
 
 inline constexpr double kNotWorkedOut = std::numeric_limits<double>::quiet_NaN();

@@ -29,7 +29,7 @@ std::string strength(const Told& t, std::size_t j) {
   const Judged& judged = t.diagnosis.naming.judged[j];
   if (rival.freed >= 0) return fmt::format("{} = {}", rival.name, text(judged.theta[static_cast<std::size_t>(rival.freed)]));
   const Candidate& c = t.question.candidates[static_cast<std::size_t>(rival.candidate)];
-  if (c.on_or_off()) return fmt::format("share {}", text(judged.share));
+  if (c.on_or_off()) return fmt::format("share {:.3g}", judged.share.value);
   return fmt::format("{} = {}{}", c.parameter, text(strength_of(c, judged.share)), c.unit.empty() || c.unit == "1" ? "" : " " + c.unit);
 }
 

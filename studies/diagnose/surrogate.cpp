@@ -14,8 +14,9 @@
 namespace millscope::diagnose {
 namespace {
 
-constexpr std::size_t kForSquare = 3;  // different shares
-constexpr std::size_t kSpare = 2;      // runs beyond the coefficients of a candidate's block
+constexpr std::size_t kForSquare = 3;      // different shares
+constexpr std::size_t kRunsForSquare = 6;  // fewer leave the far end of the range open
+constexpr std::size_t kSpare = 2;          // runs beyond the coefficients of a candidate's block
 constexpr double kMostLeverage = 0.95;
 
 }  // namespace
@@ -75,25 +76,25 @@ Features::Features(const BankData& data) {
 /// Its runs decide which columns it has: first those of nuisances apart that some of them vary, then those of the parameters, all or none.
 void Features::add_candidate(const BankData& data, int candidate) {
   std::set<double> shares;
-  std::size_t runs = 0;
+  std::size_t runs = 0, alone = 0;                        // those with a nuisance apart repeat parameters and shares of those without
   std::vector<std::size_t> varied(data.theta.size(), 0);  // runs in which a nuisance apart has another value than usual
   for (const BankRow& row : data.rows) {
     const auto has = [&](const Effect& e) { return e.candidate == candidate; };
     const auto effect = std::find_if(row.effects.begin(), row.effects.end(), has);
     if (effect == row.effects.end()) continue;
     shares.insert(effect->share), ++runs;
+    alone += data.usual(row) ? 1 : 0;
     for (std::size_t i = 0; i < varied.size(); ++i) {
       if (const auto& usual = data.theta[i].usual) varied[i] += row.theta[static_cast<Index>(i)] != *usual ? 1 : 0;
     }
   }
-  const bool square = shares.size() >= kForSquare && runs >= 2 + kSpare;
+  const bool square = shares.size() >= kForSquare && alone >= kRunsForSquare;
   std::vector<Index> multiply, parameters;
   for (std::size_t i = 0; i < varied.size(); ++i) {
     if (varied[i] >= kLeastTogether) multiply.push_back(static_cast<Index>(i));
     if (!data.theta[i].nuisance()) parameters.push_back(static_cast<Index>(i));
   }
-  if (runs >= 1 + (square ? 1 : 0) + multiply.size() + parameters.size() + kSpare)
-    multiply.insert(multiply.end(), parameters.begin(), parameters.end());
+  if (alone >= 1 + (square ? 1 : 0) + parameters.size() + kSpare) multiply.insert(multiply.end(), parameters.begin(), parameters.end());
   first_.push_back(size_);
   count_.push_back(runs == 0 ? 0 : 1 + (square ? 1 : 0) + static_cast<Index>(multiply.size()));
   size_ += count_.back();

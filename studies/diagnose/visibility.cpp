@@ -60,10 +60,12 @@ VectorXd Visibility::rest(const VectorXd& s) const { return s - tangent_ * tange
 
 double Visibility::high(double share) const {
   if (rival_.freed >= 0) return orthogonal(share);
-  const double h = surrogate_.leverage_of(coded_, {{rival_.candidate, share}}), square = run_covariance_.squaredNorm();
+  const double h = surrogate_.leverage_of(coded_, {{rival_.candidate, share}}), degrees = static_cast<double>(surrogate_.degrees());
   const VectorXd s = rest(effect(share)).head(run_covariance_.rows());
-  const double along = std::max(0.0, s.dot(run_covariance_ * s) - h * square);
-  return orthogonal(share) + kNormal90 * std::sqrt(2 * h * h * square + 4 * h * along);
+  const double a = 2 * h * h * run_covariance_.squaredNorm() * (1 + 1 / std::max(1.0, degrees));
+  const double b = s.squaredNorm() > 0 ? 4 * h * s.dot(run_covariance_ * s) / s.squaredNorm() : 0;
+  const double seen = orthogonal(share), bend = 0.5 * kNormal90 * b;
+  return seen + kNormal90 * (bend + std::sqrt(a + b * seen + bend * bend));
 }
 
 double Visibility::orthogonal(double share) const { return std::max(0.0, rest(effect(share)).squaredNorm() - noise(share)); }

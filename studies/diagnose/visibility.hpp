@@ -4,7 +4,8 @@
 //   λ = s⊥ᵀ Σ⁻¹ s⊥ − ε,  κ = √(λ / (sᵀ Σ⁻¹ s − ε)):  0 is fully concealed
 //
 // ε = h tr M (n − d)/n is what the surrogate's own noise adds on average: h the leverage of the effect, M = W S Wᵀ one run's covariance in
-// noise units. It makes λ uncertain by σ² = 2 h² tr M² + 4 h (s⊥ᵀ M s⊥ − h tr M²): few runs cannot tell a small λ from none.
+// noise units. It makes λ uncertain by σ² = a + b λ, a = 2 h² tr M² (1 + 1/ν) and b = 4 h s⊥ᵀ M s⊥/s⊥ᵀ s⊥ with the ν degrees of freedom
+// behind S: few runs cannot tell a small λ from none. What the surrogate has no columns for is not in it.
 #pragma once
 
 #include "studies/diagnose/naming.hpp"
@@ -17,7 +18,8 @@ class Visibility {
 
   double lambda() const { return lambda_; }  ///< at full strength, the better visible end of a two-sided range
   double kappa() const { return kappa_; }
-  double lambda_high() const { return lambda_high_; }  ///< λ is below it with 95 %, at the same end: λ + 1.645 σ
+  /// λ is below it with 95 %: that whose estimate would be as low as this in one of twenty banks, λ + z²b/2 + z √(a + b λ + z²b²/4).
+  double lambda_high() const { return lambda_high_; }
   /// λ at a share (of a freed nuisance: at its coded value).
   double orthogonal(double share) const;
 

@@ -250,6 +250,19 @@ TEST_CASE("a nuisance apart is varied in a group of its own, and costs the other
   CHECK(together[0].theta[3] == 0.01);
   CHECK(together[1].theta[3] != together[0].theta[3]);
   // A bank that grows keeps them; one that is too small for a product has none.
+  Question odd = q;
+  odd.bank.each = 9;
+  CHECK(plan_together(odd, rolling, 3).size() == 5);
+  CHECK(settings(q, plan_together(odd, rolling, 3)[4]) == settings(q, together[4]));
+  // A candidate that is on or off, about a case in the middle of the range: both ends, and both halves of each friction.
+  Question middle = q;
+  middle.nuisances[1].usual = 0.003, middle.bank.each = 16;
+  std::set<double> places;
+  std::set<bool> halves;
+  for (const BankPoint& p : plan_together(middle, candidate(q, "end_faces_at_rest"), 3))
+    places.insert(p.theta[3]), halves.insert(p.theta[1] > 0.375);
+  CHECK(places == std::set<double>{0.001, 0.01});
+  CHECK(halves.size() == 2);
   Question larger = q, small = q;
   larger.bank.each = 40, small.bank.each = 4;
   const std::vector<BankPoint> more = plan_together(larger, rolling, 3);

@@ -43,7 +43,7 @@ function mismatch({ mismatch: rows = [], base }, key) {
 
 const strength = (row) => Object.entries(row.parameters ?? {}).map(([name, found]) => {
   const by = scale(found.unit, [found.value, found.high90]);
-  const known = found.high90 > found.low90; // false of null, too
+  const known = isNumber(found.low90) && isNumber(found.high90);
   const unit = by.unit ? ` ${by.unit}` : "";
   return `${words(name)} ${among(found.value, found.low90, found.high90, by.factor)}${known ? ` (${interval(found.low90, found.high90, by.factor)})` : ""}${unit}`;
 }).join("; ");
