@@ -72,7 +72,7 @@ void add_dose(const Marked& m, Score& s) {
   const Tested* tested = m.found->find(e.hypothesis);
   if (tested == nullptr || !tested->strength) return;
   s.doses.push_back({m.answer.set, e.hypothesis, e.share, share_of(e, tested->strength->value), m.found->names(e.hypothesis)});
-  if (tested->strength->worked_out()) s.strength.add(tested->strength->holds(e.value));
+  if (tested->strength->known()) s.strength.add(tested->strength->holds(e.value));
 }
 
 /// The model that is right for the set: the base where nothing is hidden, the best candidate where that is the truth.
@@ -87,7 +87,7 @@ void add_theta(const Marked& m, Score& s) {
   if (parameters == nullptr) return;
   for (const auto& [name, truth] : m.answer.theta) {
     const auto interval = parameters->find(name);
-    if (interval == parameters->end() || !interval->second.worked_out()) continue;
+    if (interval == parameters->end() || !interval->second.known()) continue;
     auto counted = std::find_if(s.theta.begin(), s.theta.end(), [&, &n = name](const auto& t) { return t.first == n; });
     if (counted == s.theta.end()) counted = s.theta.insert(s.theta.end(), {name, {}});
     counted->second.add(interval->second.holds(truth));

@@ -1,7 +1,6 @@
 // How well diagnoses met the answers: nothing but counting, so that every number can be checked by hand.
 #pragma once
 
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -11,14 +10,11 @@
 #include <vector>
 
 #include "studies/challenge/answer.hpp"
+#include "studies/diagnose/naming.hpp"
 
 namespace millscope::challenge {
 
-struct Interval {
-  double value = 0, low90 = 0, high90 = 0;
-  bool worked_out() const { return std::isfinite(low90) && std::isfinite(high90); }  ///< diagnosis.json has null ends where it was not
-  bool holds(double truth) const { return truth >= low90 && truth <= high90; }
-};
+using diagnose::Interval;
 
 /// One hypothesis of a diagnosis.
 struct Tested {

@@ -54,7 +54,8 @@ struct NamingOptions {
 
 struct Interval {
   double value = 0, low90 = 0, high90 = 0;
-  bool known() const { return std::isfinite(low90) && std::isfinite(high90); }  ///< it was worked out
+  bool known() const { return std::isfinite(low90) && std::isfinite(high90); }  ///< it was worked out; diagnosis.json has null ends else
+  bool holds(double truth) const { return truth >= low90 && truth <= high90; }
 };
 
 inline constexpr double kNotWorkedOut = std::numeric_limits<double>::quiet_NaN();

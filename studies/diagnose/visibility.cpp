@@ -29,14 +29,24 @@ Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const
   }
   run_covariance_ = whitening * surrogate.residual_covariance() * whitening.transpose();
   run_noise_ = run_covariance_.trace() * static_cast<double>(n - d) / static_cast<double>(n);
-  const double full = rival_.freed >= 0 ? 1 : rival_.range.high;
-  lambda_ = orthogonal(full), lambda_high_ = high(full);
+  const std::vector<double> far = ends();
+  const double full = far.front();
+  lambda_ = orthogonal(full);
   const double whole = std::max(0.0, effect(full).squaredNorm() - noise(full));
   kappa_ = whole > 0 ? std::min(1.0, std::sqrt(lambda_ / whole)) : 0;
-  if (rival_.freed >= 0 || rival_.range.low < 0) {
-    const double other = rival_.freed >= 0 ? -1 : rival_.range.low;
-    lambda_ = std::max(lambda_, orthogonal(other)), lambda_high_ = std::max(lambda_high_, high(other));
-  }
+  if (far.size() > 1) lambda_ = std::max(lambda_, orthogonal(far.back()));
+}
+
+std::vector<double> Visibility::ends() const {
+  if (rival_.freed >= 0) return {1, -1};
+  if (rival_.range.low < 0) return {rival_.range.high, rival_.range.low};
+  return {rival_.range.high};
+}
+
+double Visibility::lambda_high() const {
+  double most = 0;
+  for (const double end : ends()) most = std::max(most, high(end));
+  return most;
 }
 
 double Visibility::noise(double share) const {

@@ -19,7 +19,7 @@ class Visibility {
   double lambda() const { return lambda_; }  ///< at full strength, the better visible end of a two-sided range
   double kappa() const { return kappa_; }
   /// λ is below it with 95 %: that whose estimate would be as low as this in one of twenty banks, λ + z²b/2 + z √(a + b λ + z²b²/4).
-  double lambda_high() const { return lambda_high_; }
+  double lambda_high() const;
   /// λ at a share (of a freed nuisance: at its coded value).
   double orthogonal(double share) const;
 
@@ -28,6 +28,7 @@ class Visibility {
   VectorXd rest(const VectorXd& s) const;
   double noise(double share) const;
   double high(double share) const;
+  std::vector<double> ends() const;  ///< of the range: full strength, and the other one of a two-sided range
 
   const Problem& problem_;
   const Surrogate& surrogate_;
@@ -37,7 +38,7 @@ class Visibility {
   MatrixXd tangent_;
   MatrixXd run_covariance_;  ///< M
   double run_noise_ = 0;     ///< tr M (n − d)/n
-  double lambda_ = 0, kappa_ = 0, lambda_high_ = 0;
+  double lambda_ = 0, kappa_ = 0;
 };
 
 }  // namespace millscope::diagnose

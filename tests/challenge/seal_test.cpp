@@ -76,7 +76,7 @@ TEST_CASE("diagnoses are read as they were written, failures with their reason")
   CHECK(sets[0].found->failure == "the disk was on fire");
   const Found& f = *sets[1].found;
   CHECK(f.best()->strength->low90 == 0.0039);
-  CHECK_FALSE(f.unmasked.at("friction").worked_out());  // its end is not a number
+  CHECK_FALSE(f.unmasked.at("friction").known());  // its end is not a number
   CHECK(f.gains.size() == 1);
   const Score s = score(sets);
   CHECK(s.best_right.hits == 1);
