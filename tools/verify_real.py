@@ -82,11 +82,12 @@ def thinned(keep=0.3, fast=0.7):
     return change
 
 
-FRAME = ("axis_x", "axis_y", "tilt")
+FRAME = ("axis_x", "axis_y", "tilt", "clock")
 SPIKES = {
     "as it is": (lambda *p: p, ""),
     "shifted by 9 mm along x": (lambda t, x, y, z: (t, x + 9, y, z), "axis_x"),
     "tilted by 80 mrad": (lambda t, x, y, z: (t, *turned(x, y, 0.08), z), "tilt"),
+    "stretched by 2.5 % in time": (lambda t, x, y, z: (1.025 * t, x, y, z), "clock"),
     "thinned where fast": (thinned(), ""),
 }
 

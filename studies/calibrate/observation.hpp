@@ -13,7 +13,7 @@ namespace millscope::calibrate {
 struct Observable {
   std::string name;   ///< "speed 0.3–0.45 of the shell's"
   std::string unit;   ///< SI or %
-  std::string group;  ///< power, centre, x, y, speed, occupancy, region_speed, term
+  std::string group;  ///< power, centre, x, y, speed, occupancy, region_speed, term, frame NAME
 };
 
 /// A distribution, percent per bin.

@@ -200,6 +200,13 @@ campaign::Simulation simulation_at(const Question& q, const VectorXd& theta, con
   return s;
 }
 
+calibrate::Observation Workshop::look(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
+                                      const VectorXd& theta) const {
+  calibrate::Observation o = observe(condition, outcome, question.camera(theta));
+  if (!readings.empty()) add_readings(question, readings[condition], theta, o);
+  return o;
+}
+
 Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoint> points, std::vector<std::size_t> conditions) {
   std::vector<campaign::Simulation> simulations;
   for (const BankPoint& p : points) {
@@ -216,7 +223,7 @@ Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoin
     try {
       if (outcomes[i].state == campaign::State::failed) throw config::UserError(outcomes[i].message);
       bank.seen[i / per_point][i % per_point] =
-          workshop.observe(bank.conditions[i % per_point], outcomes[i], q.camera(bank.points[i / per_point].theta));
+          workshop.look(q, bank.conditions[i % per_point], outcomes[i], bank.points[i / per_point].theta);
     } catch (const config::UserError& e) {
       failures[i] = fmt::format("{}: {}", simulations[i].label, e.what());
     }

@@ -9,7 +9,7 @@
 #include "studies/analysis/results.hpp"
 #include "studies/calibrate/observation.hpp"
 #include "studies/campaign/campaign.hpp"
-#include "studies/diagnose/question.hpp"
+#include "studies/diagnose/frame_readings.hpp"
 
 namespace millscope::diagnose {
 
@@ -53,12 +53,17 @@ campaign::Simulation simulation_at(const Question& question, const VectorXd& the
 struct Workshop {
   std::function<std::vector<campaign::Outcome>(std::span<const campaign::Simulation>)> run;
   std::function<calibrate::Observation(std::size_t condition, const campaign::Outcome&, const std::string& camera)> observe;
-  std::vector<calibrate::Observation> recorded;  ///< of every condition
+  std::vector<calibrate::Observation> recorded;  ///< of every condition, with the readings
   std::function<void(const std::string&)> say;
   /// Results of other analyzers, of the recording where `run` is empty; not set: nothing is looked at again.
   std::function<studies::ResultSet(std::size_t condition, const std::filesystem::path& run, const std::string& analyzers,
                                    const std::string& camera)>
       results = {};
+  std::vector<std::vector<FrameReading>> readings = {};  ///< of every recording's frame; empty: nothing of it is doubted
+
+  /// What a simulation at θ shows, readings of the frame included.
+  calibrate::Observation look(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
+                              const VectorXd& theta) const;
 };
 
 /// The points with what was seen of them in some conditions.

@@ -45,6 +45,19 @@ std::vector<BankPoint> screened(const Question& question, const Workshop& worksh
   return points;
 }
 
+/// What the recordings tell of a frame that the study doubts becomes part of what they show.
+void read_frames(const Question& question, Workshop& workshop) {
+  const auto of_camera = [](const Nuisance& n) { return n.of_camera(); };
+  if (std::none_of(question.nuisances.begin(), question.nuisances.end(), of_camera)) return;
+  for (std::size_t c = 0; c < question.study.conditions.size(); ++c) {
+    const calibrate::Condition& condition = question.study.conditions[c];
+    workshop.readings.push_back(read_frame(question, studies::read_recording(condition.recording)));
+    add_readings(workshop.readings.back(), workshop.recorded[c]);
+    if (!workshop.readings.back().empty())
+      say(workshop, fmt::format("condition '{}', its frame by its own beads: {}", condition.name, text_of(workshop.readings.back())));
+  }
+}
+
 }  // namespace
 
 const char* name_of(Verdict verdict) {
@@ -87,6 +100,11 @@ Diagnosis diagnose(const Question& question, const Workshop& workshop, const Nam
   if (!d.bank.failures.empty())
     d.notes.push_back(
         fmt::format("{} simulations of the bank failed and are left out, the first: {}", d.bank.failures.size(), d.bank.failures.front()));
+  for (std::size_t c = 0; c < workshop.readings.size(); ++c) {
+    if (!workshop.readings[c].empty())
+      d.notes.push_back(
+          fmt::format("frame of '{}', by the recorded beads: {}", question.study.conditions[c].name, text_of(workshop.readings[c])));
+  }
   for (const std::string& line : question.left_out) d.notes.push_back("not tested: " + line);
   conclude(question, workshop, options.level, options.noise_units, d);
   return d;
@@ -102,7 +120,9 @@ Workshop workshop_of(const Question& question, calibrate::Session& session, std:
                                 const std::string& camera) { return session.observer().results(condition, run, analyzers, camera); };
   std::vector<calibrate::Observation> recorded;
   for (std::size_t c = 0; c < session.evaluator().study().conditions.size(); ++c) recorded.push_back(session.observer().recorded(c));
-  return {m.run, look, std::move(recorded), std::move(say), again};
+  Workshop workshop{m.run, look, std::move(recorded), std::move(say), again};
+  read_frames(question, workshop);
+  return workshop;
 }
 
 }  // namespace millscope::diagnose

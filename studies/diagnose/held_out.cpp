@@ -30,7 +30,7 @@ Prediction simulate(const HeldOutRequest& r, const VectorXd& coded, const std::v
     calibrate::Observation o;
     try {
       if (outcome.state == campaign::State::failed) throw config::UserError(outcome.message);
-      o = r.workshop.observe(condition, outcome, r.question.camera(theta));
+      o = r.workshop.look(r.question, condition, outcome, theta);
     } catch (const config::UserError& e) {
       message = e.what();
       continue;

@@ -1,0 +1,124 @@
+#include "studies/diagnose/frame_readings.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <optional>
+
+#include "studies/diagnose/naming.hpp"
+#include "studies/inspect/flight.hpp"
+#include "studies/inspect/mill_motion.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+constexpr double kExact = 1e-3;  // error of a simulation's reading, of the recording's: its frame is known
+
+/// Value and standard error as such: the interval is wider than normal where few rides or flights lie behind it.
+FrameReading reading(const studies::Finding& finding) {
+  FrameReading r;
+  if (!finding.estimate || finding.bound != studies::Bound::both) return r;
+  r.value = finding.estimate->value;
+  r.sem = (finding.estimate->high - finding.estimate->low) / (2 * kNormal90);
+  return r;
+}
+
+FrameReading scaled(FrameReading r, double factor) {
+  r.value *= factor, r.sem *= std::fabs(factor);
+  return r;
+}
+
+struct Reader {
+  const studies::Recording& recording;
+  std::optional<studies::MillMotion> motion = {};
+  std::optional<studies::FreeFlight> flight = {};
+
+  const studies::MillMotion& rides() { return motion ? *motion : motion.emplace(studies::estimate_motion(recording)); }
+
+  FrameReading axis(std::size_t along) {
+    if (!recording.frame || rides().rides == 0) return {};
+    FrameReading r = reading(rides().axis[along]);
+    r.value -= recording.frame->axis[along];
+    return r;
+  }
+
+  /// t' = (1 + κ) t makes Ω' = Ω/(1 + κ).
+  FrameReading clock() {
+    if (!recording.condition.speed || rides().rides == 0) return {};
+    const FrameReading speed = reading(rides().speed);
+    if (!(speed.value > 0)) return {};
+    const double ratio = *recording.condition.speed / speed.value;
+    FrameReading r;
+    r.value = ratio - 1, r.sem = ratio * speed.sem / speed.value;
+    return r;
+  }
+
+  FrameReading tilt() {
+    if (!flight) flight = studies::measure_flight(recording);
+    return scaled(reading(flight->angle_degrees), std::numbers::pi / 180);
+  }
+};
+
+void append(const std::vector<FrameReading>& readings, const VectorXd& values, double error, calibrate::Observation& o) {
+  const Index n = o.value.size(), more = values.size();
+  o.value.conservativeResize(n + more);
+  o.covariance.conservativeResizeLike(MatrixXd::Zero(n + more, n + more));
+  for (Index k = 0; k < more; ++k) {
+    const FrameReading& r = readings[static_cast<std::size_t>(k)];
+    o.observables.push_back(r.observable);
+    o.value[n + k] = r.per_unit * values[k];
+    o.covariance(n + k, n + k) = std::pow(error * r.per_unit * r.sem, 2);
+  }
+}
+
+}  // namespace
+
+std::vector<FrameReading> read_frame(const Question& question, const studies::Recording& recording) {
+  std::vector<FrameReading> out;
+  Reader reader{recording};
+  for (std::size_t i = 0; i < question.nuisances.size(); ++i) {
+    const Nuisance& n = question.nuisances[i];
+    const std::string parameter = n.of_camera() ? n.path.substr(n.path.rfind('.') + 1) : "";
+    FrameReading r;
+    std::string unit, of;
+    if (parameter == "offset_x" || parameter == "offset_y")
+      r = reader.axis(parameter == "offset_x" ? 0 : 1), r.per_unit = 1e3, unit = "mm", of = "rides along the shell";
+    else if (parameter == "clock")
+      r = reader.clock(), r.per_unit = 1e2, unit = "%", of = "rides along the shell";
+    else if (parameter == "tilt_z")
+      r = reader.tilt(), r.per_unit = 1e3, unit = "mrad", of = "free flights";
+    if (!(r.sem > 0)) continue;
+    r.nuisance = i;
+    r.observable = {fmt::format("{} by {}", n.name, of), unit, "frame " + n.name};
+    out.push_back(std::move(r));
+  }
+  return out;
+}
+
+void add_readings(const std::vector<FrameReading>& readings, calibrate::Observation& recorded) {
+  VectorXd values(static_cast<Index>(readings.size()));
+  for (std::size_t k = 0; k < readings.size(); ++k) values[static_cast<Index>(k)] = readings[k].value;
+  append(readings, values, 1, recorded);
+}
+
+void add_readings(const Question& question, const std::vector<FrameReading>& readings, const VectorXd& theta,
+                  calibrate::Observation& simulated) {
+  VectorXd values(static_cast<Index>(readings.size()));
+  for (std::size_t k = 0; k < readings.size(); ++k)
+    values[static_cast<Index>(k)] = theta[static_cast<Index>(question.study.parameters.size() + readings[k].nuisance)];
+  append(readings, values, kExact, simulated);
+}
+
+std::string text_of(const std::vector<FrameReading>& readings) {
+  std::string text;
+  for (const FrameReading& r : readings) {
+    const Interval i = interval_about(r.per_unit * r.value, r.per_unit * r.sem);
+    fmt::format_to(std::back_inserter(text), "{}{} {:.2g} {} ({:.2g} … {:.2g})", text.empty() ? "" : ", ", r.observable.name, i.value,
+                   r.observable.unit, i.low90, i.high90);
+  }
+  return text;
+}
+
+}  // namespace millscope::diagnose
