@@ -123,6 +123,20 @@ void reservations(Diagnosis& d) {
   }
 }
 
+/// Held-out conditions that the retuned base does not describe, at the level for all of them together (Bonferroni).
+void tell_held_out(const Question& q, double level, Diagnosis& d) {
+  std::vector<std::string> differ;
+  for (const HeldOut& h : d.held_out) {
+    if (h.base_p > level / static_cast<double>(d.held_out.size())) continue;
+    differ.push_back(q.study.conditions[h.condition].name);
+    d.sentence += fmt::format(" But the retuned base does not describe the held-out condition '{}' (p = {:.2g}): something differs there.",
+                              differ.back(), h.base_p);
+  }
+  if (!differ.empty())
+    d.next_experiment =
+        fmt::format("Give {} the role fit and hold another condition out: only what is fitted can be named.", fmt::join(differ, " and "));
+}
+
 void nothing_named(const Question& q, const Workshop& workshop, double level, double noise_units, Diagnosis& d) {
   // A nuisance that would be seen says nothing of physics.
   bool blind = true;
@@ -145,25 +159,16 @@ void nothing_named(const Question& q, const Workshop& workshop, double level, do
         "cannot tell.",
         d.naming.base_p);
     d.next_experiment = to_see(workshop, d, noise_units);
-    return;
+  } else {
+    const double least = std::min_element(d.naming.judged.begin(), d.naming.judged.end(), [](const Judged& a, const Judged& b) {
+                           return a.p_family < b.p_family;
+                         })->p_family;
+    d.sentence = fmt::format(
+        "The recordings look like the base with its parameters retuned (p = {:.2g}); no candidate improves on it (smallest family-wise p = "
+        "{:.2g}).",
+        d.naming.base_p, least);
   }
-  const double least = std::min_element(d.naming.judged.begin(), d.naming.judged.end(), [](const Judged& a, const Judged& b) {
-                         return a.p_family < b.p_family;
-                       })->p_family;
-  d.sentence = fmt::format(
-      "The recordings look like the base with its parameters retuned (p = {:.2g}); no candidate improves on it (smallest family-wise p = "
-      "{:.2g}).",
-      d.naming.base_p, least);
-  std::vector<std::string> differ;
-  for (const HeldOut& h : d.held_out) {
-    if (h.base_p > level) continue;
-    differ.push_back(q.study.conditions[h.condition].name);
-    d.sentence += fmt::format(" But it does not describe the held-out condition '{}' (p = {:.2g}): something differs there.", differ.back(),
-                              h.base_p);
-  }
-  if (!differ.empty())
-    d.next_experiment =
-        fmt::format("Give {} the role fit and hold another condition out: only what is fitted can be named.", fmt::join(differ, " and "));
+  tell_held_out(q, level, d);
 }
 
 }  // namespace

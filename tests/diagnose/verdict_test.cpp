@@ -171,7 +171,20 @@ TEST_CASE("what shows in the held-out condition alone is said, and how it could 
   const Diagnosis d = diagnose::diagnose(q, workshop, quick());
   INFO(d.sentence);
   CHECK(d.verdict == Verdict::no_mismatch);
-  CHECK_THAT(d.sentence, Contains("does not describe the held-out condition 'speed50'"));
+  CHECK_THAT(d.sentence, Contains("the retuned base does not describe the held-out condition 'speed50'"));
+  CHECK_THAT(d.next_experiment, Contains("Give speed50 the role fit"));
+}
+
+TEST_CASE("where nothing could be seen a held-out condition may still differ, and that is said") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  MadeUpMill mill(q, usual(), kTheta, 60);
+  Workshop workshop = mill.workshop();
+  workshop.recorded[2].value.array() += 480;
+  const Diagnosis d = diagnose::diagnose(q, workshop, quick());
+  INFO(d.sentence);
+  CHECK(d.verdict == Verdict::undetectable);
+  CHECK_THAT(d.sentence, Contains("these data cannot tell") && Contains("does not describe the held-out condition 'speed50'"));
   CHECK_THAT(d.next_experiment, Contains("Give speed50 the role fit"));
 }
 
