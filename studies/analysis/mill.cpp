@@ -109,7 +109,8 @@ MillOfCase read_mill_of_case(const std::filesystem::path& case_file, const host:
   know_charge(c, vessel, context);
   const std::array<double, 3> g = gravity_of(c, registry);
   context.gravity = -g[1];
-  if (std::hypot(g[0], g[2]) > 1e-9 * std::fabs(g[1])) {
+  mill.upright = g[1] < 0 && std::hypot(g[0], g[2]) <= 1e-9 * std::fabs(g[1]);
+  if (!mill.upright) {
     mill.notes.push_back(fmt::format("gravity is ({:.4g}, {:.4g}, {:.4g}) m/s^2: the analyzers use its part along -y, {:.4g} m/s^2", g[0],
                                      g[1], g[2], context.gravity));
   }

@@ -15,8 +15,9 @@ struct MillOfCase {
   std::string name;
   /// Everything that follows from the case; `has`, `start`, `end` and ids are the source's.
   AnalyzerContext context{};
-  dem::Motion motion;  ///< of the shell
-  double period = 0;   ///< along z, m; 0: not periodic
+  dem::Motion motion;   ///< of the shell
+  double period = 0;    ///< along z, m; 0: not periodic
+  bool upright = true;  ///< gravity points along −y
   std::vector<std::string> notes;
 };
 

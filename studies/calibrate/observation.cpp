@@ -69,7 +69,8 @@ Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& draws, double blocks) {
   for (Eigen::Index i = 0; i < c.rows(); ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
       const double scale = deviation[i] * deviation[j];
-      const double r = scale > 0 ? c(i, j) / scale : 0;
+      if (!(scale > 0)) continue;
+      const double r = c(i, j) / scale;
       chance += std::pow(1 - r * r, 2) / std::max(1.0, blocks - 1);
       found += r * r;
     }

@@ -46,15 +46,19 @@ std::vector<BankPoint> screened(const Question& question, const Workshop& worksh
 }
 
 /// What the recordings tell of a frame that the study doubts becomes part of what they show.
-void read_frames(const Question& question, Workshop& workshop) {
+void read_frames(const Question& question, const host::Registry& registry, Workshop& workshop) {
   const auto of_camera = [](const Nuisance& n) { return n.of_camera(); };
   if (std::none_of(question.nuisances.begin(), question.nuisances.end(), of_camera)) return;
   for (std::size_t c = 0; c < question.study.conditions.size(); ++c) {
-    const calibrate::Condition& condition = question.study.conditions[c];
-    workshop.readings.push_back(read_frame(question, studies::read_recording(condition.recording)));
-    add_readings(workshop.readings.back(), workshop.recorded[c]);
-    if (!workshop.readings.back().empty())
-      say(workshop, fmt::format("condition '{}', its frame by its own beads: {}", condition.name, text_of(workshop.readings.back())));
+    const studies::Recording recording = studies::read_recording(question.study.conditions[c].recording);
+    workshop.readings.push_back(read_frame(question, expected_mill(question, c, registry), recording));
+  }
+  share_errors(workshop.readings);
+  for (std::size_t c = 0; c < workshop.readings.size(); ++c) {
+    add_readings(workshop.readings[c], workshop.recorded[c]);
+    if (!workshop.readings[c].empty())
+      say(workshop,
+          fmt::format("condition '{}', its frame by its own beads: {}", question.study.conditions[c].name, text_of(workshop.readings[c])));
   }
 }
 
@@ -110,18 +114,19 @@ Diagnosis diagnose(const Question& question, const Workshop& workshop, const Nam
   return d;
 }
 
-Workshop workshop_of(const Question& question, calibrate::Session& session, std::function<void(const std::string&)> say) {
+Workshop workshop_of(const Question& question, const host::Registry& registry, calibrate::Session& session,
+                     std::function<void(const std::string&)> say) {
   check_recorded_frames(question, session.observer());
   const calibrate::Machinery& m = session.evaluator().machinery();
-  const auto look = [&session](std::size_t condition, const campaign::Outcome& outcome, const std::string& camera) {
+  const auto seen = [&session](std::size_t condition, const campaign::Outcome& outcome, const std::string& camera) {
     return session.observer().simulated(condition, outcome.folder, outcome.key, camera);
   };
   const auto again = [&session](std::size_t condition, const std::filesystem::path& run, const std::string& analyzers,
                                 const std::string& camera) { return session.observer().results(condition, run, analyzers, camera); };
   std::vector<calibrate::Observation> recorded;
   for (std::size_t c = 0; c < session.evaluator().study().conditions.size(); ++c) recorded.push_back(session.observer().recorded(c));
-  Workshop workshop{m.run, look, std::move(recorded), std::move(say), again};
-  read_frames(question, workshop);
+  Workshop workshop{m.run, seen, std::move(recorded), std::move(say), again};
+  read_frames(question, registry, workshop);
   return workshop;
 }
 

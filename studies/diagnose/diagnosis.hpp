@@ -38,6 +38,7 @@ Diagnosis diagnose(const Question& question, const Workshop& workshop, const Nam
 void conclude(const Question& question, const Workshop& workshop, double level, double noise_units, Diagnosis& diagnosis);
 
 /// The workshop of a session.
-Workshop workshop_of(const Question& question, calibrate::Session& session, std::function<void(const std::string&)> say);
+Workshop workshop_of(const Question& question, const host::Registry& registry, calibrate::Session& session,
+                     std::function<void(const std::string&)> say);
 
 }  // namespace millscope::diagnose

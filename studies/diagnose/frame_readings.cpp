@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numbers>
 #include <optional>
 
+#include "studies/analysis/mill.hpp"
 #include "studies/diagnose/naming.hpp"
 #include "studies/inspect/flight.hpp"
 #include "studies/inspect/mill_motion.hpp"
@@ -30,15 +33,28 @@ FrameReading scaled(FrameReading r, double factor) {
   return r;
 }
 
+std::string parameter_of(const Nuisance& n) { return n.of_camera() ? n.path.substr(n.path.rfind('.') + 1) : ""; }
+
+bool doubts(const Question& q, const std::string& parameter) {
+  return std::any_of(q.nuisances.begin(), q.nuisances.end(), [&](const Nuisance& n) { return parameter_of(n) == parameter; });
+}
+
 struct Reader {
   const studies::Recording& recording;
+  const ExpectedMill& mill;
   std::optional<studies::MillMotion> motion = {};
   std::optional<studies::FreeFlight> flight = {};
 
   const studies::MillMotion& rides() { return motion ? *motion : motion.emplace(studies::estimate_motion(recording)); }
 
+  /// An inner layer of the charge turns on a circle, too, but slower.
+  bool along_shell() {
+    const auto& radius = rides().path_radius.estimate;
+    return rides().rides > 0 && radius && mill.path_radius > 0 && std::fabs(radius->value - mill.path_radius) < mill.bead_radius;
+  }
+
   FrameReading axis(std::size_t along) {
-    if (!recording.frame || rides().rides == 0) return {};
+    if (!recording.frame || !along_shell()) return {};
     FrameReading r = reading(rides().axis[along]);
     r.value -= recording.frame->axis[along];
     return r;
@@ -46,7 +62,7 @@ struct Reader {
 
   /// t' = (1 + κ) t makes Ω' = Ω/(1 + κ).
   FrameReading clock() {
-    if (!recording.condition.speed || rides().rides == 0) return {};
+    if (!recording.condition.speed || !along_shell()) return {};
     const FrameReading speed = reading(rides().speed);
     if (!(speed.value > 0)) return {};
     const double ratio = *recording.condition.speed / speed.value;
@@ -56,6 +72,7 @@ struct Reader {
   }
 
   FrameReading tilt() {
+    if (!mill.upright) return {};
     if (!flight) flight = studies::measure_flight(recording);
     return scaled(reading(flight->angle_degrees), std::numbers::pi / 180);
   }
@@ -75,15 +92,25 @@ void append(const std::vector<FrameReading>& readings, const VectorXd& values, d
 
 }  // namespace
 
-std::vector<FrameReading> read_frame(const Question& question, const studies::Recording& recording) {
+ExpectedMill expected_mill(const Question& question, std::size_t condition, const host::Registry& registry) {
+  const studies::MillOfCase mill = studies::read_mill_of_case(question.study.base, registry, question.study.conditions[condition].settings);
+  const AnalyzerContext& c = mill.context;
+  const auto leans = [](const auto& varied) { return varied.path.starts_with("body_forces."); };
+  const bool varied = std::any_of(question.study.parameters.begin(), question.study.parameters.end(), leans) ||
+                      std::any_of(question.nuisances.begin(), question.nuisances.end(), leans);
+  return {c.mill_radius > c.bead_radius ? c.mill_radius - c.bead_radius : 0, c.bead_radius, mill.upright && !varied};
+}
+
+std::vector<FrameReading> read_frame(const Question& question, const ExpectedMill& mill, const studies::Recording& recording) {
   std::vector<FrameReading> out;
-  Reader reader{recording};
+  Reader reader{recording, mill};
+  const bool ellipse = doubts(question, "tilt_x") || doubts(question, "tilt_y");
   for (std::size_t i = 0; i < question.nuisances.size(); ++i) {
     const Nuisance& n = question.nuisances[i];
-    const std::string parameter = n.of_camera() ? n.path.substr(n.path.rfind('.') + 1) : "";
+    const std::string parameter = parameter_of(n);
     FrameReading r;
     std::string unit, of;
-    if (parameter == "offset_x" || parameter == "offset_y")
+    if ((parameter == "offset_x" || parameter == "offset_y") && !ellipse)
       r = reader.axis(parameter == "offset_x" ? 0 : 1), r.per_unit = 1e3, unit = "mm", of = "rides along the shell";
     else if (parameter == "clock")
       r = reader.clock(), r.per_unit = 1e2, unit = "%", of = "rides along the shell";
@@ -95,6 +122,16 @@ std::vector<FrameReading> read_frame(const Question& question, const studies::Re
     out.push_back(std::move(r));
   }
   return out;
+}
+
+void share_errors(std::vector<std::vector<FrameReading>>& of_conditions) {
+  std::map<std::size_t, int> conditions;
+  for (const auto& readings : of_conditions) {
+    for (const FrameReading& r : readings) ++conditions[r.nuisance];
+  }
+  for (auto& readings : of_conditions) {
+    for (FrameReading& r : readings) r.sem *= std::sqrt(conditions[r.nuisance]);
+  }
 }
 
 void add_readings(const std::vector<FrameReading>& readings, calibrate::Observation& recorded) {
@@ -115,7 +152,7 @@ std::string text_of(const std::vector<FrameReading>& readings) {
   std::string text;
   for (const FrameReading& r : readings) {
     const Interval i = interval_about(r.per_unit * r.value, r.per_unit * r.sem);
-    fmt::format_to(std::back_inserter(text), "{}{} {:.2g} {} ({:.2g} … {:.2g})", text.empty() ? "" : ", ", r.observable.name, i.value,
+    fmt::format_to(std::back_inserter(text), "{}{} {:.3g} {} ({:.3g} … {:.3g})", text.empty() ? "" : ", ", r.observable.name, i.value,
                    r.observable.unit, i.low90, i.high90);
   }
   return text;

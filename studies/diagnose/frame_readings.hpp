@@ -19,8 +19,22 @@ struct FrameReading {
   double value = 0, sem = 0;  ///< of the nuisance, natural units
 };
 
-/// Of the nuisances offset_x, offset_y, clock (from rides) and tilt_z (from flights), as far as the recording tells them.
-std::vector<FrameReading> read_frame(const Question& question, const studies::Recording& recording);
+/// What the study's case says of a mill whose recording is read.
+struct ExpectedMill {
+  double path_radius = 0;  ///< of a bead along the shell, m; 0: not known
+  double bead_radius = 0;  ///< m
+  bool upright = true;     ///< gravity points along −y, whatever is varied
+};
+ExpectedMill expected_mill(const Question& question, std::size_t condition, const host::Registry& registry);
+
+/// Of the nuisances offset_x, offset_y, clock (from rides) and tilt_z (from flights), as far as the recording tells them: rides on
+/// another circle than the shell's tell nothing, nor do flights where the case's own gravity leans, nor circles that a tilt_x or tilt_y
+/// makes ellipses. Beads that all slip along the shell look like a slow clock.
+std::vector<FrameReading> read_frame(const Question& question, const ExpectedMill& mill, const studies::Recording& recording);
+
+/// What is wrong in all recordings alike (loose rides, supported flights) does not average out: each error grows by √ of the number of
+/// conditions that read the same.
+void share_errors(std::vector<std::vector<FrameReading>>& of_conditions);
 
 /// What the recording itself shows.
 void add_readings(const std::vector<FrameReading>& readings, calibrate::Observation& recorded);

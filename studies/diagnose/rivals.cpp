@@ -67,7 +67,13 @@ std::vector<Index> RivalModels::powers_of(std::size_t condition) const {
 }
 
 VectorXd RivalModels::power_only(std::size_t condition) const {
-  return retuned_to_power(r_.problem.data, surrogate_, r_.problem.observed, r_.naming.covariance, powers_of(condition));
+  VectorXd u = retuned_to_power(r_.problem.data, surrogate_, r_.problem.observed, r_.naming.covariance, powers_of(condition));
+  // Where the camera stood is no part of the practice; the rival gets what the refitted base makes of it.
+  for (std::size_t i = 0; i < r_.question.nuisances.size(); ++i) {
+    const auto place = static_cast<Index>(r_.question.study.parameters.size() + i);
+    if (r_.question.nuisances[i].of_camera()) u[place] = r_.naming.base.coded[place];
+  }
+  return u;
 }
 
 Index RivalModels::partner(Index i, std::size_t fitted) const {
@@ -92,13 +98,18 @@ Prediction RivalModels::placebo(const Prediction& base) const {
     const VectorXd chance = random.normals(n);
     VectorXd held(n), fitted = VectorXd::Zero(m);
     for (Index i = 0; i < n; ++i) held[i] = chance[i] * std::sqrt(r_.workshop.recorded[held_].covariance(i, i));
+    std::vector<bool> has(static_cast<std::size_t>(n), false);  // a partner; what has none stays as it is
     Index at = 0;
     for (const std::size_t c : r_.fit) {
       for (Index i = 0; i < n; ++i) {
-        if (const Index p = partner(i, c); p >= 0) fitted[at + p] = chance[i] * std::sqrt(r_.naming.covariance(at + p, at + p));
+        const Index p = partner(i, c);
+        if (p < 0) continue;
+        has[static_cast<std::size_t>(i)] = true;
+        fitted[at + p] = chance[i] * std::sqrt(r_.naming.covariance(at + p, at + p));
       }
       at += r_.workshop.recorded[c].value.size();
     }
+    for (Index i = 0; i < n; ++i) held[i] = has[static_cast<std::size_t>(i)] ? held[i] : 0;
     // θ and the placebo's size in turn: the problem is nearly linear.
     const Model model(r_.problem.data, surrogate_, whitening, {}, {});
     const VectorXd v = whitening * fitted;

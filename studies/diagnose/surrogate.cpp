@@ -18,6 +18,7 @@ constexpr std::size_t kForSquare = 3;      // different shares
 constexpr std::size_t kRunsForSquare = 6;  // fewer leave the far end of the range open
 constexpr std::size_t kSpare = 2;          // runs beyond the coefficients of a candidate's block
 constexpr double kMostLeverage = 0.95;
+constexpr double kRounding = 1e-11;
 
 }  // namespace
 
@@ -149,6 +150,9 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
   const MatrixXd pseudo = qr.pseudoInverse();
   inverse_ = pseudo * pseudo.transpose();
   residual_ = y - x * coefficients_;
+  for (Index i = 0; i < y.cols(); ++i) {  // what is left of an exact column is rounding, whose correlations mean nothing
+    if (residual_.col(i).norm() < kRounding * y.col(i).norm()) residual_.col(i).setZero();
+  }
   degrees_ = rows - qr.rank();
   left_out_ = residual_;
   for (Index r = 0; r < rows; ++r) left_out_.row(r) /= 1 - std::min(kMostLeverage, x.row(r).dot(inverse_ * x.row(r).transpose()));

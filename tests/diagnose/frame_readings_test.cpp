@@ -27,6 +27,8 @@ const std::string kDoubts =
     "  camera.frame_error.scale: {range: [-0.02, 0.02], sigma: 0.005, name: scale}\n"
     "hypotheses: {rolling_resistance: {}}\n";
 
+const ExpectedMill kMill{0.145, 0.005, true};
+
 /// A recording whose statements are wrong by what a study may doubt.
 studies::Recording misread() {
   test::SyntheticMill mill;
@@ -50,7 +52,7 @@ const FrameReading& named(const std::vector<FrameReading>& readings, const Quest
 TEST_CASE("rides and flights tell where the axis stands, which way is down and whether the clock is right") {
   const Scratch folder;
   const Question q = question_of(folder, kDoubts);
-  const std::vector<FrameReading> readings = read_frame(q, misread());
+  const std::vector<FrameReading> readings = read_frame(q, kMill, misread());
   REQUIRE(readings.size() == 4);  // neither the filling nor the scale
   const auto close = [&](const std::string& name, double truth, double most) {
     INFO(name);
@@ -62,7 +64,7 @@ TEST_CASE("rides and flights tell where the axis stands, which way is down and w
   close("axis_y", -0.003, 0.5e-3);
   close("tilt", 3 * std::numbers::pi / 180, 0.02);
   close("clock", 0.03, 0.01);
-  CHECK_THAT(text_of(readings), Contains("axis_x by rides along the shell 4") && Contains(" mm (3."));
+  CHECK_THAT(text_of(readings), Contains("axis_x by rides along the shell 3.96 mm (3.7") && Contains(" mrad ("));
 }
 
 TEST_CASE("what is not stated cannot be read against") {
@@ -71,16 +73,48 @@ TEST_CASE("what is not stated cannot be read against") {
   studies::Recording recording = misread();
   recording.frame.reset();
   recording.condition.speed.reset();
-  const std::vector<FrameReading> readings = read_frame(q, recording);
+  const std::vector<FrameReading> readings = read_frame(q, kMill, recording);
   REQUIRE(readings.size() == 1);
   CHECK(q.nuisances[readings[0].nuisance].name == "tilt");
-  CHECK(read_frame(question_of(folder, "hypotheses: {rolling_resistance: {}}\n"), misread()).empty());
+  CHECK(read_frame(question_of(folder, "hypotheses: {rolling_resistance: {}}\n"), kMill, misread()).empty());
+}
+
+TEST_CASE("rides on another circle than the shell's, a gravity that leans and a tilt about another axis are not read against") {
+  const Scratch folder;
+  const Question q = question_of(folder, kDoubts);
+  const std::vector<FrameReading> inner = read_frame(q, {0.152, 0.005, true}, misread());
+  REQUIRE(inner.size() == 1);
+  CHECK(q.nuisances[inner[0].nuisance].name == "tilt");
+  CHECK(read_frame(q, {0.145, 0.005, false}, misread()).size() == 3);
+  std::string more = kDoubts;
+  more.insert(more.find("hypotheses"), "  camera.frame_error.tilt_x: {range: [-0.1, 0.1], sigma: 0.01, name: roll}\n");
+  CHECK(read_frame(question_of(folder, more), kMill, misread()).size() == 2);
+}
+
+TEST_CASE("the case says on which circle beads ride and whether its gravity leans") {
+  const Scratch folder;
+  const ExpectedMill mill = expected_mill(question_of(folder, kDoubts), 0, registry());
+  CHECK_THAT(mill.path_radius, WithinAbs(0.145, 1e-12));
+  CHECK_THAT(mill.bead_radius, WithinAbs(0.005, 1e-12));
+  CHECK(mill.upright);
+  std::string leaning = kDoubts;
+  leaning.insert(leaning.find("hypotheses"), "  body_forces.gravity.angle: {range: [-0.1, 0.1], sigma: 0.01, name: slope}\n");
+  CHECK_FALSE(expected_mill(question_of(folder, leaning), 0, registry()).upright);
+}
+
+TEST_CASE("what is wrong in all recordings alike does not average out") {
+  std::vector<std::vector<FrameReading>> readings(4);
+  for (std::size_t c = 0; c < 4; ++c) readings[c].push_back({0, {}, 1, 0.001, 0.0005});
+  readings[1].push_back({1, {}, 1, 0.01, 0.02});
+  share_errors(readings);
+  for (const auto& of : readings) CHECK_THAT(of[0].sem, WithinAbs(0.001, 1e-15));
+  CHECK(readings[1][1].sem == 0.02);
 }
 
 TEST_CASE("a simulation's reading is its own frame, the recording's is what it tells") {
   const Scratch folder;
   const Question q = question_of(folder, kDoubts);
-  const std::vector<FrameReading> readings = read_frame(q, misread());
+  const std::vector<FrameReading> readings = read_frame(q, kMill, misread());
   calibrate::Observation recorded, simulated;
   recorded.value = simulated.value = VectorXd::Constant(1, 7);
   recorded.covariance = simulated.covariance = MatrixXd::Constant(1, 1, 0.5);
