@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "studies/calibrate/outputs.hpp"
+#include "studies/inspect/estimate.hpp"
 #include "studies/picture/picture.hpp"
 
 namespace millscope::calibrate {
@@ -16,7 +17,7 @@ using studies::CurvePicture;
 using studies::MapPicture;
 
 constexpr int kCells = 40;  // of surface and posterior, along each side
-constexpr double kNormal90 = 1.645;
+using studies::kNormal90;
 constexpr std::size_t kMostPairs = 10;
 
 Curve curve_of(const std::string& label, const Histogram& h) {

@@ -22,7 +22,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kExactCamera = "observations: {rate: {kind: sampling, rate: 1000 Hz, shape: 1000}}\n";
 constexpr double kEvenStep = 0.002;  // s between the even times: recordings have a location every 5 ms
-constexpr double kNormal90 = 1.645;
 
 std::string file_text(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -70,7 +69,7 @@ void add_axis_error(const studies::Recording& recording, RecordedCondition& r) {
   if (recording.frame) return;
   const auto axis = studies::estimate_motion(recording).axis[0].estimate;
   if (!axis) return;
-  const double error = (axis->high - axis->low) / (2 * kNormal90);
+  const double error = studies::standard_error(*axis);
   Observation& o = r.observation;
   const double watts = r.mass * 9.81 * std::fabs(r.omega) * error;
   for (Eigen::Index i = 0; i < o.value.size(); ++i) {

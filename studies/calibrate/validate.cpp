@@ -9,6 +9,7 @@
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
 #include "studies/calibrate/outputs.hpp"
+#include "studies/inspect/estimate.hpp"
 
 namespace millscope::calibrate {
 namespace {
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 using config::UserError;
 using Json = nlohmann::ordered_json;
 
-constexpr double kNormal90 = 1.645;
+using studies::kNormal90;
 
 Judged judge(const Observable& what, double recorded, double simulated, double error) {
   Judged j{what, recorded, simulated, simulated - recorded, error, 0, 0, 1, false};

@@ -14,9 +14,9 @@ namespace {
 constexpr const char* kPlugin = "frame_error";
 const std::string kPrefix = "camera.frame_error.";
 
-std::string parameter_of(const Nuisance& n) { return n.path.substr(kPrefix.size()); }
-
 }  // namespace
+
+std::string camera_frame_parameter(const Nuisance& n) { return n.of_camera() ? n.path.substr(kPrefix.size()) : ""; }
 
 std::string camera_frame_unit(const config::Node& node, const std::string& path, const host::Registry& registry) {
   const Descriptor& frame = *registry.find(Kind::observation, kPlugin, node.where()).descriptor;
@@ -31,7 +31,7 @@ std::string camera_frame_unit(const config::Node& node, const std::string& path,
 
 std::string camera_frame_text(const std::vector<std::pair<const Nuisance*, double>>& of) {
   std::string text = fmt::format("schema_version: 1\nobservations:\n  doubted_frame: {{kind: {}", kPlugin);
-  for (const auto& [n, value] : of) fmt::format_to(std::back_inserter(text), ", {}: {:.4g}", parameter_of(*n), value);
+  for (const auto& [n, value] : of) fmt::format_to(std::back_inserter(text), ", {}: {:.4g}", camera_frame_parameter(*n), value);
   return text + "}\n";
 }
 
@@ -56,7 +56,7 @@ void check_recorded_frames(const Question& q, const calibrate::Observer& observe
                                 fmt::format("nuisance '{}' would change its sign in condition '{}': {} turns the other way than the "
                                             "recording; give its mill.direction as recorded",
                                             n.name, condition.name, q.study.base.string()));
-      if (parameter_of(n).starts_with("offset_") && !studies::read_description(condition.recording).frame)
+      if (camera_frame_parameter(n).starts_with("offset_") && !studies::read_description(condition.recording).frame)
         throw config::UserError(n.where,
                                 fmt::format("nuisance '{}': {} states no axis that could be doubted, it is found from the points; give "
                                             "'frame: {{axis: [x, y]}}' there, or leave the nuisance out",

@@ -14,6 +14,9 @@ namespace millscope::diagnose {
 /// Unit of camera.frame_error.PARAMETER. Throws config::UserError at `node`, the nuisance, where there is no such parameter.
 std::string camera_frame_unit(const config::Node& node, const std::string& path, const host::Registry& registry);
 
+/// PARAMETER of a nuisance camera.frame_error.PARAMETER; "" of one that is not the camera's.
+std::string camera_frame_parameter(const Nuisance& nuisance);
+
 /// A camera file with these nuisances at their values.
 std::string camera_frame_text(const std::vector<std::pair<const Nuisance*, double>>& of);
 

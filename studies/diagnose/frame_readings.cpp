@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "studies/analysis/mill.hpp"
+#include "studies/diagnose/camera_frame.hpp"
 #include "studies/diagnose/naming.hpp"
 #include "studies/inspect/flight.hpp"
 #include "studies/inspect/mill_motion.hpp"
@@ -24,7 +25,7 @@ FrameReading reading(const studies::Finding& finding) {
   FrameReading r;
   if (!finding.estimate || finding.bound != studies::Bound::both) return r;
   r.value = finding.estimate->value;
-  r.sem = (finding.estimate->high - finding.estimate->low) / (2 * kNormal90);
+  r.sem = studies::standard_error(*finding.estimate);
   return r;
 }
 
@@ -33,10 +34,8 @@ FrameReading scaled(FrameReading r, double factor) {
   return r;
 }
 
-std::string parameter_of(const Nuisance& n) { return n.of_camera() ? n.path.substr(n.path.rfind('.') + 1) : ""; }
-
 bool doubts(const Question& q, const std::string& parameter) {
-  return std::any_of(q.nuisances.begin(), q.nuisances.end(), [&](const Nuisance& n) { return parameter_of(n) == parameter; });
+  return std::any_of(q.nuisances.begin(), q.nuisances.end(), [&](const Nuisance& n) { return camera_frame_parameter(n) == parameter; });
 }
 
 struct Reader {
@@ -107,7 +106,7 @@ std::vector<FrameReading> read_frame(const Question& question, const ExpectedMil
   const bool ellipse = doubts(question, "tilt_x") || doubts(question, "tilt_y");
   for (std::size_t i = 0; i < question.nuisances.size(); ++i) {
     const Nuisance& n = question.nuisances[i];
-    const std::string parameter = parameter_of(n);
+    const std::string parameter = camera_frame_parameter(n);
     FrameReading r;
     std::string unit, of;
     if ((parameter == "offset_x" || parameter == "offset_y") && !ellipse)

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "studies/diagnose/fit.hpp"
+#include "studies/inspect/estimate.hpp"
 
 namespace millscope::diagnose {
 
@@ -62,7 +63,7 @@ inline constexpr double kNotWorkedOut = std::numeric_limits<double>::quiet_NaN()
 
 inline Interval without_interval(double value) { return {value, kNotWorkedOut, kNotWorkedOut}; }
 
-inline constexpr double kNormal90 = 1.645;  ///< standard errors to either side that hold 90 %
+using studies::kNormal90;
 
 inline Interval interval_about(double value, double sem) { return {value, value - kNormal90 * sem, value + kNormal90 * sem}; }
 

@@ -93,23 +93,22 @@ Prediction RivalModels::placebo(const Prediction& base) const {
   const MatrixXd whitening = whitener(r_.naming.covariance);
   VectorXd moved = VectorXd::Zero(n);
   double least = std::numeric_limits<double>::infinity();
+  const auto is_fitted = [&](Index i) {
+    return std::any_of(r_.fit.begin(), r_.fit.end(), [&](std::size_t c) { return partner(i, c) >= 0; });
+  };
   for (int k = 0; k < kPlacebos; ++k) {
     emulate::Random random(r_.seed, static_cast<std::uint64_t>(1000 + k));
     const VectorXd chance = random.normals(n);
     VectorXd held(n), fitted = VectorXd::Zero(m);
-    for (Index i = 0; i < n; ++i) held[i] = chance[i] * std::sqrt(r_.workshop.recorded[held_].covariance(i, i));
-    std::vector<bool> has(static_cast<std::size_t>(n), false);  // a partner; what has none stays as it is
+    for (Index i = 0; i < n; ++i)  // what is not fitted stays as it is
+      held[i] = is_fitted(i) ? chance[i] * std::sqrt(r_.workshop.recorded[held_].covariance(i, i)) : 0;
     Index at = 0;
     for (const std::size_t c : r_.fit) {
       for (Index i = 0; i < n; ++i) {
-        const Index p = partner(i, c);
-        if (p < 0) continue;
-        has[static_cast<std::size_t>(i)] = true;
-        fitted[at + p] = chance[i] * std::sqrt(r_.naming.covariance(at + p, at + p));
+        if (const Index p = partner(i, c); p >= 0) fitted[at + p] = chance[i] * std::sqrt(r_.naming.covariance(at + p, at + p));
       }
       at += r_.workshop.recorded[c].value.size();
     }
-    for (Index i = 0; i < n; ++i) held[i] = has[static_cast<std::size_t>(i)] ? held[i] : 0;
     // θ and the placebo's size in turn: the problem is nearly linear.
     const Model model(r_.problem.data, surrogate_, whitening, {}, {});
     const VectorXd v = whitening * fitted;

@@ -13,6 +13,11 @@ struct Estimate {
   double high = 0;
 };
 
+inline constexpr double kNormal90 = 1.645;  ///< standard errors to either side that hold 90 %
+
+/// Of which the interval would be if it were normal.
+inline double standard_error(const Estimate& e) { return (e.high - e.low) / (2 * kNormal90); }
+
 /// How a bound is to be read.
 enum class Bound {
   both,      ///< the interval holds on both sides
