@@ -1,9 +1,7 @@
 #include "studies/calibrate/observe.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <atomic>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -25,21 +23,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLeastPoints = 30;  // of a bead that the camera saw too little of
 constexpr std::uint64_t kCameraSeed = 20150101;
-
-/// A folder that goes with its maker.
-struct Scratch {
-  fs::path path;
-  explicit Scratch(fs::path where) : path(std::move(where)) {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-};
 
 Json read_json(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -65,28 +48,31 @@ studies::Condition condition_of(const BeadPaths& paths) {
   condition.bead_diameter = 2 * c.bead_radius;
   condition.bead_density = c.bead_density;
   condition.tracer = {2 * c.bead_radius, c.bead_density};
-  condition.mill_diameter = 2 * c.mill_radius;
+  if (c.mill_radius > 0) condition.mill_diameter = 2 * c.mill_radius;
   condition.geometry = fs::absolute(paths.case_file());
   return condition;
 }
 
-/// What the camera makes of the beads, written and read as a recording is.
-studies::Recording film(const BeadPaths& paths, const studies::Camera& camera, const fs::path& folder, int threads) {
-  std::vector<std::string> texts(paths.size());
+/// What the camera makes of the beads, as it would be read from files.
+studies::Recording film(const BeadPaths& paths, const studies::Camera& camera, int threads) {
+  std::vector<studies::Run> seen(paths.size());
   studies::for_each_item(paths.size(), studies::worker_count(threads, paths.size()), [&](std::size_t i, std::size_t) {
     const studies::Run run = studies::observe(paths.path(i), camera, paths.context(i, kCameraSeed));
-    if (run.size() >= kLeastPoints) texts[i] = studies::ctrack_text(run);
+    if (run.size() >= kLeastPoints) seen[i] = studies::as_written(run);
   });
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    if (texts[i].empty()) continue;
-    names.push_back(fmt::format("b{}.a", i));
-    std::ofstream(folder / names.back(), std::ios::binary) << texts[i];
+  studies::Recording recording;
+  recording.file = paths.case_file();
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i].size() == 0) continue;
+    seen[i].name = fmt::format("b{}", i);
+    seen[i].source = paths.case_file().string();
+    recording.runs.push_back(std::move(seen[i]));
   }
-  if (names.empty())
+  if (recording.runs.empty())
     throw UserError(fmt::format("{}: the camera saw none of the beads for long enough; loosen it", paths.case_file().string()));
-  std::ofstream(folder / "film.yaml") << studies::recording_text(names, condition_of(paths), "simulated") << "frame: {axis: [0, 0, mm]}\n";
-  return studies::read_recording(folder / "film.yaml");
+  recording.condition = condition_of(paths);
+  recording.frame = studies::MillFrame{};
+  return studies::clean_recording(std::move(recording));
 }
 
 /// Power of the whole simulated charge over the analysed time, from the run's own summary, times `factor`.
@@ -130,12 +116,6 @@ struct Observer::Impl {
     return recorded[condition].mass / (mill[condition].charge_mass * longer) * paths.power_ratio();
   }
 
-  /// A folder of its own for each look: several threads and processes may share the cache.
-  fs::path new_film() const {
-    static std::atomic<unsigned> count{0};
-    return cache / fmt::format("film-{}-{}", ::getpid(), ++count);
-  }
-
   /// The run's beads through the recording's camera and the same processing, turned to the recording's sense.
   studies::ResultSet seen(std::size_t condition, const BeadPaths& paths, const std::string& before, const Processing& how) const {
     const RecordedCondition& r = recorded[condition];
@@ -143,8 +123,7 @@ struct Observer::Impl {
     const bool mirror = paths.mill().context.omega * r.omega < 0;
     const studies::Camera first = before.empty() ? studies::Camera() : studies::parse_camera(before, name, registry);
     const studies::Camera camera = first.before(without_frame(studies::parse_camera(r.camera, name, registry)));
-    const Scratch folder(new_film());
-    const studies::Recording recording = film(paths, camera, folder.path, threads);
+    const studies::Recording recording = film(paths, camera, threads);
     studies::TrajectoryOptions options;
     options.step = 0.002;
     options.gap_limit = r.gap_limit;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
@@ -26,6 +27,19 @@ std::string ctrack_text(const Run& run) {
                    1e3 * run.position[0][i], 1e3 * run.position[1][i], 1e3 * run.position[2][i], 1e3 * u, 0.0, 0.0, events);
   }
   return out;
+}
+
+Run as_written(Run run) {
+  const auto round_to = [](std::vector<double>& values, double digits) {  // in ms or mm
+    for (double& value : values) value = std::nearbyint(1e3 * value * digits) / digits / 1e3;
+  };
+  round_to(run.time, 1e4);
+  for (auto& component : run.position) round_to(component, 1e3);
+  run.spread.resize(run.size());
+  round_to(run.spread, 1e3);
+  run.events.resize(run.size());
+  run.format = "ctrack";
+  return run;
 }
 
 std::string recording_text(const std::vector<std::string>& files, const Condition& c, const std::string& note) {

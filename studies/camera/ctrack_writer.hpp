@@ -12,6 +12,9 @@ namespace millscope::studies {
 /// are 0 where the run has none.
 std::string ctrack_text(const Run& run);
 
+/// The run as it is read back from ctrack_text().
+Run as_written(Run run);
+
 /// recording.yaml for files that lie beside it, with what is known of the mill. `note`: a comment line, without '#'.
 std::string recording_text(const std::vector<std::string>& files, const Condition& condition, const std::string& note);
 

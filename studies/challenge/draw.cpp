@@ -12,6 +12,7 @@ namespace {
 constexpr double kMiddle = 0.7;        // of the range: a truth at its end would be fitted at a limit
 constexpr int kTrials = 10000;         // until the constraints hold
 constexpr double kTrackStep = 0.0005;  // s: 2 kHz, impacts are cut short by less
+constexpr double kFrameStep = 0.02;    // s
 constexpr std::uint64_t kSeeds = 1000000000;
 constexpr std::uint64_t kConditions = 1000;  // streams kept for the runs of one truth
 
@@ -87,10 +88,11 @@ campaign::Simulation simulation_of(const Challenge& challenge, const diagnose::Q
   for (std::string& setting : q.settings(truth.theta, truth.effects)) s.settings.push_back(std::move(setting));
   s.settings.insert(s.settings.end(), challenge.truth.begin(), challenge.truth.end());
   s.settings.insert(s.settings.end(), truth.settings.begin(), truth.settings.end());
-  const double from = config::read_case(s.case_file.string(), s.settings).time.analyze_from;
-  s.settings.push_back(fmt::format("time.end_s={}", from + challenge.seconds));
+  const config::Case truth_case = config::read_case(s.case_file.string(), s.settings);
+  s.settings.push_back(fmt::format("time.end_s={}", truth_case.time.analyze_from + challenge.seconds));
   s.settings.push_back(fmt::format("output.tracks={{beads: {}, every_s: {}}}", challenge.beads, kTrackStep));
-  s.settings.emplace_back("output.frames=~");
+  // Beads that are set apart draw their share of the power, which a mill with one tracer does not: frames say how much.
+  s.settings.push_back(truth_case.has_tracers() ? fmt::format("output.frames={{every_s: {}}}", kFrameStep) : "output.frames=~");
   s.settings.emplace_back("output.vtk=~");
   s.settings.push_back(fmt::format("seed={}", 1 + random_of(challenge, truth, condition).below(kSeeds)));
   return s;

@@ -53,7 +53,7 @@ struct Maker {
     emulate::Random random = random_of(challenge, truth, condition);
     random.next();  // the run's own seed
     const std::uint64_t camera_seed = random.next();
-    const PowerOfRun power = power_of(outcome.folder);
+    const PowerOfRun power = power_of(outcome.folder, registry);
     const double measured = power.value * (1 + question.study.power_error * random.normal());
     RecordingOf what{outcome.folder, folder, "r_" + question.study.conditions[condition].name, believed(question, condition, registry),
                      camera_seed};

@@ -88,6 +88,20 @@ void check_hypothesis(const SetsOf& sets, const std::string& name, const diagnos
   }
 }
 
+/// A setting that a hypothesis stands for would be hidden physics in sets that are scored as having none of it.
+void check_settings(const std::vector<std::string>& settings, const config::Location& where, const diagnose::Question& question) {
+  for (const std::string& setting : settings) {
+    const std::string path = setting.substr(0, setting.find('='));
+    for (const diagnose::Candidate& c : question.candidates) {
+      const std::vector<std::string>& of = c.on_or_off() ? c.set : c.paths;
+      if (std::any_of(of.begin(), of.end(), [&](const std::string& p) { return p.substr(0, p.find('=')) == path; }))
+        throw config::UserError(
+            where, fmt::format("sets '{}', which hypothesis '{}' of the study stands for; leave it out, or make sets with the hypothesis",
+                               path, c.name));
+    }
+  }
+}
+
 }  // namespace
 
 const char* name_of(Kind kind) {
@@ -118,6 +132,7 @@ Challenge read_challenge(const fs::path& file, const std::vector<std::string>& o
       static_cast<std::uint64_t>(config::read_integer(root.at("seed", "any number that those who diagnose do not know"), between(0, 9e15)));
   const Node truth = root.at("truth", "how the mill that makes the sets differs from the fitted one, e.g. {set: {stiffness_factor: 0.01}}");
   truth.expect({"set"});
+  c.truth_where = truth.where();
   c.truth = settings_of(truth.at("set", "settings of the case, e.g. {stiffness_factor: 0.01}"));
   if (const auto node = root.find("beads")) c.beads = static_cast<int>(config::read_integer(*node, between(1, kMostBeads)));
   if (const auto node = root.find("seconds")) c.seconds = config::read_number(*node, "s", config::positive());
@@ -143,7 +158,9 @@ diagnose::Question question_of(const Challenge& challenge, const host::Registry&
       throw config::UserError(
           n.where, fmt::format("nuisance '{}': the recordings of a challenge state no frame that could be doubted; leave it out", n.name));
   }
+  check_settings(challenge.truth, challenge.truth_where, question);
   for (const SetsOf& sets : challenge.sets) {
+    check_settings(sets.settings, sets.where, question);
     for (const std::string& name : sets.hypotheses) check_hypothesis(sets, name, question);
   }
   return question;

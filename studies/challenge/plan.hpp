@@ -41,6 +41,7 @@ struct Challenge {
   std::filesystem::path file, study, camera;
   std::uint64_t seed = 1;
   std::vector<std::string> truth;  ///< settings of all truths
+  config::Location truth_where;
   int beads = 60;
   double seconds = 20;
   std::vector<SetsOf> sets;
@@ -49,7 +50,8 @@ struct Challenge {
 /// Throws config::UserError with file:line.
 Challenge read_challenge(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// The study without its recordings. Throws config::UserError where the sets name hypotheses that it does not have.
+/// The study without its recordings. Throws config::UserError where the sets name hypotheses that it does not have, or where
+/// what is set beside a hypothesis is what a hypothesis of the study stands for.
 diagnose::Question question_of(const Challenge& challenge, const host::Registry& registry);
 
 }  // namespace millscope::challenge

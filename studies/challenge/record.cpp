@@ -6,9 +6,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "kernel/config/case.hpp"
 #include "kernel/output/file.hpp"
 #include "studies/analysis/mill.hpp"
 #include "studies/analysis/parallel.hpp"
+#include "studies/calibrate/bead_paths.hpp"
 #include "studies/camera/ctrack_writer.hpp"
 #include "studies/camera/simulated_beads.hpp"
 
@@ -40,13 +42,16 @@ studies::Condition believed(const diagnose::Question& q, std::size_t condition, 
   return out;
 }
 
-PowerOfRun power_of(const fs::path& run) {
+PowerOfRun power_of(const fs::path& run, const host::Registry& registry) {
   std::ifstream in(run / "summary.json", std::ios::binary);
   const nlohmann::json j = nlohmann::json::parse(in, nullptr, false);
   const auto power = j.is_object() ? j.value("power_W", nlohmann::json()) : nlohmann::json();
   if (!power.is_object() || !power.contains("com") || !power["com"].is_number())
     throw UserError(fmt::format("{}: its summary.json tells no power; the run has not come to its end", run.string()));
-  return {power["com"], power.contains("com_sem") && power["com_sem"].is_number() ? power["com_sem"].get<double>() : 0.0};
+  const bool tracers = config::read_case((run / "case.resolved.yaml").string()).has_tracers();
+  const double ratio = tracers ? calibrate::BeadPaths(run, 1, {}, registry).power_ratio() : 1.0;
+  const double sem = power.contains("com_sem") && power["com_sem"].is_number() ? power["com_sem"].get<double>() : 0.0;
+  return {ratio * power["com"].get<double>(), ratio * sem};
 }
 
 void write_recording(const RecordingOf& what, const studies::Camera& camera, const host::Registry& registry) {

@@ -15,9 +15,9 @@ namespace millscope::challenge {
 studies::Condition believed(const diagnose::Question& question, std::size_t condition, const host::Registry& registry);
 
 struct PowerOfRun {
-  double value = 0, sem = 0;  ///< W, of the whole charge
+  double value = 0, sem = 0;  ///< W, of the whole charge; without unlike tracers, all beads like the others, where the case sets some apart
 };
-PowerOfRun power_of(const std::filesystem::path& run);
+PowerOfRun power_of(const std::filesystem::path& run, const host::Registry& registry);
 
 struct RecordingOf {
   std::filesystem::path run;     ///< of the truth

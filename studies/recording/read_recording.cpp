@@ -184,6 +184,28 @@ Description description_of(const fs::path& file) {
 
 }  // namespace
 
+Recording clean_recording(Recording given) {
+  std::vector<Run> runs = std::move(given.runs);
+  given.runs.clear();
+  for (Run& run : runs) {
+    RunReport report;
+    report.rows = report.used = run.size();
+    std::vector<Run> parts =
+        order_rows({std::move(run.time), std::move(run.position), std::move(run.spread), std::move(run.events)}, report);
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      parts[part].name = part == 0 ? run.name : "";
+      parts[part].format = run.format;
+      name_run(parts[part], part, {run.source, {}}, given.runs);
+      given.runs.push_back(std::move(parts[part]));
+    }
+  }
+  check_units(given.runs, given.condition, {given.file.string(), 0}, "s", "m");
+  if (given.gap_limit == 0) given.gap_limit = default_gap_limit(given.runs);
+  clean(given);
+  refuse_few(given);
+  return given;
+}
+
 Recording read_recording(const fs::path& file) {
   const Description description = description_of(file);
   Recording recording;

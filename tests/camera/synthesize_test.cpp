@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kernel/output/tracks.hpp"
+#include "studies/camera/ctrack_writer.hpp"
 #include "studies/camera/estimate_camera.hpp"
 #include "studies/camera/synthesize.hpp"
 #include "support.hpp"
@@ -139,4 +140,42 @@ TEST_CASE("what cannot be synthesized says why") {
   CHECK_THROWS_WITH(SimulatedBeads(run.path() / "nowhere", registry()), Contains("no directory of a run"));
   fs::remove(run.path() / "tracks.h5");
   CHECK_THROWS_WITH(SimulatedBeads(run.path(), registry()), Contains("output.tracks.beads"));
+}
+
+TEST_CASE("points that no file holds are treated as if they were read from one") {
+  const RunDirectory run;
+  const SimulatedBeads beads(run.path(), registry());
+  const Camera camera = chain_of("{kind: sampling, rate: 400 Hz}").before(chain_of("{kind: noise, white: [0.4, 0.4, 0.4, mm]}"));
+  Recording given;
+  given.file = run.path() / "seen.yaml";
+  given.condition.mill_diameter = 0.3;
+  given.frame = MillFrame{};
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Run seen = observe(beads.path(i, 2), camera, beads.context(i, 5));
+    seen.position[0][100] = seen.position[1][100] = 0;  // farther than a bead can get
+    seen.time[301] = seen.time[300] + 1e-9;             // the same time, to the digits of a file
+    names.push_back(fmt::format("b{}.a", i));
+    std::ofstream(run.path() / names.back()) << ctrack_text(seen);
+    seen = as_written(seen);
+    seen.name = fmt::format("b{}", i);
+    given.runs.push_back(seen);
+  }
+  std::ofstream(given.file) << recording_text(names, given.condition, "both") << "frame: {axis: [0, 0, mm]}\n";
+  const Recording read = read_recording(given.file), cleaned = clean_recording(given);
+  REQUIRE(read.runs.size() == cleaned.runs.size());
+  CHECK(read.gap_limit == cleaned.gap_limit);
+  for (std::size_t i = 0; i < read.runs.size(); ++i) {
+    const Run &a = read.runs[i], &b = cleaned.runs[i];
+    CHECK(a.report.outliers == 1);
+    CHECK(a.report.duplicates == 1);
+    CHECK(a.name == b.name);
+    CHECK(a.time == b.time);
+    CHECK(a.position == b.position);
+    CHECK(a.spread == b.spread);
+    CHECK(a.events == b.events);
+    CHECK(a.report.outliers == b.report.outliers);
+    CHECK(a.report.duplicates == b.report.duplicates);
+    CHECK(a.report.gaps == b.report.gaps);
+  }
 }

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "studies/challenge/answer.hpp"
 #include "studies/challenge/draw.hpp"
@@ -128,4 +129,34 @@ TEST_CASE("hypotheses that the study does not have are refused") {
   made.challenge.sets[1].hypotheses = {"lifter_wear"};
   made.challenge.sets[1].low = -0.5;
   CHECK(testing::refusal([&] { question_of(made.challenge, made.registry); }).find("leaves its range") != std::string::npos);
+}
+
+TEST_CASE("what a hypothesis stands for is not set beside it") {
+  Made made;
+  made.challenge.truth.emplace_back("geometry.liner.lifter_height=5 mm");
+  CHECK(testing::refusal([&] {
+          question_of(made.challenge, made.registry);
+        }).find("c.yaml:5: sets 'geometry.liner.lifter_height', which") != std::string::npos);
+  made.challenge.truth.pop_back();
+  CHECK_NOTHROW(question_of(made.challenge, made.registry));
+  made.challenge.sets[1].settings = {"geometry.liner.lifter_height=5 mm"};
+  CHECK(testing::refusal([&] {
+          question_of(made.challenge, made.registry);
+        }).find("c.yaml:8: sets 'geometry.liner.lifter_height', which") != std::string::npos);
+}
+
+TEST_CASE("the power of a mill with one heavy tracer is that of the charge without it") {
+  Made made;
+  std::string study = kStudy, text = kChallenge;
+  study.replace(study.find("{lifter_wear: {}}"), std::string("{lifter_wear: {}}").size(), "{unlike_tracer: {}}");
+  text.replace(text.find("sets: ["), std::string::npos, "sets: [{kind: effect, hypothesis: unlike_tracer, strength: [1, 1]}]\n");
+  std::ofstream(made.folder / "study.yaml") << study;
+  std::ofstream(made.folder / "c.yaml") << text;
+  made.challenge = read_challenge(made.folder / "c.yaml");
+  made.make_sets();
+  const Answer a = open_answers(made.sets).at(0);
+  const fs::path run = made.sets / "answers" / "cache" / a.made.at("fast").at("run").get<std::string>() / "run";
+  const double all = nlohmann::json::parse(read(run / "summary.json"))["power_W"]["com"];
+  // One bead in twenty of twice the density, where its like are: 0.95/(0.95 + 0.1) of the mass with all equal; they need not be there.
+  CHECK(a.made.at("fast").at("power_W").get<double>() / all == Approx(1 / 1.05).margin(0.04));
 }
