@@ -57,16 +57,21 @@ bool Case::has_tracers() const {
   return std::any_of(beads.begin(), beads.end(), [](const BeadCase& bead) { return bead.tracer; });
 }
 
-bool Case::may_be_followed(double radius, double bead_mass) const {
-  if (!has_tracers()) return true;
+bool Case::may_be_followed(double radius, double bead_mass) const { return !has_tracers() || tracer_part(radius, bead_mass) > 0; }
+
+double Case::tracer_part(double radius, double bead_mass) const {
   constexpr double kRounding = 1e-4;  // masses and radii of a run are kept in single precision
   const auto alike = [](double a, double b) { return std::fabs(a - b) <= kRounding * b; };
+  double tracers = 0, all = 0;
   for (const BeadCase& bead : beads) {
     for (const SizeClass& size : bead.sizes) {
-      if (bead.tracer && alike(2 * radius, size.diameter) && alike(bead_mass, bead.density * sphere_volume(size.diameter))) return true;
+      if (!alike(2 * radius, size.diameter) || !alike(bead_mass, bead.density * sphere_volume(size.diameter))) continue;
+      const double part = bead.number_share * size.number_fraction;
+      all += part;
+      if (bead.tracer) tracers += part;
     }
   }
-  return false;
+  return all > 0 ? tracers / all : 0;
 }
 
 std::uint64_t bead_count(const Case& c, const std::optional<Vessel>& vessel) {

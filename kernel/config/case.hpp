@@ -225,6 +225,8 @@ struct Case {
   /// Whether a bead of this radius, m, and mass, kg, may be followed: it is like a bead of a tracer class, or no class is one. Beads that
   /// are alike may stand for each other.
   bool may_be_followed(double radius, double bead_mass) const;
+  /// Of the beads like this one the part, by number, that is of tracer classes: the charge may hold the like. 0 where no class is one.
+  double tracer_part(double radius, double bead_mass) const;
 };
 
 /// Reads and checks a case; `overrides` are "path.to.key=value". The plugins' own keys are checked by `resolve`; when every plugin has

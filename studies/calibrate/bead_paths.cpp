@@ -26,14 +26,15 @@ std::vector<std::size_t> evenly(const output::FrameBeads& beads, const config::C
   return chosen;
 }
 
-/// Σ m x of the charge that a recorded mill has, N beads like those beside the tracers, over that of the beads as they are.
+/// Σ m x of the charge that a recorded mill has, N beads like those beside the tracers, over that of the beads as they are. A bead like
+/// which there are in both is of either by their numbers.
 double lever_ratio(const output::FrameBeads& beads, const config::Case& c, const std::vector<double>& sum_x) {
   double all = 0, others = 0, count = 0;
   for (std::size_t b = 0; b < beads.size(); ++b) {
     all += beads.mass[b] * sum_x[b];
-    if (c.may_be_followed(beads.radius[b], beads.mass[b])) continue;
-    others += beads.mass[b] * sum_x[b];
-    count += 1;
+    const double part = 1 - c.tracer_part(beads.radius[b], beads.mass[b]);
+    others += part * beads.mass[b] * sum_x[b];
+    count += part;
   }
   // No bead beside the tracers: each is as good as every other.
   return count > 0 && all != 0 ? others * static_cast<double>(beads.size()) / count / all : 1.0;

@@ -31,6 +31,7 @@ class BeadPaths {
   BeadPaths(const std::filesystem::path& run, int beads, const AxialPlace& place, const host::Registry& registry);
 
   std::size_t size() const { return ids_.size(); }
+  std::uint32_t id(std::size_t i) const { return ids_[i]; }
   const studies::MillOfCase& mill() const { return mill_; }
   const std::filesystem::path& case_file() const { return case_file_; }
   /// The power of the charge without unlike tracers, all N beads like the others, over that of the run: 1 where no class is set apart.

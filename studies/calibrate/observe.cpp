@@ -65,7 +65,7 @@ studies::Recording film(const BeadPaths& paths, const studies::Camera& camera, i
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (seen[i].size() == 0) continue;
     seen[i].name = fmt::format("b{}", i);
-    seen[i].source = paths.case_file().string();
+    seen[i].source = fmt::format("{}: bead {}", paths.case_file().string(), paths.id(i));
     recording.runs.push_back(std::move(seen[i]));
   }
   if (recording.runs.empty())

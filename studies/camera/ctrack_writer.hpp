@@ -12,7 +12,7 @@ namespace millscope::studies {
 /// are 0 where the run has none.
 std::string ctrack_text(const Run& run);
 
-/// The run as it is read back from ctrack_text().
+/// The run with the digits that ctrack_text() writes; order and duplicates are clean_recording's.
 Run as_written(Run run);
 
 /// recording.yaml for files that lie beside it, with what is known of the mill. `note`: a comment line, without '#'.

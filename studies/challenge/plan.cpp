@@ -88,17 +88,37 @@ void check_hypothesis(const SetsOf& sets, const std::string& name, const diagnos
   }
 }
 
-/// A setting that a hypothesis stands for would be hidden physics in sets that are scored as having none of it.
+std::string path_of(const std::string& setting) { return setting.substr(0, setting.find('=')); }
+
+/// Whether a setting is what the hypothesis stands for: its value, its switch, or its plugin under another name.
+bool stands_for(const diagnose::Candidate& c, const std::string& setting) {
+  const std::string path = path_of(setting), kind = setting.substr(path.size());
+  if (std::find(c.paths.begin(), c.paths.end(), path) != c.paths.end()) return true;
+  return std::any_of(c.set.begin(), c.set.end(), [&](const std::string& on) {
+    const std::string other = path_of(on);
+    if (c.on_or_off() && other == path) return true;
+    return path.ends_with(".kind") && other.ends_with(".kind") && on.substr(other.size()) == kind;
+  });
+}
+
+/// What is drawn, or what a hypothesis stands for: set beside them it would be scored as what it is not.
 void check_settings(const std::vector<std::string>& settings, const config::Location& where, const diagnose::Question& question) {
   for (const std::string& setting : settings) {
-    const std::string path = setting.substr(0, setting.find('='));
+    const std::string path = path_of(setting);
     for (const diagnose::Candidate& c : question.candidates) {
-      const std::vector<std::string>& of = c.on_or_off() ? c.set : c.paths;
-      if (std::any_of(of.begin(), of.end(), [&](const std::string& p) { return p.substr(0, p.find('=')) == path; }))
+      if (stands_for(c, setting))
         throw config::UserError(
-            where, fmt::format("sets '{}', which hypothesis '{}' of the study stands for; leave it out, or make sets with the hypothesis",
-                               path, c.name));
+            where, fmt::format("sets '{}', which hypothesis '{}' of the study stands for; leave it out, or list the study's 'hypotheses' "
+                               "without '{}'",
+                               path, c.name, c.name));
     }
+    const auto drawn = [&](const calibrate::Parameter& p) {
+      return p.path == path || std::find(p.tied.begin(), p.tied.end(), path) != p.tied.end();
+    };
+    const auto& nuisances = question.nuisances;
+    if (std::any_of(question.study.parameters.begin(), question.study.parameters.end(), drawn) ||
+        std::any_of(nuisances.begin(), nuisances.end(), [&](const diagnose::Nuisance& n) { return !n.usual && n.path == path; }))
+      throw config::UserError(where, fmt::format("sets '{}', which the study looks for and the challenge draws; leave it out", path));
   }
 }
 

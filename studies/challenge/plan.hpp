@@ -51,7 +51,7 @@ struct Challenge {
 Challenge read_challenge(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
 /// The study without its recordings. Throws config::UserError where the sets name hypotheses that it does not have, or where
-/// what is set beside a hypothesis is what a hypothesis of the study stands for.
+/// something is set that is drawn or that a hypothesis of the study stands for.
 diagnose::Question question_of(const Challenge& challenge, const host::Registry& registry);
 
 }  // namespace millscope::challenge

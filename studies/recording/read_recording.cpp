@@ -193,7 +193,7 @@ Recording clean_recording(Recording given) {
     std::vector<Run> parts =
         order_rows({std::move(run.time), std::move(run.position), std::move(run.spread), std::move(run.events)}, report);
     for (std::size_t part = 0; part < parts.size(); ++part) {
-      parts[part].name = part == 0 ? run.name : "";
+      parts[part].name = part == 0 ? run.name : fmt::format("{}_{}", run.name, part + 1);
       parts[part].format = run.format;
       name_run(parts[part], part, {run.source, {}}, given.runs);
       given.runs.push_back(std::move(parts[part]));

@@ -22,15 +22,18 @@ const host::Registry& registry() {
   return registry;
 }
 
-/// Four beads at rest beside the axis of a drum.
-void write_run(const testing::Folder& folder, bool tracers) {
-  const std::string beads = tracers ? "{charge: {material: glass, diameter: 4 mm, share: 50 %}, "
-                                      "marked: {material: glass, density: 5000, diameter: 4 mm, share: 50 %, tracer: true}}"
-                                    : "{charge: {material: glass, diameter: 4 mm, share: 50 %}, "
-                                      "heavy: {material: glass, density: 5000, diameter: 4 mm, share: 50 %}}";
+const std::string kCharge = "charge: {material: glass, diameter: 4 mm, share: 50 %}, ";
+const std::string kHeavy = kCharge + "heavy: {material: glass, density: 5000, diameter: 4 mm, share: 50 %}";
+const std::string kTracers = kCharge + "marked: {material: glass, density: 5000, diameter: 4 mm, share: 50 %, tracer: true}";
+const std::string kAlike = kCharge +
+                           "heavy: {material: glass, density: 5000, diameter: 4 mm, share: 25 %}, "
+                           "marked: {material: glass, density: 5000, diameter: 4 mm, share: 25 %, tracer: true}";
+
+/// Four beads at rest beside the axis of a drum, two of them heavy.
+void write_run(const testing::Folder& folder, const std::string& beads) {
   folder.write("case.resolved.yaml", fmt::format(R"(schema_version: 1
 materials: {{glass: {{density: 2500, young_modulus: 1e8, poisson_ratio: 0.23}}}}
-beads: {}
+beads: {{{}}}
 fill: {{count: 4, shares_by: number}}
 contact: {{law: {{kind: hertz_mindlin}}}}
 pairs: {{glass~glass: {{restitution: 0.8, static_friction: 0.3}}}}
@@ -58,7 +61,7 @@ time: {{end_s: 1, analyze_from_s: 0}}
 
 TEST_CASE("where a class is set apart, its beads are followed and the power is that of the others") {
   const testing::Folder folder;
-  write_run(folder, true);
+  write_run(folder, kTracers);
   const BeadPaths paths(folder.path, 100, {}, registry());
   REQUIRE(paths.size() == 2);
   CHECK_THAT(paths.path(0).position[0].front(), WithinRel(0.06, 1e-6));
@@ -71,9 +74,18 @@ TEST_CASE("where a class is set apart, its beads are followed and the power is t
 
 TEST_CASE("where none is, any bead is followed and the power is that of all") {
   const testing::Folder folder;
-  write_run(folder, false);
+  write_run(folder, kHeavy);
   const BeadPaths paths(folder.path, 100, {}, registry());
   CHECK(paths.size() == 4);
   CHECK(paths.power_ratio() == 1);
   CHECK_THAT(paths.mill().context.bead_density, WithinRel(3750.0, 1e-9));
+}
+
+TEST_CASE("beads of the charge that are like the tracers count by their numbers") {
+  const testing::Folder folder;
+  write_run(folder, kAlike);
+  const BeadPaths paths(folder.path, 100, {}, registry());
+  CHECK(paths.size() == 2);
+  // Every second heavy bead is of the charge: 4/3 (m 0.06 + ½ 2 m 0.12) over m 0.06 + 2 m 0.12.
+  CHECK_THAT(paths.power_ratio(), WithinRel(0.24 / 0.30, 1e-6));
 }

@@ -153,8 +153,10 @@ TEST_CASE("points that no file holds are treated as if they were read from one")
   std::vector<std::string> names;
   for (std::size_t i = 0; i < 2; ++i) {
     Run seen = observe(beads.path(i, 2), camera, beads.context(i, 5));
-    seen.position[0][100] = seen.position[1][100] = 0;  // farther than a bead can get
-    seen.time[301] = seen.time[300] + 1e-9;             // the same time, to the digits of a file
+    for (std::size_t k = 0; k < seen.size(); ++k)
+      seen.spread.push_back(0.003 - 1.3137e-6 * static_cast<double>(k));  // decides between equal times
+    seen.position[0][100] = seen.position[1][100] = 0;                 // farther than a bead can get
+    seen.time[301] = seen.time[300] + 1e-9;                            // the same time, to the digits of a file
     names.push_back(fmt::format("b{}.a", i));
     std::ofstream(run.path() / names.back()) << ctrack_text(seen);
     seen = as_written(seen);
@@ -168,6 +170,7 @@ TEST_CASE("points that no file holds are treated as if they were read from one")
   for (std::size_t i = 0; i < read.runs.size(); ++i) {
     const Run &a = read.runs[i], &b = cleaned.runs[i];
     CHECK(a.report.outliers == 1);
+    CHECK(a.spread.at(7) != a.spread.at(8));
     CHECK(a.report.duplicates == 1);
     CHECK(a.name == b.name);
     CHECK(a.time == b.time);

@@ -123,7 +123,13 @@ TEST_CASE("only beads like those of a tracer class may be followed") {
   CHECK(c.may_be_followed(2.5e-3 * (1 + 1e-7), 5000 * volume * (1 - 1e-7)));  // single precision
   CHECK_FALSE(c.may_be_followed(2.5e-3, 2500 * volume));
   CHECK_FALSE(c.may_be_followed(2.6e-3, 5000 * volume));
+  CHECK(c.tracer_part(2.5e-3, 5000 * volume) == 1);
+  CHECK(c.tracer_part(2.5e-3, 2500 * volume) == 0);
+  std::string like = two;
+  like.replace(like.find("density: 5000, "), 15, "");
+  CHECK(read_all(case_with("beads", like)).tracer_part(2.5e-3, 2500 * volume) == Approx(0.05));
   const Case plain = read_all(testing::kCase);
   CHECK_FALSE(plain.has_tracers());
+  CHECK(plain.tracer_part(1, 1) == 0);
   CHECK(plain.may_be_followed(1, 1));
 }
