@@ -45,7 +45,8 @@ Found found_from(const Json& j) {
   f.verdict = j.at("verdict");
   f.named = j.at("named").get<std::vector<std::string>>();
   for (const Json& h : j.at("hypotheses")) {
-    Tested t{h.at("name"), h.at("class"), number(h.at("lambda")), {}};
+    Tested t{h.at("name"), h.at("class"), {}, {}};
+    for (const Json& point : h.at("lambda_at")) t.lambda_curve.emplace_back(number(point.at("share")), number(point.at("lambda")));
     const Json& of = h.at("parameters");
     if (!of.empty()) t.strength = interval_from(of.begin().value());
     f.hypotheses.push_back(std::move(t));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <boost/math/distributions/beta.hpp>
 #include <cmath>
+#include <iterator>
 
 namespace millscope::challenge {
 namespace {
@@ -54,12 +55,11 @@ void score_outside(const Found& f, Score& s) {
   s.outside_missed.add(f.verdict == "no_mismatch" || f.verdict == "undetectable");
 }
 
-/// λ grows with the square of the share, as far as the effect is linear in it.
 void add_power(const Marked& m, Score& s) {
   for (const TrueEffect& e : m.answer.effects) {
     const Tested* tested = m.found->find(e.hypothesis);
     if (tested == nullptr) continue;
-    const double lambda = tested->lambda * e.share * e.share;
+    const double lambda = tested->lambda(e.share);
     for (PowerBin& bin : s.power) {
       if (lambda >= bin.low && lambda < bin.high) bin.named.add(m.found->names(e.hypothesis) && m.found->named.size() <= 2);
     }
@@ -169,6 +169,16 @@ void add_confusion(const std::vector<Marked>& sets, Score& s) {
 }
 
 }  // namespace
+
+double Tested::lambda(double share) const {
+  const auto after = std::find_if(lambda_curve.begin(), lambda_curve.end(), [&](const auto& point) { return point.first >= share; });
+  if (after == lambda_curve.end()) return lambda_curve.empty() ? 0 : lambda_curve.back().second;
+  if (after == lambda_curve.begin()) return after->second;
+  const auto before = std::prev(after);
+  const double part = (share - before->first) / (after->first - before->first);
+  const double root = (1 - part) * std::sqrt(before->second) + part * std::sqrt(after->second);
+  return root * root;
+}
 
 const Tested* Found::find(const std::string& name) const {
   const auto found = std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Tested& t) { return t.name == name; });

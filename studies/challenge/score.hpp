@@ -19,8 +19,11 @@ using diagnose::Interval;
 /// One hypothesis of a diagnosis.
 struct Tested {
   std::string name, class_of;  ///< "best", "not rejected", …
-  double lambda = 0;           ///< at full strength
+  std::vector<std::pair<double, double>> lambda_curve;  ///< (share, λ), shares rising
   std::optional<Interval> strength;
+
+  /// λ at a share, by its root between those of the curve.
+  double lambda(double share) const;
 };
 
 struct Gain {

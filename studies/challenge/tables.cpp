@@ -44,9 +44,8 @@ void confusion(const Score& s, std::string& out) {
 
 void power(const Score& s, std::string& out) {
   out +=
-      "## Power\n\nλ: squared length, in noise units, of the effect's part that no retuning imitates, at the hidden strength; the "
-      "diagnosis' own λ at full "
-      "strength times the squared share.\n\n| λ | named, alone or in a class of two |\n|---|---|\n";
+      "## Power\n\nλ: squared length, in noise units, of the effect's part that no retuning imitates, by the diagnosis' own "
+      "surrogate, at the hidden strength.\n\n| λ | named, alone or in a class of two |\n|---|---|\n";
   for (const PowerBin& b : s.power)
     add(out, "| {} | {} |\n", std::isfinite(b.high) ? fmt::format("{:g} … {:g}", b.low, b.high) : fmt::format("{:g} and more", b.low),
         count_text(b.named));

@@ -53,6 +53,14 @@ std::string region_of(const Told& t, std::size_t condition, Index observable) {
   return regional ? o.name.substr(o.name.find(' ') + 1) : "whole mill";
 }
 
+/// λ of a candidate against its share; nothing for a nuisance.
+Json lambda_curve(const Told& t, std::size_t rival) {
+  Json out = Json::array();
+  for (const auto& [share, lambda] : t.diagnosis.naming.judged[rival].lambda_curve)
+    out.push_back({{"share", share}, {"lambda", lambda}});
+  return out;
+}
+
 Json hypotheses(const Told& t) {
   Json out = Json::array();
   const Diagnosis& d = t.diagnosis;
@@ -68,6 +76,7 @@ Json hypotheses(const Told& t) {
                    {"kappa", g.kappa},
                    {"lambda", g.lambda},
                    {"lambda_found", g.lambda_found},
+                   {"lambda_at", lambda_curve(t, j)},
                    {"undetectable", g.undetectable},
                    {"p_against_best", compared ? Json(g.against_best_p) : Json()},
                    {"p_goodness", g.goodness_p},

@@ -134,13 +134,14 @@ class Namer {
 
   void visibility(int j) {
     Judged& judged = out_.judged[static_cast<std::size_t>(j)];
-    const Visibility seen(p_, pseudo_.surrogate(), pseudo_.whitening(), out_.base.coded, j);
+    const Visibility seen(p_, pseudo_.surrogate(), pseudo_.whitening(), judged.fit.coded, j);
     const double found =
         judged.fit.shares.empty() ? judged.fit.coded[p_.rivals[static_cast<std::size_t>(j)].freed] : judged.fit.shares.front();
     for (const BankRow& row : p_.data.rows) {
       for (const Effect& e : row.effects) judged.runs += e.candidate == p_.rivals[static_cast<std::size_t>(j)].candidate ? 1 : 0;
     }
-    judged.lambda = seen.lambda(), judged.kappa = seen.kappa(), judged.lambda_found = seen.orthogonal(found);
+    judged.lambda = seen.lambda(), judged.kappa = seen.kappa(), judged.lambda_found = seen.at(found);
+    judged.lambda_curve = seen.curve();
     judged.undetectable = std::sqrt(judged.lambda) < o_.noise_units;
     judged.share = without_interval(found);
     for (Index i = 0; i < judged.fit.coded.size(); ++i) {

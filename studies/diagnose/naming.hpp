@@ -14,6 +14,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "studies/diagnose/fit.hpp"
@@ -71,9 +72,10 @@ inline Interval interval_about(double value, double sem) { return {value, value 
 struct Judged {
   FitResult fit;
   double delta_q = 0, p = 1, p_family = 1;
-  double kappa = 0;         ///< ‖s⊥‖/‖s‖ at full strength: 0 is fully concealed by θ
-  double lambda = 0;        ///< s⊥ᵀ Σ⁻¹ s⊥ at full strength
+  double kappa = 0;         ///< part of the effect that θ cannot imitate, at full strength: 0 is fully concealed
+  double lambda = 0;        ///< visibility.hpp, about what was fitted with the candidate: at full strength
   double lambda_found = 0;  ///< at the fitted share
+  std::vector<std::pair<double, double>> lambda_curve;  ///< (share, λ), shares rising; of candidates
   bool undetectable = false;
   int runs = 0;                       ///< of the bank with this candidate; too few: it was not tested
   Interval share;                     ///< its interval is worked out when some candidate is significant

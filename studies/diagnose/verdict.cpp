@@ -65,7 +65,7 @@ std::string to_separate(const Question& q, const Workshop& workshop, const Diagn
 double lambda_if(const Diagnosis& d, int rival, double longer) {
   const Surrogate s(d.problem.data);
   const MatrixXd w = whitener(d.problem.covariance / longer + s.residual_covariance());
-  return Visibility(d.problem, s, w, d.naming.base.coded, rival).lambda();
+  return Visibility(d.problem, s, w, d.naming.judged[static_cast<std::size_t>(rival)].fit.coded, rival).lambda();
 }
 
 std::string to_see(const Workshop& workshop, const Diagnosis& d, double noise_units) {

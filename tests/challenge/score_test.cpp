@@ -26,26 +26,29 @@ Found found(const std::string& verdict, std::vector<std::string> named) {
 /// A value whose interval was not worked out.
 Interval open(double value) { return {value, std::nan(""), std::nan("")}; }
 
+/// λ of an effect that is linear in its share.
+std::vector<std::pair<double, double>> square_law(double full) { return {{0, 0}, {0.25, full / 16}, {1, full}}; }
+
 /// Ten sets: three with nothing, one of them rightly; four with one effect, one of which failed; two at once; one outside; one to come.
 std::vector<Marked> ten_sets() {
   Found right = found("no_mismatch", {});
-  right.hypotheses = {{"rolling", "not needed", 80, open(0.02)}};
+  right.hypotheses = {{"rolling", "not needed", square_law(80), open(0.02)}};
   right.retuned = {{"friction", {0.3, 0.28, 0.32}}};
   Found alarm = found("named", {"rolling"});
   alarm.retuned = {{"friction", {0.15, 0.1, 0.2}}};
   Found rejected = found("outside_library", {});
   rejected.retuned = {{"friction", {0.1, 0.1, 0.1}}};
   Found named = found("named", {"rolling"});
-  named.hypotheses = {{"rolling", "best", 80, Interval{0.11, 0.09, 0.13}}, {"bridge", "rejected", 10, open(1)}};
+  named.hypotheses = {{"rolling", "best", square_law(80), Interval{0.11, 0.09, 0.13}}, {"bridge", "rejected", square_law(10), open(1)}};
   named.retuned = {{"friction", {0.4, 0.38, 0.42}}};
   named.unmasked = {{"friction", {0.32, 0.31, 0.35}}};
   named.gains = {{"slow", "retuned to power", {1.5, 0.5, 2.5}}};
   Found ambiguous = found("ambiguous", {"bridge", "rolling"});
-  ambiguous.hypotheses = {{"rolling", "not rejected", 80, open(0.17)}, {"bridge", "best", 10, Interval{9, 8, 10}}};
+  ambiguous.hypotheses = {{"rolling", "not rejected", square_law(80), open(0.17)}, {"bridge", "best", square_law(10), Interval{9, 8, 10}}};
   Found missed = found("no_mismatch", {});
-  missed.hypotheses = {{"bridge", "not needed", 10, open(1)}};
+  missed.hypotheses = {{"bridge", "not needed", square_law(10), open(1)}};
   Found half = found("named", {"rolling"});
-  half.hypotheses = {{"rolling", "best", 40, open(0.1)}};
+  half.hypotheses = {{"rolling", "best", square_law(40), open(0.1)}};
   Found failed;
   failed.failure = "no camera";
   return {{answer("s1", Kind::none), right},
@@ -118,6 +121,16 @@ TEST_CASE("strengths, parameters, power and gains") {
   REQUIRE(s.gains.size() == 1);
   check(s.gains[0].surely, 1, 1);
   CHECK(s.gains[0].median == 1.5);
+}
+
+TEST_CASE("lambda at a share lies between those of the diagnosis, its root evenly") {
+  const Tested bent{"wear", "best", {{-1, 36}, {0, 0}, {0.5, 16}, {1, 25}}, {}};
+  CHECK(bent.lambda(0.5) == Approx(16));
+  CHECK(bent.lambda(0.25) == Approx(4));
+  CHECK(bent.lambda(0.75) == Approx(20.25));
+  CHECK(bent.lambda(-0.5) == Approx(9));
+  CHECK(bent.lambda(1) == Approx(25));
+  CHECK(Tested{}.lambda(0.5) == 0);  // it was screened out
 }
 
 TEST_CASE("every diagnosed set stands in the confusion matrix once") {

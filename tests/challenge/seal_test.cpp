@@ -29,7 +29,7 @@ std::vector<Answer> two_answers() {
 }
 
 const std::string kDiagnosis = R"({"verdict": "named", "named": ["wear"],
-  "hypotheses": [{"name": "wear", "class": "best", "lambda": 40,
+  "hypotheses": [{"name": "wear", "class": "best", "lambda_at": [{"share": 0, "lambda": 0}, {"share": 1, "lambda": 49}],
                   "parameters": {"height": {"value": 0.0041, "low90": 0.0039, "high90": 0.0043, "unit": "m", "vanishes_at": 0.005}}}],
   "contact_parameters": {"retuned": {"friction": {"value": 0.4, "low90": 0.3, "high90": 0.5}},
                          "unmasked": {"friction": {"value": 0.2, "low90": 0.1, "high90": null}}},
@@ -78,6 +78,7 @@ TEST_CASE("diagnoses are read as they were written, failures with their reason")
   CHECK(f.best()->strength->low90 == 0.0039);
   CHECK_FALSE(f.unmasked.at("friction").known());  // its end is not a number
   CHECK(f.gains.size() == 1);
+  CHECK(f.best()->lambda(0.5) == Approx(12.25));
   const Score s = score(sets);
   CHECK(s.best_right.hits == 1);
   CHECK(s.strength.hits == 1);

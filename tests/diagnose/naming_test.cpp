@@ -79,6 +79,51 @@ TEST_CASE("what friction imitates is concealed, what does nothing is undetectabl
   CHECK(n.best == -1);
 }
 
+TEST_CASE("lambda is what the nearest retuned base is away, wherever it lies") {
+  const MadeUp mill;
+  const VectorXd u = point(-0.4, 0.3, 0.2);
+  const Problem p = made_up_problem(mill, u, {0, 0, 0}, 1);
+  const Surrogate s(p.data);
+  const MatrixXd w = whitener(p.covariance + s.residual_covariance());
+  const Coordinate& filling = p.data.theta[2];
+  const double weight = filling.prior_weight(), centre = filling.coded(filling.prior_mean);
+  for (const int j : {0, 1}) {
+    const VectorXd y = s.at(u, {{j, 1.0}});
+    const double noise = (w * s.residual_covariance() * w.transpose()).trace() * s.leverage_of(u, {{j, 1.0}}) *
+                         static_cast<double>(y.size() - 3) / static_cast<double>(y.size());
+    double nearest = 1e300;
+    const int steps = 40;
+    for (int a = -steps; a <= steps; ++a) {
+      for (int b = -steps; b <= steps; ++b) {
+        for (int c = -steps; c <= steps; ++c) {
+          const VectorXd at = point(a, b, c) / steps;
+          const double prior = std::pow((at[2] - centre) * weight, 2) - std::pow((u[2] - centre) * weight, 2);
+          nearest = std::min(nearest, (w * (y - s.at(at))).squaredNorm() + prior);
+        }
+      }
+    }
+    const Visibility seen(p, s, w, u, j);
+    CHECK(seen.lambda() <= nearest - noise + 1e-9);
+    CHECK_THAT(seen.lambda(), WithinAbs(nearest - noise, 0.02 * nearest + 0.5));
+    CHECK(seen.curve().front() == std::pair<double, double>(0.0, 0.0));
+    CHECK(seen.curve().back().second == Approx(seen.lambda()));
+  }
+}
+
+TEST_CASE("at the fitted strength lambda is what delta Q is on average") {
+  double gained = 0, expected = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Problem p = made_up_problem({}, point(-0.3, 0.2, 0), {0.6, 0, 0}, seed);
+    const Surrogate s(p.data);
+    const MatrixXd w = whitener(p.covariance + s.residual_covariance());
+    const FitResult base = Model(p.data, s, w, {}, {}).fit(p.observed);
+    const FitResult with = Model(p.data, s, w, {0}, std::vector<ShareRange>(3)).fit(p.observed);
+    gained += (base.q - with.q) / 40;
+    expected += Visibility(p, s, w, with.coded, 0).at(with.shares[0]) / 40;
+  }
+  CHECK_THAT(expected, WithinRel(gained, 0.05));
+}
+
 TEST_CASE("what few runs say of an effect's visibility is below its bound in nineteen of twenty banks") {
   MadeUp mill;
   mill.each = 4;
