@@ -18,7 +18,7 @@ using diagnose::Interval;
 
 /// One hypothesis of a diagnosis.
 struct Tested {
-  std::string name, class_of;  ///< "best", "not rejected", …
+  std::string name, class_of;                           ///< "best", "not rejected", …
   std::vector<std::pair<double, double>> lambda_curve;  ///< (share, λ), shares rising
   std::optional<Interval> strength;
 

@@ -16,6 +16,7 @@ namespace millscope::diagnose {
 namespace {
 
 constexpr double kLeastShare = 0.1;
+constexpr int kAgain = 8;               // parameter sets: eight degrees of freedom of each of about 70 observables
 constexpr std::size_t kSpareApart = 2;  // runs beyond the coefficients of a nuisance apart: linear, square, × every parameter
 constexpr std::uint64_t kOffsets = 16;  // blocks of Sobol's sequence among which groups are spread, of as many points
 
@@ -144,8 +145,15 @@ std::vector<BankPoint> plan_group(const Question& q, const Group& of, int count)
   return points;
 }
 
+std::vector<BankPoint> plan_again(const Question& q) {
+  std::vector<BankPoint> points = plan_group(q, {}, std::min(kAgain, q.bank.base));
+  for (BankPoint& p : points) p.group = "again";
+  return points;
+}
+
 std::vector<BankPoint> plan_screening(const Question& q) {
   std::vector<BankPoint> all = plan_group(q, {}, q.bank.base);
+  append(all, plan_again(q));
   for (const Group& group : groups_apart(q)) append(all, plan_group(q, group, q.bank.base));
   for (int j = 0; j < static_cast<int>(q.candidates.size()); ++j) append(all, plan_group(q, {j, -1}, std::min(q.bank.first, q.bank.each)));
   return all;

@@ -15,7 +15,7 @@ namespace millscope::diagnose {
 
 /// One parameter set of the bank.
 struct BankPoint {
-  std::string group;  ///< "base", the name of a candidate or of a nuisance apart, or "candidate*nuisance"
+  std::string group;  ///< "base", "again", a candidate's or a nuisance's name, or "candidate*nuisance"
   int index = 0;      ///< within the group
   VectorXd theta;
   std::vector<Effect> effects;
@@ -33,6 +33,8 @@ std::vector<Group> groups_apart(const Question& question);
 /// Sobol' points over the ranges; what is simulated of a group does not depend on the other groups, on how many are asked for, nor on the
 /// camera's nuisances, so that a bank grows without losing a run. One-sided shares lie in 0.1 … 1.
 std::vector<BankPoint> plan_group(const Question& question, const Group& group, int count);
+/// The first without a candidate, each once more with another seed: what runs differ by alone, Surrogate::chance().
+std::vector<BankPoint> plan_again(const Question& question);
 /// What tells which candidates cannot matter: all without a candidate, the first with every candidate alone.
 std::vector<BankPoint> plan_screening(const Question& question);
 /// A candidate together with a nuisance apart, which tells whether it acts otherwise there (rolling friction does in stiffer contacts): of

@@ -56,8 +56,7 @@ std::string region_of(const Told& t, std::size_t condition, Index observable) {
 /// λ of a candidate against its share; nothing for a nuisance.
 Json lambda_curve(const Told& t, std::size_t rival) {
   Json out = Json::array();
-  for (const auto& [share, lambda] : t.diagnosis.naming.judged[rival].lambda_curve)
-    out.push_back({{"share", share}, {"lambda", lambda}});
+  for (const auto& [share, lambda] : t.diagnosis.naming.judged[rival].lambda_curve) out.push_back({{"share", share}, {"lambda", lambda}});
   return out;
 }
 
@@ -197,7 +196,11 @@ Json diagnosis_json(const Told& t) {
           {"held_out", held_out(t)},
           {"missing_acceleration", missing(t)},
           {"offered_terms", d.missing.empty() ? Json() : offered(d.terms)},
-          {"bank", {{"parameter_sets", d.bank.points.size()}, {"used", d.problem.data.rows.size()}, {"failures", d.bank.failures}}},
+          {"bank",
+           {{"parameter_sets", d.bank.points.size()},
+            {"used", d.problem.data.rows.size()},
+            {"chance", d.naming.chance},
+            {"failures", d.bank.failures}}},
           {"notes", d.notes},
           {"study", t.question.study.file.string()}};
 }

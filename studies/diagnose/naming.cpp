@@ -61,6 +61,7 @@ class Namer {
 
   Naming run() {
     out_.covariance = pseudo_.covariance();
+    out_.chance = pseudo_.chance();
     against_base();
     choose_best();
     if (out_.best >= 0) {

@@ -3,10 +3,11 @@
 //
 // A pseudo-recording under a model with fitted θ̂ (and shares) is
 //
-//   y* = m₋r(θ̂*) + c (y_r − m₋r(θ_r)) + ε,   ε ~ recording's covariance,  c² = (1 + h(θ̂))/(1 + h(θ_r))
+//   y* = m₋r(θ̂*) + c (y_r − m₋r(θ_r)) + ε,   ε ~ recording's covariance,  c² = (1 − ρ + h(θ̂))/(1 + h(θ_r))
 //
 // r is a run of the bank, without an effect or with that of the model, taken out of the surrogate that made and that fits y*; h are
-// leverages; nuisances in θ̂* are drawn from their priors. So the emulator's error is part of every p-value.
+// leverages; ρ is the part of a run's deviation that is chance of its own, of which the recording's is ε; nuisances in θ̂* are drawn from
+// their priors. So the emulator's error is part of every p-value.
 #pragma once
 
 #include <cmath>
@@ -111,6 +112,7 @@ struct Naming {
   std::vector<Pair> pairs;            ///< at most one: two effects together
   std::vector<Mismatch> mismatch;     ///< the largest |z| first
   MatrixXd covariance;                ///< Σ: recording and surrogate
+  double chance = 0;                  ///< ρ, Surrogate::chance()
 };
 
 Naming name_physics(const Problem& problem, const NamingOptions& options);

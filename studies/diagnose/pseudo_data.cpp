@@ -29,8 +29,8 @@ PseudoData::PseudoData(const Problem& problem, const NamingOptions& options)
   const BankData& data = problem.data;
   const std::vector<bool> all(data.rows.size(), true);
   surrogate_ = std::make_unique<Surrogate>(data, *features_, all);
-  const double mean_leverage = static_cast<double>(features_->base_size()) / static_cast<double>(data.rows.size());
-  covariance_ = problem.covariance + (1 + mean_leverage) * surrogate_->residual_covariance();
+  chance_ = surrogate_->chance();
+  covariance_ = problem.covariance + surrogate_->error_covariance();
   whitener_ = whitener(covariance_);
   for (const MatrixXd& law : problem.noise) noise_factors_.push_back(factor(law));
   if (noise_factors_.empty()) noise_factors_.push_back(factor(problem.covariance));
@@ -97,7 +97,7 @@ VectorXd PseudoData::drawn_theta(const Truth& truth, emulate::Random& random) co
 
 VectorXd PseudoData::pseudo_recording(const LeftOut& left, const Truth& truth, const MatrixXd& noise, emulate::Random& random) const {
   const VectorXd& u = truth.coded;
-  const double scale = std::sqrt((1 + left.surrogate->leverage(u, truth.effects)) / (1 + left.leverage));
+  const double scale = std::sqrt((1 - chance_ + left.surrogate->leverage(u, truth.effects)) / (1 + left.leverage));
   return left.surrogate->at(u, truth.effects) + scale * left.deviation + noise * random.normals(left.deviation.size());
 }
 

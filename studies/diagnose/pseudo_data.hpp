@@ -26,6 +26,7 @@ class PseudoData {
   const Surrogate& surrogate() const { return *surrogate_; }
   std::size_t laws() const { return noise_factors_.size(); }
   const MatrixXd& covariance() const { return covariance_; }
+  double chance() const { return chance_; }
   const MatrixXd& whitening() const { return whitener_; }
   /// The observations themselves, or draw `b` of `truth`.
   FitResult fit(const Choice& choice) const;
@@ -59,6 +60,7 @@ class PseudoData {
   std::unique_ptr<Surrogate> surrogate_;
   std::vector<ShareRange> ranges_;
   std::vector<LeftOut> left_out_;
+  double chance_ = 0;  ///< ρ
   MatrixXd covariance_, whitener_;
   std::vector<MatrixXd> noise_factors_;
 };

@@ -10,9 +10,12 @@
 
 #include "kernel/config/error.hpp"
 #include "studies/calibrate/observation.hpp"
+#include "studies/inspect/estimate.hpp"
 
 namespace millscope::diagnose {
 namespace {
+
+using studies::kNormal90;
 
 constexpr std::size_t kForSquare = 3;      // different shares
 constexpr std::size_t kRunsForSquare = 6;  // fewer leave the far end of the range open
@@ -139,11 +142,13 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
                                         rows, features_.size()));
   }
   MatrixXd x(rows, features_.size()), y(rows, data.value.cols());
+  std::vector<std::size_t> kept;
   Index k = 0;
   for (std::size_t r = 0; r < data.rows.size(); ++r) {
     if (!used[r]) continue;
     x.row(k) = features_.all(data.coded(data.rows[r].theta), data.rows[r].effects).transpose();
     y.row(k++) = data.value.row(static_cast<Index>(r));
+    kept.push_back(r);
   }
   const Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr(x);
   coefficients_ = qr.solve(y);
@@ -156,6 +161,57 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
   degrees_ = rows - qr.rank();
   left_out_ = residual_;
   for (Index r = 0; r < rows; ++r) left_out_.row(r) /= 1 - std::min(kMostLeverage, x.row(r).dot(inverse_ * x.row(r).transpose()));
+  keep_repeated(data, kept);
+}
+
+void Surrogate::keep_repeated(const BankData& data, const std::vector<std::size_t>& rows) {
+  const auto same = [&](const BankRow& a, const BankRow& b) {
+    return a.theta == b.theta && a.effects.size() == b.effects.size() &&
+           std::equal(a.effects.begin(), a.effects.end(), b.effects.begin(),
+                      [](const Effect& e, const Effect& f) { return e.candidate == f.candidate && e.share == f.share; });
+  };
+  std::vector<VectorXd> deviations;
+  std::vector<bool> met(rows.size(), false);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    std::vector<Index> equal;
+    for (std::size_t j = i; j < rows.size(); ++j) {
+      if (met[j] || !same(data.rows[rows[i]], data.rows[rows[j]])) continue;
+      met[j] = true;
+      equal.push_back(static_cast<Index>(rows[j]));
+    }
+    if (equal.size() < 2) continue;
+    VectorXd mean = VectorXd::Zero(data.value.cols());
+    for (const Index r : equal) mean += data.value.row(r).transpose() / static_cast<double>(equal.size());
+    for (const Index r : equal) deviations.emplace_back(data.value.row(r).transpose() - mean);
+    degrees_repeated_ += static_cast<Index>(equal.size()) - 1;
+  }
+  repeated_.resize(static_cast<Index>(deviations.size()), data.value.cols());
+  for (std::size_t r = 0; r < deviations.size(); ++r) repeated_.row(static_cast<Index>(r)) = deviations[r].transpose();
+}
+
+/// ρ̂ = ⟨P_ii/S_ii⟩ with the repeated runs' variances P. Its relative error is √(2/ν*) with ν* = ν n²/Σ R_ij²: ν degrees of freedom of each
+/// observable, and as many observables as the correlations R of S leave independent.
+double Surrogate::chance() const {
+  if (degrees_repeated_ == 0) return 0;
+  const MatrixXd s = residual_covariance();
+  std::vector<Index> usable;
+  for (Index i = 0; i < s.rows(); ++i) {
+    if (residual_.col(i).squaredNorm() > 0) usable.push_back(i);
+  }
+  double sum = 0, correlations = 0;
+  for (const Index i : usable) {
+    sum += repeated_.col(i).squaredNorm() / static_cast<double>(degrees_repeated_) / s(i, i);
+    for (const Index j : usable) correlations += s(i, j) * s(i, j) / (s(i, i) * s(j, j));
+  }
+  const auto n = static_cast<double>(usable.size());
+  const double degrees = static_cast<double>(degrees_repeated_) * n * n / correlations;
+  return n > 0 ? std::min(1.0, sum / n / (1 + kNormal90 * std::sqrt(2 / degrees))) : 0;
+}
+
+MatrixXd Surrogate::error_covariance(double leverage) const { return (1 - chance() + leverage) * residual_covariance(); }
+
+MatrixXd Surrogate::error_covariance() const {
+  return error_covariance(static_cast<double>(features_.base_size()) / static_cast<double>(residual_.rows()));
 }
 
 VectorXd Surrogate::at(const VectorXd& coded, const std::vector<Effect>& effects) const {

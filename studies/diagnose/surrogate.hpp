@@ -51,13 +51,24 @@ class Surrogate {
   Index degrees() const { return degrees_; }  ///< rows − coefficients
   /// Row residuals, each from a fit without that row: (y − m)/(1 − h).
   const MatrixXd& left_out() const { return left_out_; }
-  /// Covariance of one run about the surface: the runs' noise and what a quadratic surface cannot follow, correlations shrunk.
+  /// S, covariance of one run about the surface: the runs' chance and what a quadratic surface cannot follow, correlations shrunk.
   MatrixXd residual_covariance() const;
+  /// ρ, the part of S that is chance, of which a recording has its own instead: what runs of equal parameters and other seeds differ by
+  /// (pure error; Montgomery 2013, ch. 10), over S, in the mean over the observables. The low end of its 90 % interval; 0: none is
+  /// repeated.
+  double chance() const;
+  /// Covariance of the surrogate's error where its leverage is h: (1 − ρ + h) S.
+  MatrixXd error_covariance(double leverage) const;
+  /// The same at the mean leverage of the runs without a candidate.
+  MatrixXd error_covariance() const;
 
  private:
   Features features_;
+  void keep_repeated(const BankData& data, const std::vector<std::size_t>& rows);
+
   MatrixXd coefficients_, inverse_, residual_, left_out_;
-  Index degrees_ = 0;
+  MatrixXd repeated_;  ///< rows about the mean of those of equal parameters
+  Index degrees_ = 0, degrees_repeated_ = 0;
 };
 
 /// Chooses for every positive coordinate with a range of a factor of 2 or more whether its logarithm serves better: the smaller sum of

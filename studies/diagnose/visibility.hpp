@@ -3,12 +3,12 @@
 //   λ(φ) = min over u of [(m(θ, φ) − m(u))ᵀ Σ⁻¹ (m(θ, φ) − m(u)) + P(u)] − P(θ) − ε,  κ = √(λ / (sᵀ Σ⁻¹ s − ε)):  0 is fully concealed
 //   s = m(θ, full strength) − m(θ, none),  P: the nuisances' priors
 //
-// The base is refitted in earnest: where retuning moves it far, its own curvature imitates more than its slope at θ would. At the fitted θ and
-// strength λ is what ΔQ is on average.
+// The base is refitted in earnest: where retuning moves it far, its own curvature imitates more than its slope at θ would. At the fitted θ
+// and strength λ is what ΔQ is on average.
 //
 // ε = h tr M (n − d)/n is what the surrogate's own noise adds on average: h the leverage of the effect, M = W S Wᵀ one run's covariance in
-// noise units. With s⊥ = m(θ, φ) − m(u) it makes λ uncertain by σ² = a + b λ, a = 2 h² tr M² (1 + 1/ν) and b = 4 h s⊥ᵀ M s⊥/s⊥ᵀ s⊥ with the ν
-// degrees of freedom behind S: few runs cannot tell a small λ from none. What the surrogate has no columns for is not in it.
+// noise units. With s⊥ = m(θ, φ) − m(u) it makes λ uncertain by σ² = a + b λ, a = 2 h² tr M² (1 + 1/ν) and b = 4 h s⊥ᵀ M s⊥/s⊥ᵀ s⊥ with the
+// ν degrees of freedom behind S: few runs cannot tell a small λ from none. What the surrogate has no columns for is not in it.
 #pragma once
 
 #include <utility>

@@ -50,7 +50,7 @@ TEST_CASE("all runs of a bank differ, each has a seed of its own") {
   const Scratch folder;
   const Question q = question_of(folder, kSections + "bank: {base: 24, each: 10}\n");
   const std::vector<BankPoint> points = plan_bank(q);
-  CHECK(points.size() == 24 + 3 * 10);
+  CHECK(points.size() == 24 + 8 + 3 * 10);
   std::set<std::vector<std::string>> different;
   std::set<std::string> labels, parameters;
   for (const BankPoint& p : points) {
@@ -60,6 +60,11 @@ TEST_CASE("all runs of a bank differ, each has a seed of its own") {
   }
   CHECK(different.size() == points.size());
   CHECK(labels.size() == points.size());
+  for (const BankPoint& p : points) {
+    if (p.group != "again") continue;
+    CHECK(p.theta == points[static_cast<std::size_t>(p.index)].theta);
+    CHECK(settings(q, p) != settings(q, points[static_cast<std::size_t>(p.index)]));
+  }
   CHECK(parameters.size() > points.size() / 2);  // θ of different groups need not agree
   const auto one = simulation_of(q, points[0], 0).settings, other = simulation_of(q, points[0], 1).settings;
   CHECK(one[0] == "mill.speed=75 %critical");

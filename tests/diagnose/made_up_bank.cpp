@@ -28,6 +28,7 @@ VectorXd truth_of(const MadeUp& mill, const VectorXd& u, const std::vector<doubl
   y += s[0] * (2.5 * direction(mill, 6) + 2 * direction(mill, 1)) + 0.5 * s[0] * u[0] * direction(mill, 7);
   y += s[1] * direction(mill, 1);
   y += s[2] * 0.02 * direction(mill, 8);
+  y += mill.cubic * (direction(mill, 9) * u[0] * u[0] * u[0] + direction(mill, 10) * u[0] * u[1] * u[1]);
   return y;
 }
 
@@ -49,6 +50,7 @@ Problem made_up_problem(const MadeUp& mill, const VectorXd& coded, const std::ve
     values.push_back(truth_of(mill, u, s) + mill.run_noise * random.normals(n));
   };
   for (Index r = 0; r < base.rows(); ++r) add(base.row(r).transpose(), -1, 0);
+  for (Index r = 0; r < mill.again; ++r) add(base.row(r).transpose(), -1, 0);
   for (Index r = 0; r < with.rows(); ++r) add(with.row(r).head(3).transpose(), static_cast<int>(r) % 3, 0.55 + 0.45 * with(r, 3));
   p.data.value.resize(static_cast<Index>(values.size()), n);
   for (std::size_t r = 0; r < values.size(); ++r) p.data.value.row(static_cast<Index>(r)) = values[r].transpose();

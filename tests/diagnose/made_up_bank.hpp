@@ -6,9 +6,10 @@
 namespace millscope::diagnose {
 
 struct MadeUp {
-  int runs = 24, each = 10;
+  int runs = 24, each = 10, again = 0;  ///< of the runs without a candidate, as many are repeated
   double run_noise = 0.3, recording_noise = 1.0;
   int conditions = 2, observables = 18;  ///< of each
+  double cubic = 0;                      ///< what no quadratic surface follows
 };
 
 /// What the formula says at coded θ with shares of three candidates: "visible" changes what friction cannot, "concealed" does what

@@ -234,7 +234,7 @@ TEST_CASE("candidates that cannot matter get their first simulations alone") {
   Workshop w = mill.workshop();
   w.say = [&](const std::string& line) { said.push_back(line); };
   const Diagnosis d = diagnose::diagnose(q, w, quick());
-  CHECK(d.bank.points.size() == 24 + 10 + 10 + 4);
+  CHECK(d.bank.points.size() == 24 + 8 + 10 + 10 + 4);
   CHECK(std::any_of(said.begin(), said.end(), [](const std::string& s) {
     return s.rfind("lifter_wear: at its strongest", 0) == 0 && s.find("cannot matter here") != std::string::npos;
   }));
