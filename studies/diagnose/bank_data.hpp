@@ -46,6 +46,9 @@ struct BankRow {
   std::vector<Effect> effects;
 };
 
+/// The same in all but the seed.
+bool repeats(const BankRow& a, const BankRow& b);
+
 struct BankData {
   std::vector<Coordinate> theta;
   Index candidates = 0;
@@ -58,5 +61,8 @@ struct BankData {
   /// Whether every nuisance apart has its usual value in a run.
   bool usual(const BankRow& row) const;
 };
+
+/// Which of the used rows, counted among themselves, repeat each other: each point once, with its runs.
+std::vector<std::vector<Index>> points_of(const BankData& data, const std::vector<bool>& used);
 
 }  // namespace millscope::diagnose

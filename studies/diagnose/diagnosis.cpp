@@ -25,7 +25,7 @@ std::vector<BankPoint> screened(const Question& question, const Workshop& worksh
   std::vector<BankPoint> points = plan_screening(question);
   const Problem problem = problem_of(question, workshop, fill_bank(question, workshop, points, fit), fit);
   const Surrogate surrogate(problem.data);
-  const MatrixXd whitening = whitener(problem.covariance + surrogate.error_covariance());
+  const MatrixXd whitening = whitener(problem.covariance + surrogate.error_covariance(problem.covariance));
   const FitResult base = Model(problem.data, surrogate, whitening, {}, {}).fit(problem.observed);
   const double limit = kMargin * noise_units;
   for (std::size_t j = 0; j < question.candidates.size(); ++j) {

@@ -162,7 +162,7 @@ std::vector<Alone> fit_alone(const HeldOutRequest& r) {
   for (const std::size_t condition : r.bank.conditions) {
     const Problem one = problem_alone(r.question, r.workshop, r.bank, condition, r.problem.data);
     const Surrogate surrogate(one.data);
-    const MatrixXd w = whitener(one.covariance + surrogate.error_covariance());
+    const MatrixXd w = whitener(one.covariance + surrogate.error_covariance(one.covariance));
     const auto fit = [&](const std::vector<Effect>& on) {
       std::vector<ShareRange> ranges(static_cast<std::size_t>(one.data.candidates));
       std::vector<int> active;

@@ -29,8 +29,8 @@ PseudoData::PseudoData(const Problem& problem, const NamingOptions& options)
   const BankData& data = problem.data;
   const std::vector<bool> all(data.rows.size(), true);
   surrogate_ = std::make_unique<Surrogate>(data, *features_, all);
-  chance_ = surrogate_->chance();
-  covariance_ = problem.covariance + surrogate_->error_covariance();
+  chance_ = surrogate_->chance(problem.covariance);
+  covariance_ = problem.covariance + surrogate_->error_covariance(problem.covariance);
   whitener_ = whitener(covariance_);
   for (const MatrixXd& law : problem.noise) noise_factors_.push_back(factor(law));
   if (noise_factors_.empty()) noise_factors_.push_back(factor(problem.covariance));
@@ -38,7 +38,7 @@ PseudoData::PseudoData(const Problem& problem, const NamingOptions& options)
   for (std::size_t r = 0; r < data.rows.size(); ++r) {
     LeftOut left;
     std::vector<bool> used = all;
-    used[r] = false;
+    for (std::size_t other = 0; other < used.size(); ++other) used[other] = !repeats(data.rows[other], data.rows[r]);
     left.surrogate = std::make_unique<Surrogate>(data, *features_, used);
     const VectorXd u = data.coded(data.rows[r].theta);
     const std::vector<Effect>& effects = data.rows[r].effects;

@@ -128,8 +128,12 @@ void check_parameters(const Question& q, const host::Registry& registry) {
   }
 }
 
+/// Simulations without a candidate are called so.
+bool bank_group(const std::string& name) { return name == "base" || name == "again"; }
+
 void check_nuisance(const Question& q, const Nuisance& n, const host::Registry& registry) {
-  if (n.name == "base") throw config::UserError(n.where, "nuisance 'base' has the name of the bank's first group; give it another 'name'");
+  if (bank_group(n.name))
+    throw config::UserError(n.where, fmt::format("nuisance '{}' has the name of a group of the bank; give it another 'name'", n.name));
   for (const Nuisance& other : q.nuisances) {
     if (&other != &n && other.name == n.name)
       throw config::UserError(n.where, fmt::format("there are two nuisances '{}'; give one of them another 'name'", n.name));
@@ -156,6 +160,7 @@ void check_nuisance(const Question& q, const Nuisance& n, const host::Registry& 
 
 /// Why the candidate gives no case that can be run; "" when it does.
 std::string refused(const Question& q, const Candidate& c, const host::Registry& registry) {
+  if (bank_group(c.name)) return "has the name of a group of the bank; give it another";
   for (const Nuisance& n : q.nuisances) {
     if (n.name == c.name) return "is the name of a nuisance, too; give that another 'name'";
     const bool sets = std::any_of(c.set.begin(), c.set.end(), [&](const std::string& s) { return s.starts_with(n.path + "="); });

@@ -9,13 +9,9 @@
 #include <utility>
 
 #include "kernel/config/error.hpp"
-#include "studies/calibrate/observation.hpp"
-#include "studies/inspect/estimate.hpp"
 
 namespace millscope::diagnose {
 namespace {
-
-using studies::kNormal90;
 
 constexpr std::size_t kForSquare = 3;      // different shares
 constexpr std::size_t kRunsForSquare = 6;  // fewer leave the far end of the range open
@@ -72,6 +68,7 @@ Features::Features(const BankData& data) {
       if (i == j || multiplied(i, j)) products_.emplace_back(i, j);
     }
   }
+  coordinates_ = d;
   base_size_ = 1 + d + static_cast<Index>(products_.size());
   size_ = base_size_;
   for (int j = 0; j < data.candidates; ++j) add_candidate(data, j);
@@ -137,18 +134,19 @@ Surrogate::Surrogate(const BankData& data) : Surrogate(data, Features(data), std
 
 Surrogate::Surrogate(const BankData& data, Features features, const std::vector<bool>& used) : features_(std::move(features)) {
   const auto rows = static_cast<Index>(std::count(used.begin(), used.end(), true));
-  if (rows <= features_.size()) {
-    throw config::UserError(fmt::format("the bank has {} finished runs, its model {} coefficients; extend the bank (bank.base, bank.each)",
-                                        rows, features_.size()));
+  const std::vector<std::vector<Index>> points = points_of(data, used);
+  if (static_cast<Index>(points.size()) <= features_.size()) {
+    throw config::UserError(
+        fmt::format("the bank has finished runs at {} points, its model {} coefficients; extend the bank (bank.base, "
+                    "bank.each)",
+                    points.size(), features_.size()));
   }
   MatrixXd x(rows, features_.size()), y(rows, data.value.cols());
-  std::vector<std::size_t> kept;
-  Index k = 0;
+  Index k = 0, without = 0;
   for (std::size_t r = 0; r < data.rows.size(); ++r) {
     if (!used[r]) continue;
     x.row(k) = features_.all(data.coded(data.rows[r].theta), data.rows[r].effects).transpose();
     y.row(k++) = data.value.row(static_cast<Index>(r));
-    kept.push_back(r);
   }
   const Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr(x);
   coefficients_ = qr.solve(y);
@@ -158,60 +156,17 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
   for (Index i = 0; i < y.cols(); ++i) {  // what is left of an exact column is rounding, whose correlations mean nothing
     if (residual_.col(i).norm() < kRounding * y.col(i).norm()) residual_.col(i).setZero();
   }
-  degrees_ = rows - qr.rank();
+  degrees_ = static_cast<Index>(points.size()) - qr.rank();
   left_out_ = residual_;
-  for (Index r = 0; r < rows; ++r) left_out_.row(r) /= 1 - std::min(kMostLeverage, x.row(r).dot(inverse_ * x.row(r).transpose()));
-  keep_repeated(data, kept);
-}
-
-void Surrogate::keep_repeated(const BankData& data, const std::vector<std::size_t>& rows) {
-  const auto same = [&](const BankRow& a, const BankRow& b) {
-    return a.theta == b.theta && a.effects.size() == b.effects.size() &&
-           std::equal(a.effects.begin(), a.effects.end(), b.effects.begin(),
-                      [](const Effect& e, const Effect& f) { return e.candidate == f.candidate && e.share == f.share; });
-  };
-  std::vector<VectorXd> deviations;
-  std::vector<bool> met(rows.size(), false);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    std::vector<Index> equal;
-    for (std::size_t j = i; j < rows.size(); ++j) {
-      if (met[j] || !same(data.rows[rows[i]], data.rows[rows[j]])) continue;
-      met[j] = true;
-      equal.push_back(static_cast<Index>(rows[j]));
-    }
-    if (equal.size() < 2) continue;
-    VectorXd mean = VectorXd::Zero(data.value.cols());
-    for (const Index r : equal) mean += data.value.row(r).transpose() / static_cast<double>(equal.size());
-    for (const Index r : equal) deviations.emplace_back(data.value.row(r).transpose() - mean);
-    degrees_repeated_ += static_cast<Index>(equal.size()) - 1;
+  k = 0;
+  for (std::size_t r = 0; r < data.rows.size(); ++r) {
+    if (!used[r]) continue;
+    const double leverage = x.row(k).dot(inverse_ * x.row(k).transpose());
+    left_out_.row(k++) /= 1 - std::min(kMostLeverage, leverage);
+    if (data.rows[r].effects.empty()) mean_leverage_ += leverage, ++without;
   }
-  repeated_.resize(static_cast<Index>(deviations.size()), data.value.cols());
-  for (std::size_t r = 0; r < deviations.size(); ++r) repeated_.row(static_cast<Index>(r)) = deviations[r].transpose();
-}
-
-/// ρ̂ = ⟨P_ii/S_ii⟩ with the repeated runs' variances P. Its relative error is √(2/ν*) with ν* = ν n²/Σ R_ij²: ν degrees of freedom of each
-/// observable, and as many observables as the correlations R of S leave independent.
-double Surrogate::chance() const {
-  if (degrees_repeated_ == 0) return 0;
-  const MatrixXd s = residual_covariance();
-  std::vector<Index> usable;
-  for (Index i = 0; i < s.rows(); ++i) {
-    if (residual_.col(i).squaredNorm() > 0) usable.push_back(i);
-  }
-  double sum = 0, correlations = 0;
-  for (const Index i : usable) {
-    sum += repeated_.col(i).squaredNorm() / static_cast<double>(degrees_repeated_) / s(i, i);
-    for (const Index j : usable) correlations += s(i, j) * s(i, j) / (s(i, i) * s(j, j));
-  }
-  const auto n = static_cast<double>(usable.size());
-  const double degrees = static_cast<double>(degrees_repeated_) * n * n / correlations;
-  return n > 0 ? std::min(1.0, sum / n / (1 + kNormal90 * std::sqrt(2 / degrees))) : 0;
-}
-
-MatrixXd Surrogate::error_covariance(double leverage) const { return (1 - chance() + leverage) * residual_covariance(); }
-
-MatrixXd Surrogate::error_covariance() const {
-  return error_covariance(static_cast<double>(features_.base_size()) / static_cast<double>(residual_.rows()));
+  mean_leverage_ /= static_cast<double>(std::max<Index>(1, without));
+  keep_scatter(points, y);
 }
 
 VectorXd Surrogate::at(const VectorXd& coded, const std::vector<Effect>& effects) const {
@@ -231,13 +186,6 @@ double Surrogate::leverage(const VectorXd& coded, const std::vector<Effect>& eff
 double Surrogate::leverage_of(const VectorXd& coded, const std::vector<Effect>& effects) const {
   const VectorXd x = features_.all(coded, effects) - features_.all(coded, {});
   return x.dot(inverse_ * x);
-}
-
-MatrixXd Surrogate::residual_covariance() const {
-  const auto degrees = static_cast<double>(std::max<Index>(1, degrees_));
-  // Rows scaled so that their mean square is the unbiased variance of one run.
-  const MatrixXd scaled = residual_ * std::sqrt(static_cast<double>(residual_.rows()) / degrees);
-  return calibrate::shrunk_covariance(scaled, degrees);
 }
 
 void choose_scales(BankData& data) {

@@ -16,6 +16,8 @@ class Features {
   explicit Features(const BankData& data);
 
   Index size() const { return size_; }
+  Index coordinates() const { return coordinates_; }
+  int candidates() const { return static_cast<int>(first_.size()); }
   Index base_size() const { return base_size_; }
   VectorXd base(const VectorXd& coded) const;
   /// First column of a candidate's block and its length; 0: the bank has no run with it.
@@ -27,7 +29,7 @@ class Features {
  private:
   void add_candidate(const BankData& data, int candidate);
 
-  Index size_ = 0, base_size_ = 0;
+  Index size_ = 0, base_size_ = 0, coordinates_ = 0;
   std::vector<std::pair<Index, Index>> products_;  ///< of coordinates, squares among them
   std::vector<Index> first_, count_;
   std::vector<bool> square_;                  ///< of candidates: enough different shares
@@ -48,26 +50,27 @@ class Surrogate {
   double leverage_of(const VectorXd& coded, const std::vector<Effect>& effects) const;
   const MatrixXd& coefficients() const { return coefficients_; }  ///< features × observables
   const Features& features() const { return features_; }
-  Index degrees() const { return degrees_; }  ///< rows − coefficients
+  Index degrees() const { return degrees_; }  ///< points − coefficients
   /// Row residuals, each from a fit without that row: (y − m)/(1 − h).
   const MatrixXd& left_out() const { return left_out_; }
   /// S, covariance of one run about the surface: the runs' chance and what a quadratic surface cannot follow, correlations shrunk.
   MatrixXd residual_covariance() const;
-  /// ρ, the part of S that is chance, of which a recording has its own instead: what runs of equal parameters and other seeds differ by
-  /// (pure error; Montgomery 2013, ch. 10), over S, in the mean over the observables. The low end of its 90 % interval; 0: none is
-  /// repeated.
-  double chance() const;
-  /// Covariance of the surrogate's error where its leverage is h: (1 − ρ + h) S.
-  MatrixXd error_covariance(double leverage) const;
-  /// The same at the mean leverage of the runs without a candidate.
-  MatrixXd error_covariance() const;
+  /// ρ, the part of S that is chance, of which a recording has its own instead: by what runs of equal parameters and other seeds differ
+  /// (pure error; Montgomery 2013, ch. 10). The low end of its 90 % interval, over all observables or in the span of what coordinates
+  /// and candidates do, whichever is lower: what a surface cannot follow there would pass for an effect. 0: no run is repeated.
+  double chance(const MatrixXd& recording) const;
+  /// Covariance of the surrogate's error, (1 − ρ + h̄) S with the mean leverage h̄ of the runs without a candidate.
+  MatrixXd error_covariance(const MatrixXd& recording) const;
 
  private:
   Features features_;
-  void keep_repeated(const BankData& data, const std::vector<std::size_t>& rows);
+  void keep_scatter(const std::vector<std::vector<Index>>& points, const MatrixXd& y);
+  MatrixXd first_order() const;
 
   MatrixXd coefficients_, inverse_, residual_, left_out_;
-  MatrixXd repeated_;  ///< rows about the mean of those of equal parameters
+  MatrixXd scatter_;   ///< [points, observables]
+  MatrixXd repeated_;  ///< runs about the mean of those at their point
+  double mean_leverage_ = 0;
   Index degrees_ = 0, degrees_repeated_ = 0;
 };
 

@@ -8,6 +8,18 @@ namespace {
 
 constexpr int kSteps = 8;  // of the curve, on each side of zero
 
+/// The priors about θ, as noise-free data of it have them; a freed nuisance keeps its own.
+BankData about(BankData data, const VectorXd& coded, Index freed) {
+  for (Index i = 0; i < coded.size(); ++i) {
+    Coordinate& c = data.theta[static_cast<std::size_t>(i)];
+    if (!c.nuisance() || i == freed) continue;
+    const double before = c.prior_mean;
+    c.prior_mean = c.natural(coded[i]);
+    if (c.logarithmic) c.prior_sigma *= c.prior_mean / before;  // the weight is that of the logarithm
+  }
+  return data;
+}
+
 }  // namespace
 
 Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const MatrixXd& whitening, const VectorXd& coded, int rival)
@@ -16,7 +28,7 @@ Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const
       whitening_(whitening),
       coded_(coded),
       rival_(problem.rivals[static_cast<std::size_t>(rival)]),
-      base_(problem.data, surrogate, whitening, {}, {}) {
+      base_(about(problem.data, coded, rival_.freed), surrogate, whitening, {}, {}) {
   const auto n = static_cast<double>(whitening.rows());
   run_covariance_ = whitening * surrogate.residual_covariance() * whitening.transpose();
   run_noise_ = run_covariance_.trace() * (n - static_cast<double>(coded.size())) / n;
@@ -57,19 +69,10 @@ VectorXd Visibility::observed(double share) const {
   return surrogate_.at(moved);
 }
 
-double Visibility::prior(const VectorXd& coded) const {
-  double sum = 0;
-  for (Index i = 0; i < coded.size(); ++i) {
-    const Coordinate& c = problem_.data.theta[static_cast<std::size_t>(i)];
-    if (i != rival_.freed && c.nuisance()) sum += std::pow((coded[i] - c.coded(c.prior_mean)) * c.prior_weight(), 2);
-  }
-  return sum;
-}
-
 Visibility::Rest Visibility::rest(double share) const {
   const VectorXd y = observed(share);
   const FitResult fit = base_.fit(y);
-  return {whitening_ * (y - surrogate_.at(fit.coded)), fit.q - prior(coded_)};
+  return {whitening_ * (y - surrogate_.at(fit.coded)), fit.q};
 }
 
 double Visibility::high(double share) const {

@@ -1,7 +1,7 @@
 // Whether data can show an effect at all: how far its noise-free data stay from the base, however that is retuned.
 //
-//   λ(φ) = min over u of [(m(θ, φ) − m(u))ᵀ Σ⁻¹ (m(θ, φ) − m(u)) + P(u)] − P(θ) − ε,  κ = √(λ / (sᵀ Σ⁻¹ s − ε)):  0 is fully concealed
-//   s = m(θ, full strength) − m(θ, none),  P: the nuisances' priors
+//   λ(φ) = min over u of [(m(θ, φ) − m(u))ᵀ Σ⁻¹ (m(θ, φ) − m(u)) + P(u)] − ε,  κ = √(λ / (sᵀ Σ⁻¹ s − ε)):  0 is fully concealed
+//   s = m(θ, full strength) − m(θ, none),  P: the nuisances' priors, about θ
 //
 // The base is refitted in earnest: where retuning moves it far, its own curvature imitates more than its slope at θ would. At the fitted θ
 // and strength λ is what ΔQ is on average.
@@ -38,7 +38,6 @@ class Visibility {
   };
   Rest rest(double share) const;
   VectorXd observed(double share) const;
-  double prior(const VectorXd& coded) const;
   double noise(double share) const;
   double high(double share) const;
   double none() const;               ///< share at which there is no effect

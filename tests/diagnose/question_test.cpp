@@ -205,6 +205,10 @@ TEST_CASE("what no value of the case stands behind is refused before anything is
              StartsWith("study.yaml:10: hypothesis 'own'") && Contains("1.8"));
   CHECK_THAT(refused("nuisances:\n  fill.fillin: {range: [30 %, 32 %], sigma: 1 %}\n"),
              StartsWith("study.yaml:10: nuisance 'fillin'") && Contains("filling"));
+  CHECK_THAT(refused("nuisances:\n  fill.filling: {name: again, range: [30 %, 32 %], sigma: 1 %}\n"),
+             StartsWith("study.yaml:10: nuisance 'again'") && Contains("group of the bank"));
+  CHECK_THAT(refused("hypotheses:\n  base: {sentence: It is so., path: pairs.glass~glass.restitution, without: 0.8, range: [0.2, 0.8]}\n"),
+             StartsWith("study.yaml:10: hypothesis 'base'") && Contains("group of the bank"));
 }
 
 TEST_CASE("a parameter that gives no case is refused before anything is simulated") {
