@@ -130,7 +130,7 @@ TEST_CASE("lambda at a share lies between those of the diagnosis, its root evenl
   CHECK(bent.lambda(0.75) == Approx(20.25));
   CHECK(bent.lambda(-0.5) == Approx(9));
   CHECK(bent.lambda(1) == Approx(25));
-  CHECK(Tested{}.lambda(0.5) == 0);  // it was screened out
+  CHECK(Tested{}.lambda(0.5) == 0);  // nothing is known of it
 }
 
 TEST_CASE("every diagnosed set stands in the confusion matrix once") {
