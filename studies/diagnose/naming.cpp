@@ -84,9 +84,10 @@ class Namer {
     out_.base = pseudo_.fit({});
     std::vector<Choice> choices{{}};
     for (std::size_t j = 0; j < count(); ++j) choices.push_back({static_cast<int>(j)});
-    const auto drawn = pseudo_.draw(pseudo_.truth({}, out_.base), choices, o_.draws, 1);
+    const auto drawn = pseudo_.draw(pseudo_.truth({}, out_.base), choices, {o_.draws, 1});
     out_.base_p = p_of(collect(drawn, [](const auto& d) { return d.fit[0].q; }), out_.base.q);
-    out_.base_theta = theta_intervals(p_.data, out_.base, drawn, 0);
+    out_.base_theta =
+        theta_intervals(p_.data, out_.base, pseudo_.draw(pseudo_.truth({}, out_.base), {{}}, {o_.rival_draws, 2, Deviation::whole}), 0);
     for (Index i = 0; i < out_.base.coded.size(); ++i) {
       const Coordinate& c = p_.data.theta[static_cast<std::size_t>(i)];
       if (std::fabs(out_.base.coded[i]) > kAtLimit) out_.at_limit.push_back(c.name);
@@ -175,11 +176,14 @@ class Namer {
   /// Intervals and goodness from draws under candidate j.
   void look_closer(int j) {
     Judged& judged = out_.judged[static_cast<std::size_t>(j)];
-    const auto drawn = pseudo_.draw(pseudo_.truth({j}, judged.fit), {{j}}, o_.rival_draws, 100 + static_cast<std::uint64_t>(j));
-    judged.goodness_p = p_of(collect(drawn, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
-    judged.theta = theta_intervals(p_.data, judged.fit, drawn, 0);
+    const Truth truth = pseudo_.truth({j}, judged.fit);
+    const auto stream = static_cast<std::uint64_t>(j);
+    const auto strict = pseudo_.draw(truth, {{j}}, {o_.rival_draws, 100 + stream});
+    judged.goodness_p = p_of(collect(strict, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
+    const auto wide = pseudo_.draw(truth, {{j}}, {o_.rival_draws, 200 + stream, Deviation::whole});
+    judged.theta = theta_intervals(p_.data, judged.fit, wide, 0);
     if (!judged.fit.shares.empty())
-      judged.share = interval(collect(drawn, [](const auto& d) { return d.fit[0].shares[0]; }), judged.fit.shares[0]);
+      judged.share = interval(collect(wide, [](const auto& d) { return d.fit[0].shares[0]; }), judged.fit.shares[0]);
   }
 
   /// Under every other candidate: how often the best of all, whichever that is in the draw, would seem better by so much.
@@ -195,17 +199,14 @@ class Namer {
       for (std::size_t j = 0; j < count(); ++j) {
         if (j != k) choices.push_back({static_cast<int>(j)});
       }
-      const auto drawn = pseudo_.draw(pseudo_.truth(own, judged.fit), choices, o_.rival_draws, 300 + k);
+      const auto drawn = pseudo_.draw(pseudo_.truth(own, judged.fit), choices, {o_.rival_draws, 300 + k});
       const auto lead = collect(drawn, [](const auto& d) {
         double least = d.fit[0].q;
         for (const FitResult& fit : d.fit) least = std::min(least, fit.q);
         return d.fit[0].q - least;
       });
       judged.against_best_p = p_of(lead, excess);
-      judged.goodness_p = p_of(collect(drawn, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
-      judged.theta = theta_intervals(p_.data, judged.fit, drawn, 0);
-      if (!judged.fit.shares.empty())
-        judged.share = interval(collect(drawn, [](const auto& d) { return d.fit[0].shares[0]; }), judged.fit.shares[0]);
+      look_closer(static_cast<int>(k));
       if (judged.against_best_p > o_.level) out_.kept.push_back(static_cast<int>(k));
     }
   }
@@ -230,7 +231,7 @@ class Namer {
     }
     if (others.empty()) return;
     const FitResult& alone = out_.judged[static_cast<std::size_t>(first)].fit;
-    const auto drawn = pseudo_.draw(pseudo_.truth({first}, alone), choices, o_.rival_draws, 500);
+    const auto drawn = pseudo_.draw(pseudo_.truth({first}, alone), choices, {o_.rival_draws, 500});
     const auto gain = collect(drawn, [](const auto& d) {
       double most = 0;
       for (std::size_t k = 1; k < d.fit.size(); ++k) most = std::max(most, d.fit[0].q - d.fit[k].q);
@@ -246,9 +247,9 @@ class Namer {
     pair.p = p_of(gain, most);
     const FitResult& second = out_.judged[static_cast<std::size_t>(pair.second)].fit;
     const Choice own{pair.second}, both{first, pair.second};
-    const auto reverse = pseudo_.draw(pseudo_.truth(own, second), {own, both}, o_.rival_draws, 600);
+    const auto reverse = pseudo_.draw(pseudo_.truth(own, second), {own, both}, {o_.rival_draws, 600});
     pair.p_first = p_of(collect(reverse, [](const auto& d) { return d.fit[0].q - d.fit[1].q; }), second.q - pair.fit.q);
-    const auto under = pseudo_.draw(pseudo_.truth(both, pair.fit), {both}, o_.rival_draws, 700);
+    const auto under = pseudo_.draw(pseudo_.truth(both, pair.fit), {both}, {o_.rival_draws, 700});
     pair.goodness_p = p_of(collect(under, [](const auto& d) { return d.fit[0].q; }), pair.fit.q);
     out_.pairs.push_back(pair);
   }

@@ -7,7 +7,8 @@
 //
 // r is a run of the bank, without an effect or with that of the model, taken out of the surrogate that made and that fits y*; h are
 // leverages; ρ is the part of a run's deviation that is chance of its own, of which the recording's is ε; nuisances in θ̂* are drawn from
-// their priors. So the emulator's error is part of every p-value.
+// their priors. So the emulator's error is part of every p-value. Tests use this c. Intervals have
+// ρ = 0 there: what makes a model wrong in a recording is not all in the bank (docs/challenge.md has the coverage with and without).
 #pragma once
 
 #include <cmath>

@@ -95,26 +95,27 @@ VectorXd PseudoData::drawn_theta(const Truth& truth, emulate::Random& random) co
   return u;
 }
 
-VectorXd PseudoData::pseudo_recording(const LeftOut& left, const Truth& truth, const MatrixXd& noise, emulate::Random& random) const {
+VectorXd PseudoData::pseudo_recording(const LeftOut& left, const Truth& truth, double chance, const MatrixXd& noise,
+                                      emulate::Random& random) const {
   const VectorXd& u = truth.coded;
-  const double scale = std::sqrt((1 - chance_ + left.surrogate->leverage(u, truth.effects)) / (1 + left.leverage));
+  const double scale = std::sqrt((1 - chance + left.surrogate->leverage(u, truth.effects)) / (1 + left.leverage));
   return left.surrogate->at(u, truth.effects) + scale * left.deviation + noise * random.normals(left.deviation.size());
 }
 
-std::vector<PseudoData::Drawn> PseudoData::draw(const Truth& truth, const std::vector<Choice>& choices, int draws,
-                                                std::uint64_t stream) const {
+std::vector<PseudoData::Drawn> PseudoData::draw(const Truth& truth, const std::vector<Choice>& choices, const Draws& how) const {
+  const double chance = how.deviation == Deviation::whole ? 0 : chance_;
   const std::vector<const LeftOut*> runs = fitting(truth);
   std::vector<std::vector<Model>> models;  // [left out][choices]
   for (const LeftOut* left : runs) {
     models.emplace_back();
     for (const Choice& choice : choices) models.back().push_back(model(*left->surrogate, choice));
   }
-  std::vector<Drawn> out(static_cast<std::size_t>(draws));
+  std::vector<Drawn> out(static_cast<std::size_t>(how.count));
   studies::for_each_item(out.size(), studies::worker_count(options_.threads, out.size()), [&](std::size_t b, std::size_t) {
-    emulate::Random random(options_.seed + stream, b);
+    emulate::Random random(options_.seed + how.stream, b);
     const std::size_t r = b / laws() % runs.size();
     out[b].truth = drawn_theta(truth, random);
-    const VectorXd y = pseudo_recording(*runs[r], {out[b].truth, truth.effects, truth.freed}, noise_factors_[b % laws()], random);
+    const VectorXd y = pseudo_recording(*runs[r], {out[b].truth, truth.effects, truth.freed}, chance, noise_factors_[b % laws()], random);
     for (const Model& m : models[r]) out[b].fit.push_back(m.fit(y));
     const FitResult& first = out[b].fit.front();
     out[b].residual = y - runs[r]->surrogate->at(first.coded, models[r].front().effects(first));

@@ -16,6 +16,9 @@ struct Truth {
   Index freed = -1;  ///< a nuisance that stays where it was fitted; the others are drawn from their priors
 };
 
+/// How much of a left-out run's deviation a pseudo-recording has beside the recording's noise: what the surrogate may be wrong by, or all.
+enum class Deviation { surrogate_error, whole };
+
 /// What is refitted: some rivals of the problem switched on together; none: the base.
 using Choice = std::vector<int>;
 
@@ -39,7 +42,12 @@ class PseudoData {
     VectorXd truth;     ///< coded θ, nuisances as they were drawn
     VectorXd residual;  ///< of the first choice: y* − m
   };
-  std::vector<Drawn> draw(const Truth& truth, const std::vector<Choice>& choices, int draws, std::uint64_t stream) const;
+  struct Draws {
+    int count = 0;
+    std::uint64_t stream = 0;
+    Deviation deviation = Deviation::surrogate_error;
+  };
+  std::vector<Drawn> draw(const Truth& truth, const std::vector<Choice>& choices, const Draws& how) const;
 
  private:
   struct LeftOut {
@@ -52,7 +60,7 @@ class PseudoData {
   Model model(const Surrogate& surrogate, const Choice& choice) const;
   /// θ of the truth with nuisances from their priors.
   VectorXd drawn_theta(const Truth& truth, emulate::Random& random) const;
-  VectorXd pseudo_recording(const LeftOut& left, const Truth& truth, const MatrixXd& noise, emulate::Random& random) const;
+  VectorXd pseudo_recording(const LeftOut& left, const Truth& truth, double chance, const MatrixXd& noise, emulate::Random& random) const;
 
   const Problem& problem_;
   const NamingOptions& options_;
