@@ -106,7 +106,7 @@ double Model::descend(VectorXd& t, const Target& target) const {
     VectorXd gradient = j.transpose() * r;
     MatrixXd normal = j.transpose() * j;
     for (Index i = 0; i < t.size(); ++i) {
-      const bool held = (t[i] <= low_[i] && gradient[i] > 0) || (t[i] >= high_[i] && gradient[i] < 0);
+      const bool held = low_[i] == high_[i] || (t[i] <= low_[i] && gradient[i] > 0) || (t[i] >= high_[i] && gradient[i] < 0);
       if (held) normal.row(i).setZero(), normal.col(i).setZero(), normal(i, i) = 1, gradient[i] = 0;
     }
     bool better = false;
@@ -129,9 +129,9 @@ double Model::descend(VectorXd& t, const Target& target) const {
 }
 
 std::vector<VectorXd> Model::starts() const {
-  std::vector<VectorXd> out{prior_};
+  std::vector<VectorXd> out{prior_.cwiseMax(low_).cwiseMin(high_)};
   for (Index i = 0; i < low_.size(); ++i) {
-    if (weight_[i] > 0) continue;
+    if (weight_[i] > 0 || low_[i] == high_[i]) continue;
     std::vector<VectorXd> more;
     for (const VectorXd& t : out) {
       for (int level = 0; level < kLevels; ++level) {
@@ -167,6 +167,12 @@ FitResult Model::fit(const VectorXd& observed) const {
     best.shares.assign(t.data() + theta_, t.data() + t.size());
   }
   return best;
+}
+
+FitResult Model::fit_holding(Index coordinate, double value, const VectorXd& observed) const {
+  Model held = *this;
+  held.low_[coordinate] = held.high_[coordinate] = value;
+  return held.fit(observed);
 }
 
 std::vector<Effect> Model::effects(const FitResult& fit) const {

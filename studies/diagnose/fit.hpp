@@ -36,6 +36,10 @@ class Model {
         const std::vector<ShareRange>& ranges, Index freed = -1);
 
   FitResult fit(const VectorXd& observed) const;
+  /// The same with one of θ and the shares, in that order, held at a value within its limits.
+  FitResult fit_holding(Index coordinate, double value, const VectorXd& observed) const;
+  double low(Index coordinate) const { return low_[coordinate]; }
+  double high(Index coordinate) const { return high_[coordinate]; }
   const std::vector<int>& active() const { return active_; }
   std::vector<Effect> effects(const FitResult& fit) const;
 

@@ -26,12 +26,6 @@ double tail(const std::vector<double>& draws, double value, std::size_t laws) {
   return largest;
 }
 
-Interval interval(std::vector<double> draws, double value) {
-  std::sort(draws.begin(), draws.end());
-  const auto at = [&](double part) { return draws[static_cast<std::size_t>(part * static_cast<double>(draws.size() - 1))]; };
-  return {value, at(0.05), at(0.95)};
-}
-
 template <class Of>
 std::vector<double> collect(const std::vector<PseudoData::Drawn>& drawn, Of of) {
   std::vector<double> out;
@@ -39,18 +33,12 @@ std::vector<double> collect(const std::vector<PseudoData::Drawn>& drawn, Of of) 
   return out;
 }
 
-/// Natural parameters about `fit`, by how far fit number `k` of every draw is from what was drawn. Where the draws' truth is the fit itself
-/// their fits are taken as they are, so that an interval at the end of a range does not shrink to it.
-std::vector<Interval> theta_intervals(const BankData& data, const FitResult& fit, const std::vector<PseudoData::Drawn>& drawn,
-                                      std::size_t k) {
+/// The intervals of θ among those of all coordinates, in natural units.
+std::vector<Interval> of_theta(const BankData& data, const std::vector<Interval>& coded) {
   std::vector<Interval> out;
-  for (Index i = 0; i < fit.coded.size(); ++i) {
-    const Coordinate& c = data.theta[static_cast<std::size_t>(i)];
-    const auto about = [&](const auto& d) {
-      const double drawn_from = d.truth[i], found = d.fit[k].coded[i];
-      return c.natural(drawn_from == fit.coded[i] ? found : std::clamp(fit.coded[i] + drawn_from - found, -1.0, 1.0));
-    };
-    out.push_back(interval(collect(drawn, about), c.natural(fit.coded[i])));
+  for (std::size_t i = 0; i < data.theta.size(); ++i) {
+    const Coordinate& c = data.theta[i];
+    out.push_back({c.natural(coded[i].value), c.natural(coded[i].low90), c.natural(coded[i].high90)});
   }
   return out;
 }
@@ -86,8 +74,7 @@ class Namer {
     for (std::size_t j = 0; j < count(); ++j) choices.push_back({static_cast<int>(j)});
     const auto drawn = pseudo_.draw(pseudo_.truth({}, out_.base), choices, {o_.draws, 1});
     out_.base_p = p_of(collect(drawn, [](const auto& d) { return d.fit[0].q; }), out_.base.q);
-    out_.base_theta =
-        theta_intervals(p_.data, out_.base, pseudo_.draw(pseudo_.truth({}, out_.base), {{}}, {o_.rival_draws, 2, Deviation::whole}), 0);
+    out_.base_theta = of_theta(p_.data, pseudo_.intervals({}, out_.base, {o_.rival_draws, 2, Deviation::whole, true}));
     for (Index i = 0; i < out_.base.coded.size(); ++i) {
       const Coordinate& c = p_.data.theta[static_cast<std::size_t>(i)];
       if (std::fabs(out_.base.coded[i]) > kAtLimit) out_.at_limit.push_back(c.name);
@@ -180,10 +167,9 @@ class Namer {
     const auto stream = static_cast<std::uint64_t>(j);
     const auto strict = pseudo_.draw(truth, {{j}}, {o_.rival_draws, 100 + stream});
     judged.goodness_p = p_of(collect(strict, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
-    const auto wide = pseudo_.draw(truth, {{j}}, {o_.rival_draws, 200 + stream, Deviation::whole});
-    judged.theta = theta_intervals(p_.data, judged.fit, wide, 0);
-    if (!judged.fit.shares.empty())
-      judged.share = interval(collect(wide, [](const auto& d) { return d.fit[0].shares[0]; }), judged.fit.shares[0]);
+    const std::vector<Interval> found = pseudo_.intervals({j}, judged.fit, {o_.rival_draws, 200 + stream, Deviation::whole, true});
+    judged.theta = of_theta(p_.data, found);
+    if (!judged.fit.shares.empty()) judged.share = found[p_.data.theta.size()];
   }
 
   /// Under every other candidate: how often the best of all, whichever that is in the draw, would seem better by so much.

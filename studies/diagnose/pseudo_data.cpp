@@ -13,6 +13,7 @@ namespace millscope::diagnose {
 namespace {
 
 constexpr std::size_t kLeastBase = 8;
+constexpr std::size_t kEnoughWith = 12;  // runs with an effect, so that a draw does not hang on a few of them
 
 std::vector<ShareRange> ranges_of(const Problem& problem) {
   std::vector<ShareRange> ranges(static_cast<std::size_t>(problem.data.candidates));
@@ -53,15 +54,18 @@ PseudoData::PseudoData(const Problem& problem, const NamingOptions& options)
         fmt::format("the bank has {} finished runs without an effect, the null needs {}; raise bank.base", base, kLeastBase));
 }
 
-/// Runs whose deviations stand for the surrogate's error under a truth: those without an effect, and those with the effects that it has.
+/// Runs whose deviations stand for the surrogate's error under a truth: those with the effects that it has, about which it may err by more
+/// than without any; where they are few, and where it has none, those without an effect as well.
 std::vector<const PseudoData::LeftOut*> PseudoData::fitting(const Truth& truth) const {
-  std::vector<const LeftOut*> out;
+  std::vector<const LeftOut*> with, without;
   for (const LeftOut& left : left_out_) {
     const bool has =
         std::any_of(truth.effects.begin(), truth.effects.end(), [&](const Effect& e) { return e.candidate == left.candidate; });
-    if (left.candidate < 0 || has) out.push_back(&left);
+    if (has) with.push_back(&left);
+    if (left.candidate < 0) without.push_back(&left);
   }
-  return out;
+  if (with.size() < kEnoughWith) with.insert(with.begin(), without.begin(), without.end());
+  return with;
 }
 
 Model PseudoData::model(const Surrogate& surrogate, const Choice& choice) const {
@@ -118,6 +122,13 @@ std::vector<PseudoData::Drawn> PseudoData::draw(const Truth& truth, const std::v
     const VectorXd y = pseudo_recording(*runs[r], {out[b].truth, truth.effects, truth.freed}, chance, noise_factors_[b % laws()], random);
     for (const Model& m : models[r]) out[b].fit.push_back(m.fit(y));
     const FitResult& first = out[b].fit.front();
+    if (how.rises) {
+      std::vector<double> shares;
+      for (const Effect& e : truth.effects) shares.push_back(e.share);
+      const VectorXd t = coordinates_of(out[b].truth, shares);
+      out[b].rise.resize(t.size());
+      for (Index i = 0; i < t.size(); ++i) out[b].rise[i] = models[r].front().fit_holding(i, t[i], y).q - first.q;
+    }
     out[b].residual = y - runs[r]->surrogate->at(first.coded, models[r].front().effects(first));
   });
   return out;

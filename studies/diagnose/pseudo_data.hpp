@@ -19,6 +19,9 @@ struct Truth {
 /// How much of a left-out run's deviation a pseudo-recording has beside the recording's noise: what the surrogate may be wrong by, or all.
 enum class Deviation { surrogate_error, whole };
 
+/// θ and shares one after the other, as `Model` counts them.
+VectorXd coordinates_of(const VectorXd& coded, const std::vector<double>& shares);
+
 /// What is refitted: some rivals of the problem switched on together; none: the base.
 using Choice = std::vector<int>;
 
@@ -41,13 +44,18 @@ class PseudoData {
     std::vector<FitResult> fit;
     VectorXd truth;     ///< coded θ, nuisances as they were drawn
     VectorXd residual;  ///< of the first choice: y* − m
+    VectorXd rise;      ///< of its Q when one of θ and the shares is held at its truth; empty unless asked for
   };
   struct Draws {
     int count = 0;
     std::uint64_t stream = 0;
     Deviation deviation = Deviation::surrogate_error;
+    bool rises = false;
   };
   std::vector<Drawn> draw(const Truth& truth, const std::vector<Choice>& choices, const Draws& how) const;
+
+  /// 90 % intervals of θ and the shares of a fit to the observations, in coded units (intervals.cpp).
+  std::vector<Interval> intervals(const Choice& choice, const FitResult& fit, const Draws& how) const;
 
  private:
   struct LeftOut {

@@ -53,8 +53,9 @@ class Surrogate {
   Index degrees() const { return degrees_; }  ///< points − coefficients
   /// Row residuals, each from a fit without that row: (y − m)/(1 − h).
   const MatrixXd& left_out() const { return left_out_; }
-  /// S, covariance of one run about the surface: the runs' chance and what a quadratic surface cannot follow, correlations shrunk.
-  MatrixXd residual_covariance() const;
+  /// S, covariance of one run about the surface: the runs' chance and what a quadratic surface cannot follow, correlations shrunk to those
+  /// of the recording.
+  MatrixXd residual_covariance(const MatrixXd& recording) const;
   /// ρ, the part of S that is chance, of which a recording has its own instead: by what runs of equal parameters and other seeds differ
   /// (pure error; Montgomery 2013, ch. 10). The low end of its 90 % interval, over all observables or in the span of what coordinates
   /// and candidates do, whichever is lower: what a surface cannot follow there would pass for an effect. 0: no run is repeated.

@@ -46,18 +46,23 @@ void Surrogate::keep_scatter(const std::vector<std::vector<Index>>& points, cons
   }
 }
 
-MatrixXd Surrogate::residual_covariance() const {
+/// Correlations are shrunk in coordinates in which the recording's noise has none: a run's chance is correlated much as that is, so that
+/// there is less to lose than between the observables themselves.
+MatrixXd Surrogate::residual_covariance(const MatrixXd& recording) const {
   const auto degrees = static_cast<double>(std::max<Index>(1, degrees_));
+  const MatrixXd l = factor(recording);
   // Rows scaled so that their mean square is the unbiased variance of one run.
   const MatrixXd scaled = scatter_ * std::sqrt(static_cast<double>(scatter_.rows()) / degrees);
-  return calibrate::shrunk_covariance(scaled, degrees);
+  const MatrixXd apart = l.triangularView<Eigen::Lower>().solve(scaled.transpose()).transpose();
+  return l * calibrate::shrunk_covariance(apart, degrees) * l.transpose();
 }
 
 /// ρ̂ = tr P/tr S in noise units, with the covariance P of repeated runs. Its relative error is √(2/ν*), ν* = ν (tr S)²/tr S²: ν degrees of
 /// freedom of each observable, and as many observables as their correlations leave independent.
 double Surrogate::chance(const MatrixXd& recording) const {
   if (degrees_repeated_ == 0) return 0;
-  const MatrixXd s = residual_covariance(), w = whitener(recording + s), white = w * s * w.transpose(), chance = repeated_ * w.transpose();
+  const MatrixXd s = residual_covariance(recording), w = whitener(recording + s), white = w * s * w.transpose(),
+                 chance = repeated_ * w.transpose();
   const auto low_end = [&](const MatrixXd& basis) {
     const MatrixXd all = basis.transpose() * white * basis;
     const double p = (chance * basis).squaredNorm() / static_cast<double>(degrees_repeated_), trace = all.trace();
@@ -84,7 +89,7 @@ MatrixXd Surrogate::first_order() const {
 }
 
 MatrixXd Surrogate::error_covariance(const MatrixXd& recording) const {
-  return (1 - chance(recording) + mean_leverage_) * residual_covariance();
+  return (1 - chance(recording) + mean_leverage_) * residual_covariance(recording);
 }
 
 }  // namespace millscope::diagnose

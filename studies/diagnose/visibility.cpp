@@ -30,7 +30,7 @@ Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const
       rival_(problem.rivals[static_cast<std::size_t>(rival)]),
       base_(about(problem.data, coded, rival_.freed), surrogate, whitening, {}, {}) {
   const auto n = static_cast<double>(whitening.rows());
-  run_covariance_ = whitening * surrogate.residual_covariance() * whitening.transpose();
+  run_covariance_ = whitening * surrogate.residual_covariance(problem.covariance) * whitening.transpose();
   run_noise_ = run_covariance_.trace() * (n - static_cast<double>(coded.size())) / n;
   const std::vector<double> far = ends();
   const double full = far.front();

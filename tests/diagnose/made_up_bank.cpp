@@ -23,7 +23,8 @@ MatrixXd spread(int runs, int dimensions) {
 }  // namespace
 
 VectorXd truth_of(const MadeUp& mill, const VectorXd& u, const std::vector<double>& s) {
-  VectorXd y = 3 * direction(mill, 1) * u[0] + 2 * direction(mill, 2) * u[1] + 1.5 * direction(mill, 3) * u[2];
+  VectorXd y =
+      3 * direction(mill, 1) * (u[0] - 0.5 * mill.flattens * u[0] * u[0]) + 2 * direction(mill, 2) * u[1] + 1.5 * direction(mill, 3) * u[2];
   y += 0.8 * direction(mill, 4) * u[0] * u[0] + 0.5 * direction(mill, 5) * u[0] * u[1];
   y += s[0] * (2.5 * direction(mill, 6) + 2 * direction(mill, 1)) + 0.5 * s[0] * u[0] * direction(mill, 7);
   y += s[1] * direction(mill, 1);

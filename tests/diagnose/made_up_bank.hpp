@@ -10,6 +10,7 @@ struct MadeUp {
   double run_noise = 0.3, recording_noise = 1.0;
   int conditions = 2, observables = 18;  ///< of each
   double cubic = 0;                      ///< what no quadratic surface follows
+  double flattens = 0;                   ///< 1: bead friction does nothing more at the upper end of its range
 };
 
 /// What the formula says at coded θ with shares of three candidates: "visible" changes what friction cannot, "concealed" does what

@@ -80,7 +80,7 @@ class Site(unittest.TestCase):
                     file = (page.parent / path).resolve() if path else page
                     self.assertTrue(file.exists())
                     if anchor and file in self.pages and not anchor.startswith("mkdocs"):
-                        self.assertIn(f'id="{anchor}"', self.pages[file])
+                        self.assertTrue(f'id="{anchor}"' in self.pages[file], f"{file.name} has no heading for #{anchor}")
 
     def test_no_markup_is_left_in_the_text(self):
         for page, text in self.pages.items():
