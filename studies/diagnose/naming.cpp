@@ -74,7 +74,7 @@ class Namer {
     for (std::size_t j = 0; j < count(); ++j) choices.push_back({static_cast<int>(j)});
     const auto drawn = pseudo_.draw(pseudo_.truth({}, out_.base), choices, {o_.draws, 1});
     out_.base_p = p_of(collect(drawn, [](const auto& d) { return d.fit[0].q; }), out_.base.q);
-    out_.base_theta = of_theta(p_.data, pseudo_.intervals({}, out_.base, {o_.rival_draws, 2, Deviation::whole, true}));
+    out_.base_theta = of_theta(p_.data, pseudo_.intervals({}, out_.base, o_.rival_draws, 2));
     for (Index i = 0; i < out_.base.coded.size(); ++i) {
       const Coordinate& c = p_.data.theta[static_cast<std::size_t>(i)];
       if (std::fabs(out_.base.coded[i]) > kAtLimit) out_.at_limit.push_back(c.name);
@@ -167,7 +167,7 @@ class Namer {
     const auto stream = static_cast<std::uint64_t>(j);
     const auto strict = pseudo_.draw(truth, {{j}}, {o_.rival_draws, 100 + stream});
     judged.goodness_p = p_of(collect(strict, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
-    const std::vector<Interval> found = pseudo_.intervals({j}, judged.fit, {o_.rival_draws, 200 + stream, Deviation::whole, true});
+    const std::vector<Interval> found = pseudo_.intervals({j}, judged.fit, o_.rival_draws, 200 + stream);
     judged.theta = of_theta(p_.data, found);
     if (!judged.fit.shares.empty()) judged.share = found[p_.data.theta.size()];
   }
@@ -192,7 +192,7 @@ class Namer {
         return d.fit[0].q - least;
       });
       judged.against_best_p = p_of(lead, excess);
-      look_closer(static_cast<int>(k));
+      if (judged.runs > 0 || p_.rivals[k].candidate < 0) look_closer(static_cast<int>(k));
       if (judged.against_best_p > o_.level) out_.kept.push_back(static_cast<int>(k));
     }
   }

@@ -3,12 +3,13 @@
 //
 // A pseudo-recording under a model with fitted θ̂ (and shares) is
 //
-//   y* = m₋r(θ̂*) + c (y_r − m₋r(θ_r)) + ε,   ε ~ recording's covariance,  c² = (1 − ρ + h(θ̂))/(1 + h(θ_r))
+//   y* = m₋r(θ̂*) + c (y_r − m₋r(θ_r)) + ε,   ε ~ recording's covariance,  c² = v(ŝ) (1 − ρ + h(θ̂))/(v(s_r) (1 + h(θ_r)))
 //
 // r is a run of the bank, without an effect or with that of the model, taken out of the surrogate that made and that fits y*; h are
-// leverages; ρ is the part of a run's deviation that is chance of its own, of which the recording's is ε; nuisances in θ̂* are drawn from
-// their priors. So the emulator's error is part of every p-value. Tests use this c. Intervals have
-// ρ = 0 there: what makes a model wrong in a recording is not all in the bank (docs/challenge.md has the coverage with and without).
+// leverages; v is the variance of the surrogate's error with an effect over that without; ρ is the part of a run's deviation that is chance
+// of its own, of which the recording's is ε; nuisances in θ̂* are drawn from their priors. So the emulator's error is part of every p-value.
+// Tests use this c. Intervals have ρ = 0 there, and runs with the model's effect alone where they are enough: what makes a model wrong in a
+// recording is not all in the bank (docs/challenge.md has the coverage).
 #pragma once
 
 #include <cmath>

@@ -13,7 +13,8 @@ namespace millscope::diagnose {
 namespace {
 
 constexpr std::size_t kLeastBase = 8;
-constexpr std::size_t kEnoughWith = 12;  // runs with an effect, so that a draw does not hang on a few of them
+constexpr std::size_t kEnoughWith = 12;  // runs with an effect, for intervals from them alone
+constexpr double kFaint = 0.1;           // of a share: the bank has no runs with less
 
 std::vector<ShareRange> ranges_of(const Problem& problem) {
   std::vector<ShareRange> ranges(static_cast<std::size_t>(problem.data.candidates));
@@ -45,27 +46,46 @@ PseudoData::PseudoData(const Problem& problem, const NamingOptions& options)
     const std::vector<Effect>& effects = data.rows[r].effects;
     left.deviation = data.value.row(static_cast<Index>(r)).transpose() - left.surrogate->at(u, effects);
     left.leverage = left.surrogate->leverage(u, effects);
+    left.effects = effects;
     left.candidate = effects.empty() ? -1 : effects.front().candidate;
     base += effects.empty() && data.usual(data.rows[r]) ? 1 : 0;
     left_out_.push_back(std::move(left));
   }
+  weigh_effects();
   if (base < kLeastBase)
     throw config::UserError(
         fmt::format("the bank has {} finished runs without an effect, the null needs {}; raise bank.base", base, kLeastBase));
 }
 
-/// Runs whose deviations stand for the surrogate's error under a truth: those with the effects that it has, about which it may err by more
-/// than without any; where they are few, and where it has none, those without an effect as well.
-std::vector<const PseudoData::LeftOut*> PseudoData::fitting(const Truth& truth) const {
-  std::vector<const LeftOut*> with, without;
+/// With an effect the surrogate may err by more than without: mean whitened square of the left-out deviations over that without one, at
+/// least 1.
+void PseudoData::weigh_effects() {
+  std::vector<double> sum(ranges_.size() + 1, 0.0), runs(sum.size(), 0.0);  // the first: without
   for (const LeftOut& left : left_out_) {
-    const bool has =
-        std::any_of(truth.effects.begin(), truth.effects.end(), [&](const Effect& e) { return e.candidate == left.candidate; });
-    if (has) with.push_back(&left);
-    if (left.candidate < 0) without.push_back(&left);
+    const auto k = static_cast<std::size_t>(left.candidate + 1);
+    sum[k] += (whitener_ * left.deviation).squaredNorm() / (1 + left.leverage), runs[k] += 1;
   }
-  if (with.size() < kEnoughWith) with.insert(with.begin(), without.begin(), without.end());
-  return with;
+  error_with_.assign(ranges_.size(), 1.0);
+  for (std::size_t j = 0; j < ranges_.size(); ++j) {
+    if (runs[j + 1] > 0 && sum[0] > 0) error_with_[j] = std::max(1.0, sum[j + 1] / runs[j + 1] * runs[0] / sum[0]);
+  }
+}
+
+double PseudoData::error_of(const std::vector<Effect>& effects) const {
+  double out = 1;
+  for (const Effect& e : effects) out += std::fabs(e.share) < kFaint ? 0 : error_with_[static_cast<std::size_t>(e.candidate)] - 1;
+  return out;
+}
+
+std::vector<const PseudoData::LeftOut*> PseudoData::runs_for(const Truth& truth, bool for_intervals) const {
+  std::vector<const LeftOut*> out, with;
+  for (const LeftOut& left : left_out_) {
+    const auto has = [&](const Effect& e) { return e.candidate == left.candidate && std::fabs(e.share) >= kFaint; };
+    const bool shares = std::any_of(truth.effects.begin(), truth.effects.end(), has);
+    if (shares) with.push_back(&left);
+    if (shares || left.candidate < 0) out.push_back(&left);
+  }
+  return for_intervals && with.size() >= kEnoughWith ? with : out;
 }
 
 Model PseudoData::model(const Surrogate& surrogate, const Choice& choice) const {
@@ -77,6 +97,12 @@ Model PseudoData::model(const Surrogate& surrogate, const Choice& choice) const 
     if (rival.freed >= 0) freed = rival.freed;
   }
   return {problem_.data, surrogate, whitener_, active, ranges_, freed};
+}
+
+VectorXd Truth::coordinates() const {
+  std::vector<double> shares;
+  for (const Effect& e : effects) shares.push_back(e.share);
+  return coordinates_of(coded, shares);
 }
 
 FitResult PseudoData::fit(const Choice& choice) const { return model(*surrogate_, choice).fit(problem_.observed); }
@@ -102,13 +128,20 @@ VectorXd PseudoData::drawn_theta(const Truth& truth, emulate::Random& random) co
 VectorXd PseudoData::pseudo_recording(const LeftOut& left, const Truth& truth, double chance, const MatrixXd& noise,
                                       emulate::Random& random) const {
   const VectorXd& u = truth.coded;
-  const double scale = std::sqrt((1 - chance + left.surrogate->leverage(u, truth.effects)) / (1 + left.leverage));
+  const double wanted = (1 - chance + left.surrogate->leverage(u, truth.effects)) * error_of(truth.effects);
+  const double scale = std::sqrt(wanted / ((1 + left.leverage) * error_of(left.effects)));
   return left.surrogate->at(u, truth.effects) + scale * left.deviation + noise * random.normals(left.deviation.size());
 }
 
+VectorXd PseudoData::rise(const Model& model, const Truth& truth, double least, const VectorXd& y) {
+  const VectorXd t = truth.coordinates();
+  VectorXd out(t.size());
+  for (Index i = 0; i < t.size(); ++i) out[i] = model.fit_holding(i, t[i], y).q - least;
+  return out;
+}
+
 std::vector<PseudoData::Drawn> PseudoData::draw(const Truth& truth, const std::vector<Choice>& choices, const Draws& how) const {
-  const double chance = how.deviation == Deviation::whole ? 0 : chance_;
-  const std::vector<const LeftOut*> runs = fitting(truth);
+  const std::vector<const LeftOut*> runs = runs_for(truth, how.for_intervals);
   std::vector<std::vector<Model>> models;  // [left out][choices]
   for (const LeftOut* left : runs) {
     models.emplace_back();
@@ -118,18 +151,12 @@ std::vector<PseudoData::Drawn> PseudoData::draw(const Truth& truth, const std::v
   studies::for_each_item(out.size(), studies::worker_count(options_.threads, out.size()), [&](std::size_t b, std::size_t) {
     emulate::Random random(options_.seed + how.stream, b);
     const std::size_t r = b / laws() % runs.size();
-    out[b].truth = drawn_theta(truth, random);
-    const VectorXd y = pseudo_recording(*runs[r], {out[b].truth, truth.effects, truth.freed}, chance, noise_factors_[b % laws()], random);
+    const Truth drawn{drawn_theta(truth, random), truth.effects, truth.freed};
+    const VectorXd y = pseudo_recording(*runs[r], drawn, how.for_intervals ? 0 : chance_, noise_factors_[b % laws()], random);
     for (const Model& m : models[r]) out[b].fit.push_back(m.fit(y));
     const FitResult& first = out[b].fit.front();
-    if (how.rises) {
-      std::vector<double> shares;
-      for (const Effect& e : truth.effects) shares.push_back(e.share);
-      const VectorXd t = coordinates_of(out[b].truth, shares);
-      out[b].rise.resize(t.size());
-      for (Index i = 0; i < t.size(); ++i) out[b].rise[i] = models[r].front().fit_holding(i, t[i], y).q - first.q;
-    }
     out[b].residual = y - runs[r]->surrogate->at(first.coded, models[r].front().effects(first));
+    if (how.for_intervals) out[b].rise = rise(models[r].front(), drawn, first.q, y);
   });
   return out;
 }

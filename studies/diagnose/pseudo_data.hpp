@@ -14,10 +14,8 @@ struct Truth {
   VectorXd coded;
   std::vector<Effect> effects;
   Index freed = -1;  ///< a nuisance that stays where it was fitted; the others are drawn from their priors
+  VectorXd coordinates() const;
 };
-
-/// How much of a left-out run's deviation a pseudo-recording has beside the recording's noise: what the surrogate may be wrong by, or all.
-enum class Deviation { surrogate_error, whole };
 
 /// θ and shares one after the other, as `Model` counts them.
 VectorXd coordinates_of(const VectorXd& coded, const std::vector<double>& shares);
@@ -42,29 +40,35 @@ class PseudoData {
   /// questions apart.
   struct Drawn {
     std::vector<FitResult> fit;
-    VectorXd truth;     ///< coded θ, nuisances as they were drawn
     VectorXd residual;  ///< of the first choice: y* − m
-    VectorXd rise;      ///< of its Q when one of θ and the shares is held at its truth; empty unless asked for
+    VectorXd rise;      ///< of its Q when one of θ and the shares is held at its truth; empty unless for intervals
   };
   struct Draws {
     int count = 0;
     std::uint64_t stream = 0;
-    Deviation deviation = Deviation::surrogate_error;
-    bool rises = false;
+    bool for_intervals = false;  ///< with all of a left-out run's deviation, ρ = 0
   };
   std::vector<Drawn> draw(const Truth& truth, const std::vector<Choice>& choices, const Draws& how) const;
 
   /// 90 % intervals of θ and the shares of a fit to the observations, in coded units (intervals.cpp).
-  std::vector<Interval> intervals(const Choice& choice, const FitResult& fit, const Draws& how) const;
+  std::vector<Interval> intervals(const Choice& choice, const FitResult& fit, int draws, std::uint64_t stream) const;
 
  private:
   struct LeftOut {
     std::unique_ptr<Surrogate> surrogate;
     VectorXd deviation;  ///< y_r − m₋r(θ_r, s_r)
     double leverage = 0;
+    std::vector<Effect> effects;
     int candidate = -1;  ///< that the run has on
   };
-  std::vector<const LeftOut*> fitting(const Truth& truth) const;
+  void weigh_effects();
+  /// Variance of the surrogate's error with effects over that without.
+  double error_of(const std::vector<Effect>& effects) const;
+  /// Runs whose deviations stand for the surrogate's error under a truth: those without an effect, and those with the effects that it has.
+  /// For intervals these alone where there are enough: what the surrogate cannot follow of an effect lies along it.
+  std::vector<const LeftOut*> runs_for(const Truth& truth, bool for_intervals) const;
+  double allowed(const std::vector<Drawn>& drawn, const Model& fitted, Index coordinate) const;
+  static VectorXd rise(const Model& model, const Truth& truth, double least, const VectorXd& y);
   Model model(const Surrogate& surrogate, const Choice& choice) const;
   /// θ of the truth with nuisances from their priors.
   VectorXd drawn_theta(const Truth& truth, emulate::Random& random) const;
@@ -76,7 +80,8 @@ class PseudoData {
   std::unique_ptr<Surrogate> surrogate_;
   std::vector<ShareRange> ranges_;
   std::vector<LeftOut> left_out_;
-  double chance_ = 0;  ///< ρ
+  std::vector<double> error_with_;  ///< of candidates: `error_of` at their strongest
+  double chance_ = 0;               ///< ρ
   MatrixXd covariance_, whitener_;
   std::vector<MatrixXd> noise_factors_;
 };

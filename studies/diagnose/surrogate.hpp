@@ -53,8 +53,8 @@ class Surrogate {
   Index degrees() const { return degrees_; }  ///< points − coefficients
   /// Row residuals, each from a fit without that row: (y − m)/(1 − h).
   const MatrixXd& left_out() const { return left_out_; }
-  /// S, covariance of one run about the surface: the runs' chance and what a quadratic surface cannot follow, correlations shrunk to those
-  /// of the recording.
+  /// S, covariance of one run about the surface: the runs' chance and what a quadratic surface cannot follow. Correlations are shrunk
+  /// in coordinates in which the recording's noise has none.
   MatrixXd residual_covariance(const MatrixXd& recording) const;
   /// ρ, the part of S that is chance, of which a recording has its own instead: by what runs of equal parameters and other seeds differ
   /// (pure error; Montgomery 2013, ch. 10). The low end of its 90 % interval, over all observables or in the span of what coordinates

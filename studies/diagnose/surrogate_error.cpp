@@ -54,7 +54,11 @@ MatrixXd Surrogate::residual_covariance(const MatrixXd& recording) const {
   // Rows scaled so that their mean square is the unbiased variance of one run.
   const MatrixXd scaled = scatter_ * std::sqrt(static_cast<double>(scatter_.rows()) / degrees);
   const MatrixXd apart = l.triangularView<Eigen::Lower>().solve(scaled.transpose()).transpose();
-  return l * calibrate::shrunk_covariance(apart, degrees) * l.transpose();
+  MatrixXd out = l * calibrate::shrunk_covariance(apart, degrees) * l.transpose();
+  for (Index i = 0; i < out.rows(); ++i) {  // what has no scatter gets none of its neighbours'
+    if (scatter_.col(i).isZero(0)) out.row(i).setZero(), out.col(i).setZero();
+  }
+  return out;
 }
 
 /// ρ̂ = tr P/tr S in noise units, with the covariance P of repeated runs. Its relative error is √(2/ν*), ν* = ν (tr S)²/tr S²: ν degrees of

@@ -194,7 +194,7 @@ TEST_CASE("intervals hold a parameter that does less and less towards the end of
   for (std::uint64_t seed = 1; seed <= kMills; ++seed) {
     const Problem p = made_up_problem(mill, truth, {0, 0, 0}, seed);
     const PseudoData pseudo(p, o);
-    const Interval found = pseudo.intervals({}, pseudo.fit({}), {o.rival_draws, 1, Deviation::whole, true}).front();
+    const Interval found = pseudo.intervals({}, pseudo.fit({}), o.rival_draws, 1).front();
     inside += found.holds(truth[0]) ? 1 : 0;
     sure += found.high90 - found.low90 < 1.5 ? 1 : 0;
   }
@@ -202,6 +202,28 @@ TEST_CASE("intervals hold a parameter that does less and less towards the end of
   CHECK(inside >= 49);  // of 54 expected: five fewer in one case of sixty
   CHECK(inside < kMills);
   CHECK(sure > kMills / 2);
+}
+
+TEST_CASE("where an effect is there its model is not rejected and its strength's interval holds it, at the end of its range too") {
+  MadeUp mill;
+  mill.each = 16, mill.again = 8, mill.run_noise = 0.7;
+  NamingOptions o = quick();
+  constexpr int kMills = 40;
+  for (const double share : {0.15, 0.8, 1.0}) {
+    int inside = 0, rejected = 0;
+    for (std::uint64_t seed = 1; seed <= kMills; ++seed) {
+      const Problem p = made_up_problem(mill, point(0.1, -0.2, 0.1), {share, 0, 0}, 100 + seed);
+      const PseudoData pseudo(p, o);
+      const FitResult fit = pseudo.fit({0});
+      inside += pseudo.intervals({0}, fit, o.rival_draws, 1).back().holds(share) ? 1 : 0;
+      int beyond = 0;
+      for (const auto& d : pseudo.draw(pseudo.truth({0}, fit), {{0}}, {o.rival_draws, 2})) beyond += d.fit[0].q >= fit.q ? 1 : 0;
+      rejected += beyond < 0.05 * o.rival_draws ? 1 : 0;
+    }
+    CAPTURE(share, inside, rejected);
+    CHECK(inside >= 31);   // of 36 expected
+    CHECK(rejected <= 6);  // of 2 expected
+  }
 }
 
 TEST_CASE("a filling beyond its prior is a nuisance, not physics") {
