@@ -78,15 +78,20 @@ void append(std::vector<BankPoint>& to, std::vector<BankPoint> more) {
 }
 
 /// Runs of a candidate with a nuisance apart that are too few for their product, or stand beside too few without it, would be taken for
-/// what the candidate does.
-void leave_out_too_few(const Question& q, std::vector<BankRow>& rows, std::vector<VectorXd>& values) {
+/// what the candidate does. One sentence for each candidate that loses runs.
+std::vector<std::string> leave_out_too_few(const Question& q, std::vector<BankRow>& rows, std::vector<VectorXd>& values) {
+  std::vector<std::string> told;
   for (const Group& group : groups_apart(q)) {
     const double usual = *q.coordinates()[static_cast<std::size_t>(group.apart)].usual;
     for (std::size_t j = 0; j < q.candidates.size(); ++j) {
       const auto with = [&](const BankRow& row) { return !row.effects.empty() && row.effects[0].candidate == static_cast<int>(j); };
       const auto together = [&](const BankRow& row) { return with(row) && row.theta[group.apart] != usual; };
       const auto runs = std::count_if(rows.begin(), rows.end(), together), all = std::count_if(rows.begin(), rows.end(), with);
-      if (static_cast<std::size_t>(std::min(runs, all - runs)) >= kLeastTogether) continue;
+      if (runs == 0 || static_cast<std::size_t>(std::min(runs, all - runs)) >= kLeastTogether) continue;
+      told.push_back(
+          fmt::format("{} with another {} was left out: {} and {} simulations with the usual one came to their end, {} of each are needed "
+                      "(bank.each)",
+                      q.candidates[j].name, name_of(q, group), runs, all - runs, kLeastTogether));
       for (std::size_t r = rows.size(); r-- > 0;) {
         if (!together(rows[r])) continue;
         rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(r));
@@ -94,6 +99,7 @@ void leave_out_too_few(const Question& q, std::vector<BankRow>& rows, std::vecto
       }
     }
   }
+  return told;
 }
 
 /// The surrogate has no other runs that tell what a nuisance apart does.
@@ -262,7 +268,7 @@ BankData data_of(const Question& q, const Bank& bank, const std::vector<std::siz
     data.rows.push_back({bank.points[p].theta, bank.points[p].effects});
     values.emplace_back(Eigen::Map<const VectorXd>(row.data(), static_cast<Index>(row.size())));
   }
-  leave_out_too_few(q, data.rows, values);
+  data.left_out = leave_out_too_few(q, data.rows, values);
   if (values.empty()) {
     throw config::UserError(fmt::format("no simulation of the bank has come to its end{}{}; correct the base case or the ranges",
                                         bank.failures.empty() ? "" : "; the first: ", bank.failures.empty() ? "" : bank.failures.front()));

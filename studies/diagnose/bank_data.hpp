@@ -53,8 +53,9 @@ struct BankData {
   std::vector<Coordinate> theta;
   Index candidates = 0;
   std::vector<BankRow> rows;
-  MatrixXd value;              ///< rows × observables; those of all fit conditions side by side
-  std::vector<int> condition;  ///< of each observable
+  MatrixXd value;                          ///< rows × observables; those of all fit conditions side by side
+  std::vector<int> condition;              ///< of each observable
+  std::vector<std::string> left_out = {};  ///< finished runs that are not among the rows, and why
 
   VectorXd coded(const VectorXd& natural) const;
   VectorXd natural(const VectorXd& coded) const;

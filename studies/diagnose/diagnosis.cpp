@@ -104,6 +104,7 @@ Diagnosis diagnose(const Question& question, const Workshop& workshop, const Nam
   if (!d.bank.failures.empty())
     d.notes.push_back(
         fmt::format("{} simulations of the bank failed and are left out, the first: {}", d.bank.failures.size(), d.bank.failures.front()));
+  for (const std::string& line : d.problem.data.left_out) d.notes.push_back(line);
   for (std::size_t c = 0; c < workshop.readings.size(); ++c) {
     if (!workshop.readings[c].empty())
       d.notes.push_back(

@@ -15,6 +15,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kAngle = 15 * kDegree;  // by which a lifter's face may be off
 constexpr double kRipple = 0.1;          // of the speed
 constexpr double kSteepest = 89 * kDegree;
+constexpr double kNarrowTop = 0.1;  // of a lifter's base: no face so shallow that the top would be narrower
 
 constexpr double kTracers = 0.05;   // of the beads: enough to be followed, too few to change how the charge moves
 constexpr double kHeavyTracer = 2;  // times the density of the charge
@@ -46,8 +47,12 @@ void lifters(const config::GeometryCase& g, std::vector<Candidate>& out) {
                  {},
                  {}});
   const double angle = node.has("lifter_face_angle") ? number(node.at("lifter_face_angle")) : 60 * kDegree;
-  const double steep = std::min(angle + kAngle, kSteepest), shallow = angle - kAngle;
-  const double far = steep < angle + kAngle ? shallow : steep;
+  // The top is w - 2 h / tan(angle) wide.
+  const double width = node.has("lifter_width") ? number(node.at("lifter_width")) : 0;
+  const double narrowest = std::atan2(2 * height, (1 - kNarrowTop) * width);
+  const double steep = std::min(angle + kAngle, kSteepest), shallow = std::min(angle, std::max(angle - kAngle, narrowest));
+  const double far = steep - angle < angle - shallow - 1e-9 ? shallow : steep;
+  if (far == angle) return;
   out.push_back({"lifter_face_angle",
                  "The faces of the lifters stand at another angle than the drawing says.",
                  "",

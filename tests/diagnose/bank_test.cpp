@@ -282,9 +282,12 @@ TEST_CASE("a nuisance apart is varied in a group of its own, and costs the other
   const BankData few = data_of(q, fill_bank(q, fragile.workshop(), plan_bank(q), {0}), {0});
   const auto is_rolling = [&](const BankRow& row) { return !row.effects.empty() && row.effects[0].candidate == rolling; };
   CHECK(std::count_if(few.rows.begin(), few.rows.end(), is_rolling) == q.bank.each);
+  REQUIRE(few.left_out.size() == 1);
+  CHECK_THAT(few.left_out[0], Contains("rolling_resistance with another stiffness was left out: 2 and 10 simulations"));
   // Linear, square and × the two frictions.
   MadeUpMill mill(q, {}, {});
   BankData data = data_of(q, fill_bank(q, mill.workshop(), plan_bank(q), {0}), {0});
+  CHECK(data.left_out.empty());
   const Index with = Features(data).base_size();
   CHECK(Features(data).count(rolling) == 5);  // linear, square, × two frictions and × stiffness
   CHECK(Features(few).count(rolling) == 4);

@@ -118,6 +118,12 @@ TEST_CASE("lifters may be worn, and their faces stand otherwise, to both sides")
   const Candidate& s = *find(steep, "lifter_face_angle");
   CHECK_THAT(std::min(s.value(1), s.value(s.range.low)), WithinRel(65 * degree, 1e-9));
   CHECK_THAT(std::max(s.value(1), s.value(s.range.low)), WithinRel(89 * degree, 1e-9));
+  // On a narrow base shallow faces would meet below the top: the range ends where a tenth of the base is left.
+  const Library narrow = library({"geometry.liner.lifter_width=8 mm"});
+  REQUIRE(find(narrow, "lifter_face_angle") != nullptr);
+  const Candidate& n = *find(narrow, "lifter_face_angle");
+  CHECK_THAT(n.value(1), WithinRel(75 * degree, 1e-12));
+  CHECK_THAT(std::tan(n.value(n.range.low)), WithinRel(10 / (0.9 * 8), 1e-9));
   const Library upright = library({"geometry.liner.lifter_face_angle=89 deg"});
   if (const Candidate* u = find(upright, "lifter_face_angle")) CHECK(std::isfinite(u->range.low));
   CHECK(find(library({"geometry.liner.lifters=0"}), "lifter_wear") == nullptr);
