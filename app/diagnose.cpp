@@ -45,7 +45,7 @@ int diagnose_study(const Arguments& arguments) {
   const calibrate::SessionOptions session_of = study_session(options, output);
   calibrate::Session session(question.study, registry, session_of);
   naming.say = session_of.say;
-  const diagnose::Workshop workshop = diagnose::workshop_of(question, registry, session, session_of.say);
+  diagnose::Workshop workshop = diagnose::workshop_of(question, registry, session, session_of.say);
   const diagnose::Diagnosis found = diagnose::diagnose(question, workshop, naming);
   diagnose::write_outputs({question, workshop, found}, output);
   if (!options.has("quiet")) print_found(found, output);

@@ -1,7 +1,12 @@
 #include "studies/calibrate/observation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "kernel/config/error.hpp"
 
 namespace millscope::calibrate {
 namespace {
@@ -16,6 +21,28 @@ Histogram histogram_from(const Json& j) {
 
 }  // namespace
 
+void require_defined(const Observation& o) {
+  for (Eigen::Index i = 0; i < o.value.size(); ++i) {
+    if (!std::isfinite(o.value[i]))
+      throw config::UserError(
+          fmt::format("'{}' is undefined in {}: no bead was seen there", o.observables[static_cast<std::size_t>(i)].name, o.of));
+  }
+}
+
+void leave_out(Observation& o, const std::set<std::string>& names) {
+  std::vector<Eigen::Index> kept;
+  std::vector<Observable> observables;
+  for (Eigen::Index i = 0; i < o.value.size(); ++i) {
+    Observable& what = o.observables[static_cast<std::size_t>(i)];
+    if (names.contains(what.name)) continue;
+    kept.push_back(i);
+    observables.push_back(std::move(what));
+  }
+  o.observables = std::move(observables);
+  o.value = Eigen::VectorXd(o.value(kept));
+  o.covariance = Eigen::MatrixXd(o.covariance(kept, kept));
+}
+
 Json to_json(const Observation& o) {
   Json observables = Json::array();
   for (Eigen::Index i = 0; i < o.value.size(); ++i) {
@@ -23,7 +50,8 @@ Json to_json(const Observation& o) {
     observables.push_back({{"name", what.name}, {"unit", what.unit}, {"group", what.group}, {"value", o.value[i]}});
   }
   std::vector<double> covariance(o.covariance.data(), o.covariance.data() + o.covariance.size());
-  return {{"observables", observables},
+  return {{"of", o.of},
+          {"observables", observables},
           {"covariance", covariance},
           {"power", {{"value_W", o.power.value}, {"sem_W", o.power.sem}, {"how", o.power.how}}},
           {"x", histogram_json(o.x)},
@@ -42,13 +70,14 @@ void add_power_error(Observation& o, double relative) {
 
 Observation observation_from(const Json& j) {
   Observation o;
+  o.of = j.value("of", std::string());
   const Json& observables = j.at("observables");
   const auto n = static_cast<Eigen::Index>(observables.size());
   o.value.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Json& item = observables.at(static_cast<std::size_t>(i));
     o.observables.push_back({item.at("name"), item.at("unit"), item.at("group")});
-    o.value[i] = item.at("value");
+    o.value[i] = item.at("value").is_null() ? std::numeric_limits<double>::quiet_NaN() : item.at("value").get<double>();
   }
   const auto covariance = j.at("covariance").get<std::vector<double>>();
   o.covariance = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), n, n);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,9 @@ struct PowerFigure {
 };
 
 struct Observation {
+  std::string of;  ///< what was looked at, for messages
   std::vector<Observable> observables;
-  Eigen::VectorXd value;
+  Eigen::VectorXd value;  ///< NaN: undefined, see require_defined
   Eigen::MatrixXd covariance;
   PowerFigure power;
   Histogram x, speed;       ///< fine bins, for Eq. 4.3 of Chagas 2015 and pictures
@@ -40,6 +42,12 @@ struct Observation {
   /// Something of single beads lies behind it, not only a profile.
   bool of_tracks() const { return bead_seconds > 0; }
 };
+
+/// Throws config::UserError where a value is NaN: a speed where no bead was seen.
+void require_defined(const Observation& observation);
+
+/// Takes observables out, with their part of the covariance. Names that it does not have are passed over.
+void leave_out(Observation& observation, const std::set<std::string>& names);
 
 nlohmann::ordered_json to_json(const Observation& observation);
 Observation observation_from(const nlohmann::ordered_json& json);

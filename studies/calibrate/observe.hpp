@@ -29,7 +29,8 @@ class Observer {
   /// What the recording of a condition shows.
   const Observation& recorded(std::size_t condition) const;
   /// What a finished run shows, with exactly the same observables. `key`: of the run's cache entry. `camera`: a camera file's text, whose
-  /// links come before those of the recording's camera; may be empty. May be called from several threads. Throws config::UserError.
+  /// links come before those of the recording's camera; may be empty. A speed where no bead was seen is NaN. May be called from several
+  /// threads. Throws config::UserError.
   Observation simulated(std::size_t condition, const std::filesystem::path& run, const std::string& key,
                         const std::string& camera = {}) const;
   /// Results of other analyzers (as in analysis.yaml): of the recording where `run` is empty, else of a finished run seen in the same way.

@@ -182,6 +182,7 @@ RecordedCondition look(const studies::Recording& recording, std::size_t conditio
   notes.insert(notes.end(), r.observation.notes.begin(), r.observation.notes.end());
   r.summaries = choose_summaries(results, how.study, {r.measured_power, r.mass});
   r.observation = summarise(results, r.summaries);
+  require_defined(r.observation);
   r.observation.notes = notes;
   for (const studies::ResultBlock& block : results.meta.blocks) r.observation.bead_seconds += block.duration;
   set_power(recording, results, r);

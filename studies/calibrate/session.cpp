@@ -32,7 +32,9 @@ Session::Session(const Study& study, const host::Registry& registry, SessionOpti
     return campaign::run(simulations, once);
   };
   machinery.observe = [observer = observer_.get()](std::size_t condition, const campaign::Outcome& outcome) {
-    return observer->simulated(condition, outcome.folder, outcome.key);
+    Observation seen = observer->simulated(condition, outcome.folder, outcome.key);
+    require_defined(seen);
+    return seen;
   };
   for (std::size_t c = 0; c < study_.conditions.size(); ++c) machinery.recorded.push_back(observer_->recorded(c));
   machinery.slots = options_.slots > 0 ? options_.slots : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

@@ -145,7 +145,7 @@ Eigen::MatrixXd drawn(const ResultSet& results, const std::vector<Summary>& summ
   for (Eigen::Index d = 0; d < draws; ++d) {
     for (Eigen::Index i = 0; i < value.size(); ++i) {
       const double v = evaluate(results, summaries[static_cast<std::size_t>(i)], static_cast<std::size_t>(d));
-      all(d, i) = std::isfinite(v) ? v : value[i];
+      all(d, i) = std::isfinite(v) ? v : std::isfinite(value[i]) ? value[i] : 0;
     }
   }
   return all;
@@ -181,15 +181,14 @@ std::vector<Summary> choose_summaries(const ResultSet& recorded, const Study& st
 
 Observation summarise(const ResultSet& results, const std::vector<Summary>& summaries) {
   Observation o;
+  o.of = results.meta.description;
   o.value.resize(static_cast<Eigen::Index>(summaries.size()));
   for (std::size_t i = 0; i < summaries.size(); ++i) {
     const double value = evaluate(results, summaries[i], std::nullopt);
-    if (!std::isfinite(value)) {
-      throw UserError(fmt::format("'{}' is undefined in {}: {}", summaries[i].observable.name, results.meta.description,
-                                  summaries[i].kind == Summary::along
-                                      ? "too few beads were seen there; narrow 'from' and 'to' of the profile to where "
-                                        "beads always are"
-                                      : "no bead was seen there"));
+    if (!std::isfinite(value) && summaries[i].kind != Summary::mean) {
+      throw UserError(
+          fmt::format("'{}' is undefined in {}: too few beads were seen there{}", summaries[i].observable.name, results.meta.description,
+                      summaries[i].kind == Summary::along ? "; narrow 'from' and 'to' of the profile to where beads always are" : ""));
     }
     o.observables.push_back(summaries[i].observable);
     o.value[static_cast<Eigen::Index>(i)] = value;
@@ -199,7 +198,8 @@ Observation summarise(const ResultSet& results, const std::vector<Summary>& summ
     throw UserError(fmt::format("{}: too short for an uncertainty: it holds fewer than two blocks", results.meta.description));
   o.covariance = few_blocks_factor(o.blocks) * shrunk_covariance(drawn(results, summaries, o.value), o.blocks);
   for (Eigen::Index i = 0; i < o.value.size(); ++i) {
-    o.covariance(i, i) = std::max(o.covariance(i, i), std::pow(kLeastDeviation * std::max(std::fabs(o.value[i]), 1e-3), 2));
+    const double size = std::isfinite(o.value[i]) ? std::fabs(o.value[i]) : 0;
+    o.covariance(i, i) = std::max(o.covariance(i, i), std::pow(kLeastDeviation * std::max(size, 1e-3), 2));
   }
   o.x = histogram(results, "x");
   o.speed = histogram(results, "speed_ratio");

@@ -15,7 +15,7 @@ void diagnose_set(const fs::path& folder, const host::Registry& registry, const 
                   const diagnose::NamingOptions& naming) {
   const diagnose::Question question = diagnose::read_question(folder / "study.yaml", {}, registry);
   calibrate::Session session(question.study, registry, session_of);
-  const diagnose::Workshop workshop = diagnose::workshop_of(question, registry, session, session_of.say);
+  diagnose::Workshop workshop = diagnose::workshop_of(question, registry, session, session_of.say);
   const diagnose::Diagnosis found = diagnose::diagnose(question, workshop, naming);
   diagnose::write_outputs({question, workshop, found}, session_of.output);
 }

@@ -214,13 +214,6 @@ campaign::Simulation simulation_at(const Question& q, const VectorXd& theta, con
   return s;
 }
 
-calibrate::Observation Workshop::look(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
-                                      const VectorXd& theta) const {
-  calibrate::Observation o = observe(condition, outcome, question.camera(theta));
-  if (!readings.empty()) add_readings(question, readings[condition], theta, o);
-  return o;
-}
-
 Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoint> points, std::vector<std::size_t> conditions) {
   std::vector<campaign::Simulation> simulations;
   for (const BankPoint& p : points) {
@@ -235,9 +228,8 @@ Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoin
   // Whole simulations side by side: looking at one is half of it a single thread's work.
   studies::for_each_item(outcomes.size(), studies::worker_count(0, outcomes.size()), [&](std::size_t i, std::size_t) {
     try {
-      if (outcomes[i].state == campaign::State::failed) throw config::UserError(outcomes[i].message);
       bank.seen[i / per_point][i % per_point] =
-          workshop.look(q, bank.conditions[i % per_point], outcomes[i], bank.points[i / per_point].theta);
+          workshop.look_at(q, bank.conditions[i % per_point], outcomes[i], bank.points[i / per_point].theta);
     } catch (const config::UserError& e) {
       failures[i] = fmt::format("{}: {}", simulations[i].label, e.what());
     }
@@ -269,6 +261,9 @@ BankData data_of(const Question& q, const Bank& bank, const std::vector<std::siz
     values.emplace_back(Eigen::Map<const VectorXd>(row.data(), static_cast<Index>(row.size())));
   }
   data.left_out = leave_out_too_few(q, data.rows, values);
+  if (!bank.failures.empty())
+    data.left_out.insert(data.left_out.begin(), fmt::format("{} simulations of the bank failed and are left out, the first: {}",
+                                                            bank.failures.size(), bank.failures.front()));
   if (values.empty()) {
     throw config::UserError(fmt::format("no simulation of the bank has come to its end{}{}; correct the base case or the ranges",
                                         bank.failures.empty() ? "" : "; the first: ", bank.failures.empty() ? "" : bank.failures.front()));

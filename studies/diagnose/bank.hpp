@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -63,9 +64,14 @@ struct Workshop {
       results = {};
   std::vector<std::vector<FrameReading>> readings = {};  ///< of every recording's frame; empty: nothing of it is doubted
 
-  /// What a simulation at θ shows, readings of the frame included.
+  std::vector<std::set<std::string>> without = {};  ///< [conditions] observables that are compared nowhere; empty: all are
+
+  /// What a simulation at θ shows, readings of the frame included. Throws config::UserError where it failed or something is undefined.
   calibrate::Observation look(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
                               const VectorXd& theta) const;
+  /// The same, with NaN for what is undefined: the speed where no bead was seen.
+  calibrate::Observation look_at(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
+                                 const VectorXd& theta) const;
 };
 
 /// The points with what was seen of them in some conditions.
@@ -76,8 +82,12 @@ struct Bank {
   std::vector<std::string> failures;                                     ///< one line each
 };
 
-/// Runs what is not in the cache.
+/// Runs what is not in the cache. What is undefined is NaN.
 Bank fill_bank(const Question& question, const Workshop& workshop, std::vector<BankPoint> points, std::vector<std::size_t> conditions);
+
+/// Takes what any of the bank's simulations leaves undefined (the speed in a region into which they throw no bead; its occupancy tells of
+/// that, too) from the recordings, the bank and what is looked at later. One sentence for each observable.
+std::vector<std::string> leave_out_undefined(const Question& question, Workshop& workshop, Bank& bank);
 
 /// The numbers of some of the bank's conditions; points of which one failed are left out.
 BankData data_of(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions);

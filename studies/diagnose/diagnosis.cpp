@@ -19,11 +19,21 @@ void say(const Workshop& workshop, const std::string& line) {
   if (workshop.say) workshop.say(line);
 }
 
+/// The bank, with what is compared defined in all of it.
+Bank filled(const Question& question, Workshop& workshop, const std::vector<BankPoint>& points, const std::vector<std::size_t>& conditions,
+            Diagnosis& d) {
+  Bank bank = fill_bank(question, workshop, points, conditions);
+  for (std::string& line : leave_out_undefined(question, workshop, bank)) {
+    say(workshop, line);
+    d.notes.push_back(std::move(line));
+  }
+  return bank;
+}
+
 /// The bank's first runs of each candidate tell which cannot matter; the others get all of theirs.
-std::vector<BankPoint> screened(const Question& question, const Workshop& workshop, const std::vector<std::size_t>& fit,
-                                double noise_units) {
+std::vector<BankPoint> screened(const Question& question, Workshop& workshop, Diagnosis& d, double noise_units) {
   std::vector<BankPoint> points = plan_screening(question);
-  const Problem problem = problem_of(question, workshop, fill_bank(question, workshop, points, fit), fit);
+  const Problem problem = problem_of(question, workshop, filled(question, workshop, points, d.fit, d), d.fit);
   const Surrogate surrogate(problem.data);
   const MatrixXd whitening = whitener(problem.covariance + surrogate.error_covariance(problem.covariance));
   const FitResult base = Model(problem.data, surrogate, whitening, {}, {}).fit(problem.observed);
@@ -80,14 +90,14 @@ const char* name_of(Verdict verdict) {
   return "";
 }
 
-Diagnosis diagnose(const Question& question, const Workshop& workshop, const NamingOptions& options) {
+Diagnosis diagnose(const Question& question, Workshop& workshop, const NamingOptions& options) {
   Diagnosis d;
   d.fit = question.study.with_role(calibrate::Role::fit);
   d.held = question.study.with_role(calibrate::Role::held_out);
-  const std::vector<BankPoint> points = screened(question, workshop, d.fit, options.noise_units);
+  const std::vector<BankPoint> points = screened(question, workshop, d, options.noise_units);
   std::vector<std::size_t> all = d.fit;
   all.insert(all.end(), d.held.begin(), d.held.end());
-  d.bank = fill_bank(question, workshop, points, all);
+  d.bank = filled(question, workshop, points, all, d);
   d.problem = problem_of(question, workshop, d.bank, d.fit);
   d.naming = name_physics(d.problem, options);
   const HeldOutRequest request{question, workshop, d.bank, d.problem, d.naming, d.fit, kSeeds, options.seed};
@@ -101,9 +111,6 @@ Diagnosis diagnose(const Question& question, const Workshop& workshop, const Nam
     d.missing = missing_force(request);
     d.terms = offer_terms(d.missing);
   }
-  if (!d.bank.failures.empty())
-    d.notes.push_back(
-        fmt::format("{} simulations of the bank failed and are left out, the first: {}", d.bank.failures.size(), d.bank.failures.front()));
   for (const std::string& line : d.problem.data.left_out) d.notes.push_back(line);
   for (std::size_t c = 0; c < workshop.readings.size(); ++c) {
     if (!workshop.readings[c].empty())

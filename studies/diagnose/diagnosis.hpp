@@ -32,7 +32,7 @@ struct Diagnosis {
 };
 
 /// Everything from the bank on.
-Diagnosis diagnose(const Question& question, const Workshop& workshop, const NamingOptions& options);
+Diagnosis diagnose(const Question& question, Workshop& workshop, const NamingOptions& options);
 
 /// Verdict, sentence, names and next experiment of a diagnosis that has everything else.
 void conclude(const Question& question, const Workshop& workshop, double level, double noise_units, Diagnosis& diagnosis);

@@ -29,7 +29,6 @@ Prediction simulate(const HeldOutRequest& r, const VectorXd& coded, const std::v
   for (const campaign::Outcome& outcome : r.workshop.run(simulations)) {
     calibrate::Observation o;
     try {
-      if (outcome.state == campaign::State::failed) throw config::UserError(outcome.message);
       o = r.workshop.look(r.question, condition, outcome, theta);
     } catch (const config::UserError& e) {
       message = e.what();

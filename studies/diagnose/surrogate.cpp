@@ -1,6 +1,7 @@
 #include "studies/diagnose/surrogate.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -138,8 +139,8 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
   if (static_cast<Index>(points.size()) <= features_.size()) {
     throw config::UserError(
         fmt::format("the bank has finished runs at {} points, its model {} coefficients; extend the bank (bank.base, "
-                    "bank.each)",
-                    points.size(), features_.size()));
+                    "bank.each){}{}",
+                    points.size(), features_.size(), data.left_out.empty() ? "" : "; ", fmt::join(data.left_out, "; ")));
   }
   MatrixXd x(rows, features_.size()), y(rows, data.value.cols());
   Index k = 0, without = 0;

@@ -1,5 +1,6 @@
 #include "studies/calibrate/objective.hpp"
 #include "tests/calibrate/made_up_mill.hpp"
+#include "tests/scratch.hpp"
 
 using namespace millscope::calibrate;
 
@@ -65,6 +66,25 @@ TEST_CASE("an observation comes back from its file") {
   CHECK(back.covariance == o.covariance);
   CHECK(back.x.percent == o.x.percent);
   CHECK(back.notes == o.notes);
+}
+
+TEST_CASE("what is undefined stays so in its file, is refused where it has to be known, and can be left out") {
+  Observation o;
+  o.of = "a slow mill";
+  o.observables = {{"power", "W", "power"}, {"speed at the shoulder", "m/s", "region_speed"}, {"x", "%", "x"}};
+  o.value = Eigen::Vector3d(8, std::nan(""), 12);
+  o.covariance = (Eigen::Matrix3d() << 1, 0, 0.3, 0, 1e-24, 0, 0.3, 0, 4).finished();
+  Observation back = observation_from(nlohmann::ordered_json::parse(to_json(o).dump()));
+  CHECK(std::isnan(back.value[1]));
+  CHECK(back.value[2] == 12);
+  CHECK_THAT(testing::refusal([&] { require_defined(back); }),
+             Catch::Matchers::Contains("'speed at the shoulder' is undefined in a slow mill: no bead was seen there"));
+  leave_out(back, {"speed at the shoulder", "what it does not have"});
+  require_defined(back);
+  REQUIRE(back.observables.size() == 2);
+  CHECK(back.observables[1].name == "x");
+  CHECK(back.value == Eigen::Vector2d(8, 12));
+  CHECK(back.covariance == (Eigen::Matrix2d() << 1, 0.3, 0.3, 4).finished());
 }
 
 TEST_CASE("a power error widens the power alone, by a share of it") {

@@ -34,7 +34,7 @@ nlohmann::json written(const Scratch& folder, const std::vector<std::string>& tr
                   recording_noise);
   NamingOptions options;
   options.draws = 240, options.rival_draws = 160;
-  const Workshop workshop = mill.workshop();
+  Workshop workshop = mill.workshop();
   const Diagnosis d = diagnose::diagnose(q, workshop, options);
   write_outputs({q, workshop, d}, folder / "out");
   return nlohmann::json::parse(text_of(folder / "out/diagnosis.json"));

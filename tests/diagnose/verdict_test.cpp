@@ -47,11 +47,16 @@ const Judged& judged(const Diagnosis& d, const std::string& name) {
   throw std::runtime_error("not judged: " + name);
 }
 
+Diagnosis found(const Question& q, MadeUpMill& mill) {
+  Workshop workshop = mill.workshop();
+  return diagnose::diagnose(q, workshop, quick());
+}
+
 Diagnosis diagnosed(const std::vector<Physics>& physics, const std::vector<std::string>& truth, double recording_noise = 1) {
   const Scratch folder;
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, physics, truth, recording_noise);
-  return diagnose::diagnose(q, mill.workshop(), quick());
+  return found(q, mill);
 }
 
 }  // namespace
@@ -110,7 +115,7 @@ TEST_CASE("a strength is right where the effect grows with what is varied apart"
   const std::vector<Physics> physics{{kRolling, 0, 0.2, 3, {21, 22, 23}, 2, 0.6}, {kHeight, 0.005, 0.003, 3, {41, 42, 43}}};
   // Nearly twice as strong as in the case.
   MadeUpMill mill(q, physics, {kTheta[0], kTheta[1], "stiffness_factor=0.006", kRolling + "=0.12"}, 0.5);
-  const Diagnosis d = diagnose::diagnose(q, mill.workshop(), quick());
+  const Diagnosis d = found(q, mill);
   const Judged& found = judged(d, "rolling_resistance");
   CHECK(found.p_family < 0.05);
   CHECK_THAT(found.share.value, WithinAbs(0.6, 0.15));
@@ -129,7 +134,7 @@ TEST_CASE("two candidates with one effect are a class, and the condition that wo
   for (int k = 0; k < sets; ++k) {
     MadeUpMill mill(q, physics, with(kRolling + "=0.12"));
     mill.seed = static_cast<std::uint64_t>(k);
-    const Diagnosis d = diagnose::diagnose(q, mill.workshop(), quick());
+    const Diagnosis d = found(q, mill);
     const std::set<std::string> named(d.named.begin(), d.named.end());
     holding_truth += named.count("rolling_resistance") > 0 ? 1 : 0;
     if (named != both) continue;
@@ -217,11 +222,36 @@ TEST_CASE("a candidate whose every simulation fails is left out and said, the di
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, usual(), with(kRolling + "=0.12"));
   mill.fails = [](const auto& s) { return s.count(kBridge) > 0; };
-  const Diagnosis d = diagnose::diagnose(q, mill.workshop(), quick());
+  const Diagnosis d = found(q, mill);
   CHECK(d.named == std::vector<std::string>{"rolling_resistance"});
   CHECK(judged(d, "capillary_bridge").undetectable);
   REQUIRE_FALSE(d.notes.empty());
   CHECK_THAT(d.notes[0], Contains("simulations of the bank failed") && Contains("capillary_bridge_0_speed75: a bead ran away"));
+}
+
+TEST_CASE("what simulations leave undefined is compared nowhere, and that is said") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  MadeUpMill mill(q, usual(), with(kRolling + "=0.12"));
+  // No bead is thrown there, neither without the effect nor where it is weak: in the fitted condition 1 and in the held-out one.
+  Workshop workshop = mill.workshop();
+  workshop.observe = [look = workshop.observe](std::size_t condition, const campaign::Outcome& o, const std::string& camera) {
+    calibrate::Observation seen = look(condition, o, camera);
+    if (condition > 0 && o.key.find(kRolling + "=0.1") == std::string::npos) seen.value[5] = std::nan("");
+    return seen;
+  };
+  const Diagnosis d = diagnose::diagnose(q, workshop, quick());
+  INFO(d.sentence);
+  CHECK(d.verdict == Verdict::named);
+  CHECK(d.named == std::vector<std::string>{"rolling_resistance"});
+  CHECK(d.bank.failures.empty());
+  CHECK(d.problem.observed.size() == 16 + 15);
+  CHECK(workshop.recorded[0].value.size() == 16);
+  CHECK(workshop.recorded[2].value.size() == 15);
+  CHECK(workshop.recorded[2].covariance.rows() == 15);
+  REQUIRE(d.notes.size() >= 2);
+  CHECK_THAT(d.notes[0], Contains("'summary 5' of condition 'speed60' was compared nowhere: in"));
+  CHECK_THAT(d.notes[1], Contains("'summary 5' of condition 'speed50' was compared nowhere: in"));
 }
 
 TEST_CASE("candidates that cannot matter get their first simulations alone") {
@@ -251,7 +281,7 @@ TEST_CASE("a camera that stands aside is named, and no physics") {
     std::vector<std::string> truth = friction;
     truth.push_back("camera.frame_error.offset_x=" + offset);
     MadeUpMill mill(q, usual(), truth, 0.4);
-    return diagnose::diagnose(q, mill.workshop(), quick());
+    return found(q, mill);
   };
   const Diagnosis within = diagnosed_at("0.0008");
   INFO(within.sentence);
@@ -277,7 +307,7 @@ TEST_CASE("a mill that is stiffer than the fitted one is no missing physics wher
           "nuisances: {stiffness_factor: {range: [0.001, 0.01], mean: 0.004, sigma: 0.004, apart: true}}\nhypotheses: {lifter_wear: {}}\n");
       mill = MadeUpMill(doubted, usual(), {kTheta[0], kTheta[1], "stiffness_factor=0.008"}, 0.4);
     }
-    return diagnose::diagnose(q, mill.workshop(), quick());
+    return found(q, mill);
   };
   const Diagnosis taken_for_granted = diagnosed_with("");
   INFO(taken_for_granted.sentence);
