@@ -33,8 +33,8 @@ std::optional<std::array<Estimated, 2>> axis_of(const Recording& recording, cons
   return std::array<Estimated, 2>{with_error(*motion.axis[0].estimate), with_error(*motion.axis[1].estimate)};
 }
 
-camera::Point middle_of(const Recording& recording, const std::optional<std::array<Estimated, 2>>& axis,
-                        const std::optional<MillFrame>& frame) {
+std::array<double, 3> middle_of(const Recording& recording, const std::optional<std::array<Estimated, 2>>& axis,
+                                const std::optional<MillFrame>& frame) {
   const bool ends = frame && frame->high > frame->low;
   return {axis ? (*axis)[0].value : middle_of(recording, 0), axis ? (*axis)[1].value : middle_of(recording, 1),
           ends ? 0.5 * (frame->low + frame->high) : middle_of(recording, 2)};
@@ -57,10 +57,6 @@ double CameraLosses::kept(double distance, double speed) const {
   return 0.5 * std::erfc(-(at_rest.value - per_distance.value * distance - per_speed.value * speed) / std::numbers::sqrt2);
 }
 
-double camera::distance_of(const Run& run, std::size_t i, const camera::Point& middle) {
-  return std::hypot(run.position[0][i] - middle[0], run.position[1][i] - middle[1], run.position[2][i] - middle[2]);
-}
-
 CameraEstimate estimate_camera(const Recording& recording, const EstimateOptions& options) {
   CameraEstimate e;
   for (const Run& run : recording.runs) e.locations += run.size();
@@ -71,11 +67,12 @@ CameraEstimate estimate_camera(const Recording& recording, const EstimateOptions
   const std::optional<MillFrame> frame = options.frame ? options.frame : recording.frame;
   e.axis = axis_of(recording, frame);
   e.middle = middle_of(recording, e.axis, frame);
+  const camera::Middle middle{e.middle, recording.condition.period.value_or(0)};
 
   const double usual = median_interval(recording), pause = 30 * usual;
-  const std::vector<camera::RateWindow> windows = camera::rate_windows(recording, e.middle, pause);
+  const std::vector<camera::RateWindow> windows = camera::rate_windows(recording, middle, pause);
   camera::RateModel model = camera::estimate_rate(windows);
-  camera::express_as_cut(model.loss, recording, e.middle, windows);
+  camera::express_as_cut(model.loss, recording, middle, windows);
   e.loss = model.loss;
   // So long that chance would make a hundredth of such a pause in the whole recording, even at the lowest rate but a few.
   const double limit = std::max(2 * pause, std::log(100 * static_cast<double>(e.locations)) / model.lowest_rate);
@@ -86,7 +83,7 @@ CameraEstimate estimate_camera(const Recording& recording, const EstimateOptions
   const double lost = 1 + duplicates / static_cast<double>(e.locations);
   e.sampling.rate = {lost * model.rate.value, lost * model.rate.error};
   camera::estimate_intervals(e.sampling, recording, model, pause);
-  e.noise = camera::estimate_camera_noise(recording, e.middle, 6 * usual, options.most_stretches);
+  e.noise = camera::estimate_camera_noise(recording, middle, 6 * usual, options.most_stretches);
   e.outliers = outlier_share(recording);
   for (const camera::RateWindow& w : windows) e.seconds += w.seconds;
   return e;

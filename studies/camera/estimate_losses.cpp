@@ -26,7 +26,7 @@ constexpr double kTellingError = 0.25;  // relative, of the rate
 
 double normal_share(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
-void add_windows(const Piece& piece, const std::vector<double>& times, const Point& middle, std::size_t& group,
+void add_windows(const Piece& piece, const std::vector<double>& times, const Middle& middle, std::size_t& group,
                  std::vector<RateWindow>& out) {
   const auto per_window = static_cast<std::size_t>(std::lround(kWindow / piece.step));
   const auto windows_in_group = static_cast<std::size_t>(std::lround(kGroup / kWindow));
@@ -38,8 +38,7 @@ void add_windows(const Piece& piece, const std::vector<double>& times, const Poi
                                   std::lower_bound(times.begin(), times.end(), from));
     for (std::size_t k = first; k < first + per_window; ++k) {
       const double share = 1 / static_cast<double>(per_window);
-      w.distance +=
-          share * std::hypot(piece.position[0][k] - middle[0], piece.position[1][k] - middle[1], piece.position[2][k] - middle[2]);
+      w.distance += share * middle.distance(piece.position[0][k], piece.position[1][k], piece.position[2][k]);
       w.speed += share * std::hypot(piece.velocity[0][k], piece.velocity[1][k], piece.velocity[2][k]);
     }
     out.push_back(w);
@@ -74,7 +73,7 @@ class Counts {
 
 }  // namespace
 
-std::vector<RateWindow> rate_windows(const Recording& recording, const Point& middle, double pause) {
+std::vector<RateWindow> rate_windows(const Recording& recording, const Middle& middle, double pause) {
   std::vector<RateWindow> windows;
   std::size_t group = 0;
   for (const Run& run : recording.runs) {
@@ -128,13 +127,13 @@ RateModel estimate_rate(const std::vector<RateWindow>& windows) {
   return model;
 }
 
-void express_as_cut(CameraLosses& loss, const Recording& recording, const Point& middle, const std::vector<RateWindow>& windows) {
+void express_as_cut(CameraLosses& loss, const Recording& recording, const Middle& middle, const std::vector<RateWindow>& windows) {
   if (!loss.found) return;
   double highest = 0, sum = 0, number = 0, margin = 0, weight = 0;
   for (const Run& run : recording.runs) {
     for (const double u : run.spread) highest = std::max(highest, u);
     for (std::size_t i = 0; i < run.spread.size(); ++i) {
-      if (distance_of(run, i, middle) > 2 * loss.typical_distance) continue;
+      if (middle.distance(run, i) > 2 * loss.typical_distance) continue;
       sum += run.spread[i];
       number += 1;
     }

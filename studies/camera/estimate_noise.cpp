@@ -141,7 +141,7 @@ CameraNoise result_of(const Estimator& e) {
 
 }  // namespace
 
-CameraNoise estimate_camera_noise(const Recording& recording, const Point& middle, double pause, std::size_t most_stretches) {
+CameraNoise estimate_camera_noise(const Recording& recording, const Middle& middle, double pause, std::size_t most_stretches) {
   Estimator e{
       stretches_over(recording, middle, pause, most_stretches), quiet_stretches(recording, middle, pause, most_stretches), 0, {}, {}, {}};
   const std::vector<double>& times = e.all[e.all.size() / 2].time;

@@ -1,6 +1,9 @@
 // Parts of estimate_camera; for the files of this room only.
 #pragma once
 
+#include <array>
+#include <cmath>
+
 #include "studies/camera/estimate_camera.hpp"
 
 namespace millscope::studies::camera {
@@ -10,12 +13,20 @@ namespace millscope::studies::camera {
 /// (docs/virtual_camera.md).
 inline constexpr double kCaution = 1.5;
 
-using Point = std::array<double, 3>;
+/// Where the camera sees best. In a slice that repeats along z a bead is where its image nearest to the middle is, as for the camera links
+/// that depend on distance.
+struct Middle {
+  std::array<double, 3> at{};
+  double period = 0;  ///< m; 0: a mill with ends
+  double distance(double x, double y, double z) const {
+    const double beside = z - at[2];
+    return std::hypot(x - at[0], y - at[1], period > 0 ? std::remainder(beside, period) : beside);
+  }
+  /// Of point i of a run.
+  double distance(const Run& run, std::size_t i) const { return distance(run.position[0][i], run.position[1][i], run.position[2][i]); }
+};
 
-/// Distance of point i of a run from the rig's middle.
-double distance_of(const Run& run, std::size_t i, const Point& middle);
-
-CameraNoise estimate_camera_noise(const Recording& recording, const Point& middle, double pause, std::size_t most_stretches);
+CameraNoise estimate_camera_noise(const Recording& recording, const Middle& middle, double pause, std::size_t most_stretches);
 
 /// A short span of a trajectory: how many locations came, and how far and fast the bead was.
 struct RateWindow {
@@ -33,10 +44,10 @@ struct RateModel {
 };
 
 /// Windows of all runs; pauses longer than `pause` are left out.
-std::vector<RateWindow> rate_windows(const Recording& recording, const Point& middle, double pause);
+std::vector<RateWindow> rate_windows(const Recording& recording, const Middle& middle, double pause);
 RateModel estimate_rate(const std::vector<RateWindow>& windows);
 /// Fills the parameters of the cut from the spreads that the recording has, or from a scale of its own.
-void express_as_cut(CameraLosses& loss, const Recording& recording, const Point& middle, const std::vector<RateWindow>& windows);
+void express_as_cut(CameraLosses& loss, const Recording& recording, const Middle& middle, const std::vector<RateWindow>& windows);
 
 CameraGaps estimate_gaps(const Recording& recording, double limit);
 /// Evenness and dead time from the intervals shorter than `pause`, given the rate and the losses.

@@ -20,13 +20,13 @@ constexpr double kImpact = 8;        // contrasts beyond so many medians: an imp
 constexpr std::size_t kStride = 4;   // between candidates for quiet stretches
 constexpr double kQuietShare = 0.06;
 
-Stretch stretch_of(const Run& run, std::size_t first, const Point& middle) {
+Stretch stretch_of(const Run& run, std::size_t first, const Middle& middle) {
   Stretch s;
   s.first = first;
   for (std::size_t i = first; i < first + kLength; ++i) {
     s.time.push_back(run.time[i] - run.time[first]);
     for (std::size_t axis = 0; axis < 3; ++axis) s.value[axis].push_back(run.position[axis][i]);
-    s.distance.push_back(distance_of(run, i, middle));
+    s.distance.push_back(middle.distance(run, i));
   }
   return s;
 }
@@ -44,7 +44,7 @@ double largest_bend(const Stretch& s) {
 }
 
 /// All unbroken stretches that begin `stride` locations apart, without those that hold an impact or a stray location.
-std::vector<Stretch> stretches_of(const Recording& recording, const Point& middle, double pause, std::size_t stride) {
+std::vector<Stretch> stretches_of(const Recording& recording, const Middle& middle, double pause, std::size_t stride) {
   std::vector<Stretch> all;
   for (std::size_t index = 0; index < recording.runs.size(); ++index) {
     const Run& run = recording.runs[index];
@@ -82,14 +82,14 @@ bool overlap(const Stretch& a, const Stretch& b) {
 }
 
 /// How far the bead leaves a circle about the mill's axis within a stretch, m: slopes and bends of radius and height.
-double drift_of(const Stretch& s, const Point& middle) {
+double drift_of(const Stretch& s, const Middle& middle) {
   const auto count = static_cast<Eigen::Index>(s.time.size());
   Eigen::MatrixXd powers(count, 3), values(count, 2);
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const double t = 2 * s.time[at] / s.time.back() - 1;
     powers.row(i) << 1, t, t * t;
-    values.row(i) << std::hypot(s.value[0][at] - middle[0], s.value[1][at] - middle[1]), s.value[2][at];
+    values.row(i) << std::hypot(s.value[0][at] - middle.at[0], s.value[1][at] - middle.at[1]), s.value[2][at];
   }
   const Eigen::MatrixXd coefficients = powers.colPivHouseholderQr().solve(values);
   return coefficients.bottomRows(2).norm();
@@ -97,7 +97,7 @@ double drift_of(const Stretch& s, const Point& middle) {
 
 }  // namespace
 
-std::vector<Stretch> stretches_over(const Recording& recording, const Point& middle, double pause, std::size_t most) {
+std::vector<Stretch> stretches_over(const Recording& recording, const Middle& middle, double pause, std::size_t most) {
   const std::vector<Stretch> all = stretches_of(recording, middle, pause, kLength);
   const std::size_t count = std::min(most, all.size());
   std::vector<Stretch> chosen;
@@ -105,7 +105,7 @@ std::vector<Stretch> stretches_over(const Recording& recording, const Point& mid
   return chosen;
 }
 
-std::vector<Stretch> quiet_stretches(const Recording& recording, const Point& middle, double pause, std::size_t most) {
+std::vector<Stretch> quiet_stretches(const Recording& recording, const Middle& middle, double pause, std::size_t most) {
   const std::vector<Stretch> candidates = stretches_of(recording, middle, pause, kStride);
   std::vector<std::pair<double, std::size_t>> drifts;
   for (std::size_t i = 0; i < candidates.size(); ++i) drifts.emplace_back(drift_of(candidates[i], middle), i);

@@ -77,7 +77,7 @@ void read_speed(const Node& section, Condition& condition) {
 
 Condition read_condition(const Node& section) {
   section.expect({"speed", "direction", "filling", "porosity", "bead_diameter", "bead_density", "tracer", "mill_diameter", "mill_length",
-                  "power", "geometry"});
+                  "period", "power", "geometry"});
   Condition condition;
   condition.filling = number(section, "filling", "1", config::between(0, 1, "it is a part of the bare shell's volume"));
   config::Range part = config::between(0, 1, "it is the part of the charge's volume that is no bead");
@@ -92,6 +92,9 @@ Condition read_condition(const Node& section) {
   }
   condition.mill_diameter = number(section, "mill_diameter", "m", positive_up_to(20, "no mill is larger; say the unit, e.g. 300 mm"));
   condition.mill_length = number(section, "mill_length", "m", positive_up_to(40, "no mill is longer; say the unit, e.g. 60 mm"));
+  condition.period = number(section, "period", "m", positive_up_to(10, "no slice is longer; say the unit, e.g. 20 mm"));
+  if (condition.period && condition.mill_length)
+    section.at("period").fail("repeats a slice without ends, but 'mill_length' gives the mill ends; leave one of them out");
   if (const auto power = section.find("power")) {
     power->expect({"value", "sem"});
     condition.power = MeasuredPower{read_number(power->at("value", "the power given to the charge, e.g. 7.34 W"), "W"),
