@@ -83,6 +83,12 @@ void know_charge(const config::Case& c, const std::optional<config::Vessel>& ves
 
 }  // namespace
 
+std::optional<std::array<double, 2>> slice_of(const MillOfCase& mill) {
+  if (!(mill.period > 0)) return std::nullopt;
+  const double middle = 0.5 * (mill.context.mill_low + mill.context.mill_high);
+  return std::array{middle - 0.5 * mill.period, middle + 0.5 * mill.period};
+}
+
 MillOfCase read_mill_of_case(const std::filesystem::path& case_file, const host::Registry& registry,
                              const std::vector<std::string>& settings) {
   const config::Case c = config::read_case(case_file.string(), settings);

@@ -1,7 +1,9 @@
 // The mill of a case: its shell, its motion and its charge, without the physics.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,9 @@ struct MillOfCase {
   bool upright = true;  ///< gravity points along −y
   std::vector<std::string> notes;
 };
+
+/// Where a slice that repeats along z begins and ends, m; nothing for a mill with ends.
+std::optional<std::array<double, 2>> slice_of(const MillOfCase& mill);
 
 /// Reads a case, or what `millscope run` left of it (case.resolved.yaml). Of the plugins only those of geometry and gravity are used.
 /// `settings`: as `--set`. Throws config::UserError.

@@ -186,9 +186,10 @@ Observation summarise(const ResultSet& results, const std::vector<Summary>& summ
   for (std::size_t i = 0; i < summaries.size(); ++i) {
     const double value = evaluate(results, summaries[i], std::nullopt);
     if (!std::isfinite(value) && summaries[i].kind != Summary::mean) {
-      throw UserError(
-          fmt::format("'{}' is undefined in {}: too few beads were seen there{}", summaries[i].observable.name, results.meta.description,
-                      summaries[i].kind == Summary::along ? "; narrow 'from' and 'to' of the profile to where beads always are" : ""));
+      throw UserError(fmt::format("'{}' is undefined in {}{}", summaries[i].observable.name, results.meta.description,
+                                  summaries[i].kind == Summary::along
+                                      ? ": too few beads were seen there; narrow 'from' and 'to' of the profile to where beads always are"
+                                      : ""));
     }
     o.observables.push_back(summaries[i].observable);
     o.value[static_cast<Eigen::Index>(i)] = value;

@@ -67,7 +67,9 @@ CameraEstimate estimate_camera(const Recording& recording, const EstimateOptions
   const std::optional<MillFrame> frame = options.frame ? options.frame : recording.frame;
   e.axis = axis_of(recording, frame);
   e.middle = middle_of(recording, e.axis, frame);
-  const camera::Middle middle{e.middle, recording.condition.period.value_or(0)};
+  const auto& slice = recording.condition.slice;
+  if (slice) e.middle[2] = 0.5 * ((*slice)[0] + (*slice)[1]);
+  const camera::Middle middle{e.middle, slice ? (*slice)[1] - (*slice)[0] : 0};
 
   const double usual = median_interval(recording), pause = 30 * usual;
   const std::vector<camera::RateWindow> windows = camera::rate_windows(recording, middle, pause);

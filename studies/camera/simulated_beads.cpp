@@ -43,7 +43,7 @@ Condition condition_of(const config::Case& c, const MillOfCase& mill, const std:
   condition.bead_density = context.bead_density;
   if (context.mill_radius > 0) condition.mill_diameter = 2 * context.mill_radius;
   if (mill.period == 0 && context.mill_high > context.mill_low) condition.mill_length = context.mill_high - context.mill_low;
-  if (mill.period > 0) condition.period = mill.period;
+  condition.slice = slice_of(mill);
   condition.geometry = file;
   return condition;
 }

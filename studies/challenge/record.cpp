@@ -39,7 +39,7 @@ studies::Condition believed(const diagnose::Question& q, std::size_t condition, 
   out.bead_density = c.bead_density;
   if (c.mill_radius > 0) out.mill_diameter = 2 * c.mill_radius;
   if (mill.period == 0 && c.mill_length > 0) out.mill_length = c.mill_length;
-  if (mill.period > 0) out.period = mill.period;
+  out.slice = studies::slice_of(mill);
   return out;
 }
 

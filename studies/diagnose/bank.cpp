@@ -90,7 +90,7 @@ std::vector<std::string> leave_out_too_few(const Question& q, std::vector<BankRo
       if (runs == 0 || static_cast<std::size_t>(std::min(runs, all - runs)) >= kLeastTogether) continue;
       told.push_back(
           fmt::format("{} with another {} was left out: {} and {} simulations with the usual one came to their end, {} of each are needed "
-                      "(bank.each)",
+                      "(bank.each; or see why others failed)",
                       q.candidates[j].name, name_of(q, group), runs, all - runs, kLeastTogether));
       for (std::size_t r = rows.size(); r-- > 0;) {
         if (!together(rows[r])) continue;

@@ -85,8 +85,8 @@ struct Bank {
 /// Runs what is not in the cache. What is undefined is NaN.
 Bank fill_bank(const Question& question, const Workshop& workshop, std::vector<BankPoint> points, std::vector<std::size_t> conditions);
 
-/// Takes what any of the bank's simulations leaves undefined (the speed in a region into which they throw no bead; its occupancy tells of
-/// that, too) from the recordings, the bank and what is looked at later. One sentence for each observable.
+/// Takes what any of the bank's simulations leaves undefined (the speed in a region into which they throw no bead) from the recordings, the
+/// bank and what is looked at later. One sentence for each observable.
 std::vector<std::string> leave_out_undefined(const Question& question, Workshop& workshop, Bank& bank);
 
 /// The numbers of some of the bank's conditions; points of which one failed are left out.

@@ -291,6 +291,9 @@ Question read_question(const std::filesystem::path& file, const std::vector<std:
     read_candidates(*node, library, registry, q);
   else
     take_all(library, registry, q);
+  std::erase_if(q.left_out, [&q](const std::string& line) {  // what a 'set' has completed is tested
+    return std::any_of(q.candidates.begin(), q.candidates.end(), [&](const Candidate& c) { return line.starts_with(c.name + ":"); });
+  });
   if (const auto node = root.find("bank")) {
     node->expect({"base", "each", "first"});
     const auto whole = [&](const char* key, int standard, double least) {

@@ -79,7 +79,12 @@ VectorXd RivalModels::power_only(std::size_t condition) const {
 Index RivalModels::partner(Index i, std::size_t fitted) const {
   const auto& own = r_.workshop.recorded[held_].observables;
   const auto& other = r_.workshop.recorded[fitted].observables;
-  const std::string& group = own[static_cast<std::size_t>(i)].group;
+  const calibrate::Observable& what = own[static_cast<std::size_t>(i)];
+  const std::string& group = what.group;
+  if (group == "occupancy" || group == "region_speed") {  // regions are the same everywhere, groups of bins only in their order
+    const auto same = std::find_if(other.begin(), other.end(), [&](const calibrate::Observable& o) { return o.name == what.name; });
+    return same == other.end() ? -1 : static_cast<Index>(same - other.begin());
+  }
   Index place = 0;
   for (Index k = 0; k < i; ++k) place += own[static_cast<std::size_t>(k)].group == group ? 1 : 0;
   for (std::size_t k = 0; k < other.size(); ++k) {

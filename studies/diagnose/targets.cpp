@@ -52,7 +52,7 @@ void lifters(const config::GeometryCase& g, std::vector<Candidate>& out) {
   const double narrowest = std::atan2(2 * height, (1 - kNarrowTop) * width);
   const double steep = std::min(angle + kAngle, kSteepest), shallow = std::min(angle, std::max(angle - kAngle, narrowest));
   const double far = steep - angle < angle - shallow - 1e-9 ? shallow : steep;
-  if (far == angle) return;
+  if (far == angle) return;  // neither steeper nor shallower can be
   out.push_back({"lifter_face_angle",
                  "The faces of the lifters stand at another angle than the drawing says.",
                  "",

@@ -19,6 +19,8 @@ std::optional<double> number(const Node& section, std::string_view key, std::str
   return node ? std::optional(read_number(*node, unit, range)) : std::nullopt;
 }
 
+constexpr double kLongestSlice = 10;  // m
+
 config::Range positive_up_to(double highest, const char* reason) {
   config::Range range = positive(reason);
   range.high = highest;
@@ -73,11 +75,21 @@ void read_speed(const Node& section, Condition& condition) {
   if (direction || speed < 0) condition.angular_velocity = (clockwise || speed < 0 ? -1 : 1) * *condition.speed;
 }
 
+std::array<double, 2> read_slice(const Node& node) {
+  const auto items = node.items();
+  if (items.size() != 2) node.fail("wants where the slice begins and ends along z, e.g. [0 mm, 20 mm]");
+  const std::array<double, 2> slice{read_number(items[0], "m"), read_number(items[1], "m")};
+  if (!(slice[1] > slice[0])) node.fail("must rise; the first is its end at the smaller z");
+  if (slice[1] - slice[0] > kLongestSlice)
+    node.fail(fmt::format("is {:.4g} m long, and no slice is; say the unit, e.g. [0 mm, 20 mm]", slice[1] - slice[0]));
+  return slice;
+}
+
 }  // namespace
 
 Condition read_condition(const Node& section) {
   section.expect({"speed", "direction", "filling", "porosity", "bead_diameter", "bead_density", "tracer", "mill_diameter", "mill_length",
-                  "period", "power", "geometry"});
+                  "slice", "power", "geometry"});
   Condition condition;
   condition.filling = number(section, "filling", "1", config::between(0, 1, "it is a part of the bare shell's volume"));
   config::Range part = config::between(0, 1, "it is the part of the charge's volume that is no bead");
@@ -92,9 +104,7 @@ Condition read_condition(const Node& section) {
   }
   condition.mill_diameter = number(section, "mill_diameter", "m", positive_up_to(20, "no mill is larger; say the unit, e.g. 300 mm"));
   condition.mill_length = number(section, "mill_length", "m", positive_up_to(40, "no mill is longer; say the unit, e.g. 60 mm"));
-  condition.period = number(section, "period", "m", positive_up_to(10, "no slice is longer; say the unit, e.g. 20 mm"));
-  if (condition.period && condition.mill_length)
-    section.at("period").fail("repeats a slice without ends, but 'mill_length' gives the mill ends; leave one of them out");
+  if (const auto slice = section.find("slice")) condition.slice = read_slice(*slice);
   if (const auto power = section.find("power")) {
     power->expect({"value", "sem"});
     condition.power = MeasuredPower{read_number(power->at("value", "the power given to the charge, e.g. 7.34 W"), "W"),

@@ -216,6 +216,8 @@ Description read_description(const fs::path& file) {
   }
   if (const auto node = root.find("condition")) description.condition = read_condition(*node);
   if (const auto node = root.find("frame")) description.frame = read_frame(*node);
+  if (description.condition.slice && description.frame && description.frame->high > description.frame->low)
+    root.at("condition").at("slice").fail("repeats along z, and so has no ends, but 'frame' gives some; leave one of them out");
   if (const auto node = root.find("gap_limit")) description.gap_limit = config::read_number(*node, "s", gap_limit_range());
   if (const auto node = root.find("encoder")) config::read_choice(*node, "none");
   root.finish();

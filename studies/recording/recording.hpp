@@ -35,7 +35,8 @@ struct Condition {
   TracerBead tracer;
   std::optional<double> mill_diameter;  ///< of the bare shell, m
   std::optional<double> mill_length;    ///< inner, m
-  std::optional<double> period;         ///< m, of a simulated slice that repeats along z, whose beads' paths go on; no real mill has one
+  /// m along z: of a simulated slice that repeats, whose beads' paths go on from image to image; a real mill is none.
+  std::optional<std::array<double, 2>> slice;
   std::optional<MeasuredPower> power;
   std::filesystem::path geometry;  ///< case file with the mill's geometry; empty: none
 };

@@ -97,6 +97,15 @@ TEST_CASE("a known camera is found again within the stated errors") {
   check("gap length", e.gaps.mean_length, 0.8, 0.5);
 }
 
+TEST_CASE("a bead of a slice is as far from the middle as its nearest image") {
+  const camera::Middle slice{{0, 0, 0.03}, 0.06}, closed{{0, 0, 0.03}, 0};
+  CHECK(slice.distance(0.03, 0.04, 0.03) == Approx(0.05));
+  CHECK(slice.distance(0.03, 0.04, 0.03 + 7 * 0.06) == Approx(0.05));
+  CHECK(slice.distance(0, 0, 0.03 - 2 * 0.06 + 0.02) == Approx(0.02));
+  CHECK(slice.distance(0, 0, 0.06) == Approx(0.03));
+  CHECK(closed.distance(0, 0, 0.15) == Approx(0.12));
+}
+
 TEST_CASE("in a slice that repeats along z noise depends on where the nearest image is") {
   Recording slice;
   slice.file = "a slice";
@@ -112,15 +121,15 @@ TEST_CASE("in a slice that repeats along z noise depends on where the nearest im
   }
   slice.gap_limit = 0.1;
   slice.frame = MillFrame{{0, 0}, 0, 0};
-  slice.condition.period = 0.06;
+  slice.condition.slice = {0, 0.06};
   const double square = (2 * (0.35 * 0.35 + 0.25 * 0.25) + 0.45 * 0.45 + 0.32 * 0.32) / 3 * 1e-6;
   const CameraEstimate e = estimate_camera(slice, {std::nullopt, 120});
   check("growth", e.noise.growth, 8, 6);
   check("noise near the middle", e.noise.total_near, std::sqrt(square) * (1 + 8 * e.noise.near), 0.15e-3);
   check("noise far from the middle", e.noise.total_far, std::sqrt(square) * (1 + 8 * e.noise.far), 0.2e-3);
   CHECK(e.noise.far < 0.2);
-  // Without the period, distances would be those along the path, which tell nothing.
-  slice.condition.period.reset();
+  // Without it, distances would be those along the path, which tell nothing.
+  slice.condition.slice.reset();
   const CameraEstimate unknowing = estimate_camera(slice, {std::nullopt, 120});
   CHECK(unknowing.noise.far > 0.3);
   CHECK(unknowing.noise.growth.value < 2);
@@ -205,7 +214,7 @@ TEST_CASE("an .a file reads back as it was written") {
   condition.angular_velocity = -6;
   condition.filling = 0.313;
   condition.bead_diameter = 0.01;
-  condition.period = 0.034;
+  condition.slice = {-0.017, 0.034};
   condition.power = MeasuredPower{7.335, 0.003};
   std::ofstream(folder / "bead.yaml") << recording_text({"bead.a"}, condition, "A test.");
   const Recording back = read_recording(folder / "bead.yaml");
@@ -214,7 +223,8 @@ TEST_CASE("an .a file reads back as it was written") {
   REQUIRE(back.runs[0].size() + back.runs[0].report.outliers + back.runs[0].report.outside == run.size());
   CHECK(back.condition.angular_velocity == -6.0);
   CHECK(back.condition.filling == 0.313);
-  CHECK(back.condition.period == 0.034);
+  REQUIRE(back.condition.slice);
+  CHECK(*back.condition.slice == std::array{-0.017, 0.034});
   CHECK(back.condition.power->value == 7.335);
   std::size_t j = 0;
   for (std::size_t i = 0; i < back.runs[0].size(); ++i) {

@@ -68,6 +68,8 @@ TEST_CASE("simulated beads become a recording of their mill") {
   CHECK(back.condition.mill_diameter == 0.3);
   CHECK(back.condition.power->value == 3.77);
   CHECK_FALSE(back.condition.mill_length);  // a periodic slice has no length
+  REQUIRE(back.condition.slice);
+  CHECK((*back.condition.slice)[1] - (*back.condition.slice)[0] == Approx(kPeriod));
   for (std::size_t k = 0; k < 2; ++k) {
     const Run& seen = back.runs[k];
     CHECK(seen.size() > 700);
@@ -155,8 +157,8 @@ TEST_CASE("points that no file holds are treated as if they were read from one")
     Run seen = observe(beads.path(i, 2), camera, beads.context(i, 5));
     for (std::size_t k = 0; k < seen.size(); ++k)
       seen.spread.push_back(0.003 - 1.3137e-6 * static_cast<double>(k));  // decides between equal times
-    seen.position[0][100] = seen.position[1][100] = 0;                 // farther than a bead can get
-    seen.time[301] = seen.time[300] + 1e-9;                            // the same time, to the digits of a file
+    seen.position[0][100] = seen.position[1][100] = 0;                    // farther than a bead can get
+    seen.time[301] = seen.time[300] + 1e-9;                               // the same time, to the digits of a file
     names.push_back(fmt::format("b{}.a", i));
     std::ofstream(run.path() / names.back()) << ctrack_text(seen);
     seen = as_written(seen);

@@ -117,6 +117,9 @@ TEST_CASE("a hypothesis that lacks a value of the base takes it from 'set'") {
   REQUIRE(c.set.size() == 3);
   CHECK(c.set[0] == "contact.pair_parameters.restitution_by_speed.kind=restitution_by_speed");
   CHECK(c.set[1] == "pairs.glass~glass.reference_restitution=0.8");
+  CHECK(
+      std::none_of(q.left_out.begin(), q.left_out.end(), [](const std::string& line) { return line.starts_with("speed_dependent_res"); }));
+  CHECK_FALSE(q.left_out.empty());
 }
 
 TEST_CASE("nuisances that cannot be are refused at their line") {

@@ -107,8 +107,11 @@ TEST_CASE("numbers of the condition that cannot be meant are refused with the un
   CHECK_THAT(why("mill_length: 60"), Contains("r.yaml:3:") && Contains("60 mm"));
   CHECK_THAT(why("mill_length: 30"), Contains("'mill_length'") && Contains("along z"));
   CHECK_THAT(why("mill_length: 2 mm"), Contains("'mill_length'") && Contains("along z"));
-  CHECK_THAT(why("period: 20"), Contains("r.yaml:3:") && Contains("20 mm"));
-  CHECK_THAT(why("{mill_length: 60 mm, period: 20 mm}"), Contains("'condition.period'") && Contains("leave one of them out"));
+  CHECK_THAT(why("slice: [0, 20]"), Contains("r.yaml:3:") && Contains("20 mm"));
+  CHECK_THAT(why("slice: [20 mm, 0 mm]"), Contains("'condition.slice'") && Contains("must rise"));
+  CHECK_THAT(why("slice: 20 mm"), Contains("r.yaml:3:"));
+  CHECK_THAT(folder.why("files: a.txt\ncondition: {slice: [0 mm, 60 mm]}\nframe: {axis: [0 mm, 0 mm], ends: [0 mm, 60 mm]}\n"),
+             Contains("'condition.slice'") && Contains("no ends"));
   CHECK_THAT(why("bead_density: 2.5"), Contains("r.yaml:3:") && Contains("kg/m^3"));
   CHECK_THAT(why("tracer: {density: 2.5}"), Contains("kg/m^3"));
   CHECK_THAT(why("porosity: 1"), Contains("r.yaml:3:") && Contains("no bead"));
