@@ -229,7 +229,7 @@ Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoin
   studies::for_each_item(outcomes.size(), studies::worker_count(0, outcomes.size()), [&](std::size_t i, std::size_t) {
     try {
       bank.seen[i / per_point][i % per_point] =
-          workshop.look_at(q, bank.conditions[i % per_point], outcomes[i], bank.points[i / per_point].theta);
+          workshop.look(q, bank.conditions[i % per_point], outcomes[i], bank.points[i / per_point].theta);
     } catch (const config::UserError& e) {
       failures[i] = fmt::format("{}: {}", simulations[i].label, e.what());
     }

@@ -66,12 +66,10 @@ struct Workshop {
 
   std::vector<std::set<std::string>> without = {};  ///< [conditions] observables that are compared nowhere; empty: all are
 
-  /// What a simulation at θ shows, readings of the frame included. Throws config::UserError where it failed or something is undefined.
+  /// What a simulation at θ shows, readings of the frame included; NaN for what is undefined: the speed where no bead was seen. Throws
+  /// config::UserError where it failed.
   calibrate::Observation look(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
                               const VectorXd& theta) const;
-  /// The same, with NaN for what is undefined: the speed where no bead was seen.
-  calibrate::Observation look_at(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
-                                 const VectorXd& theta) const;
 };
 
 /// The points with what was seen of them in some conditions.

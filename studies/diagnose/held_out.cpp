@@ -48,6 +48,7 @@ Prediction simulate(const HeldOutRequest& r, const VectorXd& coded, const std::v
 }
 
 struct Judge {
+  std::vector<Index> kept;  ///< observables that every prediction defines; of these are the others
   VectorXd observed;
   MatrixXd recording;           ///< covariance: the weight
   std::vector<MatrixXd> noise;  ///< factors of the laws of the recording's noise
@@ -55,10 +56,16 @@ struct Judge {
 
   static double misfit(const VectorXd& r, const Eigen::LLT<MatrixXd>& c) { return r.dot(c.solve(r)) / static_cast<double>(r.size()); }
 
+  Prediction part(const Prediction& p) const {
+    Prediction out = p;
+    out.value = VectorXd(p.value(kept)), out.covariance = MatrixXd(p.covariance(kept, kept));
+    return out;
+  }
+
   /// Improvement of the first prediction over another, with what noise of recording and simulations leaves open; the widest interval over
   /// the laws of noise.
   void compare(const Score& corrected, Score& rival, std::uint64_t seed) const {
-    const Prediction &one = corrected.prediction, &other = rival.prediction;
+    const Prediction one = part(corrected.prediction), other = part(rival.prediction);
     const Eigen::LLT<MatrixXd> c(recording + 0.5 * (one.covariance + other.covariance));
     rival.improvement = misfit(observed - other.value, c) - misfit(observed - one.value, c);
     const MatrixXd first = factor(one.covariance), second = factor(other.covariance);
@@ -77,7 +84,8 @@ struct Judge {
   }
 
   /// How often a recording of this very prediction would look as bad; the largest over the laws of noise.
-  double goodness(const Prediction& p, std::uint64_t seed) const {
+  double goodness(const Prediction& whole, std::uint64_t seed) const {
+    const Prediction p = part(whole);
     const Eigen::LLT<MatrixXd> c(recording + p.covariance);
     const double seen = misfit(observed - p.value, c);
     const MatrixXd own = factor(p.covariance);
@@ -95,11 +103,50 @@ struct Judge {
 
 Score score(const Judge& judge, Prediction prediction) {
   Score s;
-  const MatrixXd sum = judge.recording + prediction.covariance;
-  s.misfit = Judge::misfit(judge.observed - prediction.value, Eigen::LLT<MatrixXd>(sum));
+  const Prediction part = judge.part(prediction);
+  s.misfit = Judge::misfit(judge.observed - part.value, Eigen::LLT<MatrixXd>(MatrixXd(judge.recording + part.covariance)));
   s.power_percent = 100 * (prediction.power - judge.power) / judge.power;
   s.prediction = std::move(prediction);
   return s;
+}
+
+Judge judge_of(const HeldOutRequest& r, std::size_t condition, const std::vector<Prediction>& predictions) {
+  Problem held;
+  add_recorded(r.question, r.workshop, r.bank, {condition}, held);
+  Judge judge{{}, {}, {}, {}, r.workshop.recorded[condition].power.value};
+  for (Index i = 0; i < held.observed.size(); ++i) {
+    if (std::all_of(predictions.begin(), predictions.end(),
+                    [i](const Prediction& p) { return !p.failure.empty() || std::isfinite(p.value[i]); }))
+      judge.kept.push_back(i);
+  }
+  judge.observed = held.observed(judge.kept), judge.recording = held.covariance(judge.kept, judge.kept);
+  for (const MatrixXd& law : held.noise) judge.noise.push_back(factor(MatrixXd(law(judge.kept, judge.kept))));
+  return judge;
+}
+
+HeldOut judged(const HeldOutRequest& r, std::size_t condition, std::vector<Prediction> all, const Prediction& base, bool compared) {
+  const Judge judge = judge_of(r, condition, all);
+  HeldOut out;
+  out.condition = condition;
+  const auto& observables = r.workshop.recorded[condition].observables;
+  for (std::size_t i = 0; i < observables.size(); ++i) {
+    if (!std::binary_search(judge.kept.begin(), judge.kept.end(), static_cast<Index>(i))) out.not_compared.push_back(observables[i].name);
+  }
+  if (base.failure.empty()) out.base_p = judge.goodness(base, r.seed);
+  for (Prediction& p : all) {
+    if (!p.failure.empty())
+      out.failures.push_back(fmt::format("{}: {}", p.name, p.failure));
+    else
+      out.scores.push_back(score(judge, std::move(p)));
+  }
+  if (!compared) return out;
+  out.improves = out.failures.empty();
+  for (std::size_t k = 1; k < out.scores.size(); ++k) {
+    judge.compare(out.scores[0], out.scores[k], r.seed + k);
+    out.improves = out.improves && out.scores[k].low90 > 0;
+    out.contradicts = out.contradicts || out.scores[k].high90 < 0;
+  }
+  return out;
 }
 
 /// What the best candidate switches on.
@@ -111,19 +158,11 @@ std::vector<Effect> best_effects(const HeldOutRequest& r) {
 }  // namespace
 
 HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) {
-  Problem held;
-  add_recorded(r.question, r.workshop, r.bank, {condition}, held);
-  Judge judge{held.observed, held.covariance, {}, r.workshop.recorded[condition].power.value};
-  for (const MatrixXd& law : held.noise) judge.noise.push_back(factor(law));
   const RivalModels rivals(r, condition);
-  HeldOut out;
-  out.condition = condition;
+  std::vector<Prediction> all;
   const auto add = [&](Prediction p, const std::string& sentence) {
     p.sentence = sentence;
-    if (!p.failure.empty())
-      out.failures.push_back(fmt::format("{}: {}", p.name, p.failure));
-    else
-      out.scores.push_back(score(judge, std::move(p)));
+    all.push_back(std::move(p));
   };
   const bool named = r.naming.best >= 0;
   if (named) {
@@ -132,27 +171,19 @@ HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) {
     add(simulate(r, best.fit.coded, effects, condition, "corrected"), "with the best candidate, all parameters fitted together");
     if (!effects.empty()) add(simulate(r, best.fit.coded, {}, condition, "effect removed"), "the corrected parameters without the effect");
   }
-  const bool compared = named && !out.scores.empty();
+  const bool compared = std::any_of(all.begin(), all.end(), [](const Prediction& p) { return p.failure.empty(); });
   const Prediction base = simulate(r, r.naming.base.coded, {}, condition, "retuned to all observables");
-  if (base.failure.empty()) out.base_p = judge.goodness(base, r.seed);
   if (const auto metered = rivals.metered()) {
     add(simulate(r, rivals.power_only(*metered), {}, condition, "retuned to power"),
         fmt::format("the base, friction retuned until the power at '{}' matches: the practice",
                     r.question.study.conditions[*metered].name));
   }
   add(base, "the base, parameters refitted to all observables");
-  if (!compared) return out;
-  if (base.failure.empty()) {
+  if (compared && base.failure.empty()) {
     add(rivals.placebo(base), "the base with a free parameter of no meaning, the best of twenty such");
     add(rivals.discrepancy(base), "the base with the residuals of the fitted conditions carried over by a Gaussian process");
   }
-  out.improves = out.failures.empty();
-  for (std::size_t k = 1; k < out.scores.size(); ++k) {
-    judge.compare(out.scores[0], out.scores[k], r.seed + k);
-    out.improves = out.improves && out.scores[k].low90 > 0;
-    out.contradicts = out.contradicts || out.scores[k].high90 < 0;
-  }
-  return out;
+  return judged(r, condition, std::move(all), base, compared);
 }
 
 std::vector<Alone> fit_alone(const HeldOutRequest& r) {

@@ -14,9 +14,9 @@ namespace millscope::diagnose {
 struct Prediction {
   std::string name;      ///< "corrected", "retuned to power", …
   std::string sentence;  ///< what it is
-  VectorXd value;
-  MatrixXd covariance;  ///< of the simulations' mean
-  double power = 0;     ///< W
+  VectorXd value;        ///< NaN: some of its simulations leave it undefined
+  MatrixXd covariance;   ///< of the simulations' mean
+  double power = 0;      ///< W
   bool simulated = true;
   std::string failure;  ///< why none of its simulations came to its end; "" when some did
 };
@@ -34,8 +34,9 @@ struct HeldOut {
   std::vector<Score> scores;  ///< corrected first, where there is one
   double base_p = 1;          ///< that a recording of the refitted base looks as bad
   std::vector<std::string> failures;
-  bool improves = false;     ///< the interval against every rival lies above 0
-  bool contradicts = false;  ///< that against some rival lies below 0
+  std::vector<std::string> not_compared;  ///< observables that some prediction leaves undefined (NaN in its value)
+  bool improves = false;                  ///< the interval against every rival lies above 0
+  bool contradicts = false;               ///< that against some rival lies below 0
 };
 
 /// θ that matches the powers of the fit conditions, nuisances at their priors' means (those apart as they are in the case), as near the

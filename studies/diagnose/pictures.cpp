@@ -82,6 +82,7 @@ void held_out(const Told& t, Drawer& drawer) {
         continue;
       Curve c{s.prediction.name, {}, {}, {}, {}};
       for (Index i = 0; i < recorded.value.size(); ++i) {
+        if (!std::isfinite(s.prediction.value[i])) continue;
         c.x.push_back(static_cast<double>(i + 1));
         const bool power = recorded.observables[static_cast<std::size_t>(i)].group == "power";
         const double meter = power ? t.question.study.power_error * recorded.value[i] : 0;

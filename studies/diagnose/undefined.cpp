@@ -9,19 +9,12 @@
 
 namespace millscope::diagnose {
 
-calibrate::Observation Workshop::look_at(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
-                                         const VectorXd& theta) const {
+calibrate::Observation Workshop::look(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
+                                      const VectorXd& theta) const {
   if (outcome.state == campaign::State::failed) throw config::UserError(outcome.message);
   calibrate::Observation o = observe(condition, outcome, question.camera(theta));
   if (!readings.empty()) add_readings(question, readings[condition], theta, o);
   if (!without.empty()) calibrate::leave_out(o, without[condition]);
-  return o;
-}
-
-calibrate::Observation Workshop::look(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
-                                      const VectorXd& theta) const {
-  calibrate::Observation o = look_at(question, condition, outcome, theta);
-  calibrate::require_defined(o);
   return o;
 }
 

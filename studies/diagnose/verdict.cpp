@@ -120,6 +120,8 @@ void reservations(Diagnosis& d) {
   }
   for (const HeldOut& h : d.held_out) {
     for (const std::string& f : h.failures) d.notes.push_back("held out, failed: " + f);
+    for (const std::string& name : h.not_compared)
+      d.notes.push_back(fmt::format("held out, not compared: '{}', where some prediction throws no bead", name));
   }
 }
 

@@ -254,6 +254,31 @@ TEST_CASE("what simulations leave undefined is compared nowhere, and that is sai
   CHECK_THAT(d.notes[1], Contains("'summary 5' of condition 'speed50' was compared nowhere: in"));
 }
 
+TEST_CASE("what a prediction leaves undefined none is judged by, and that is said") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  MadeUpMill mill(q, usual(), with(kRolling + "=0.12"));
+  Workshop workshop = mill.workshop();
+  // One seed of each prediction of the held-out condition throws no bead there; no run of the bank has this seed.
+  workshop.observe = [look = workshop.observe](std::size_t condition, const campaign::Outcome& o, const std::string& camera) {
+    calibrate::Observation seen = look(condition, o, camera);
+    if (condition == 2 && o.key.ends_with("seed=15855")) seen.value[5] = std::nan("");
+    return seen;
+  };
+  const Diagnosis d = diagnose::diagnose(q, workshop, quick());
+  INFO(d.sentence);
+  CHECK(d.named == std::vector<std::string>{"rolling_resistance"});
+  REQUIRE(d.held_out.size() == 1);
+  CHECK(d.held_out[0].failures.empty());
+  CHECK(d.held_out[0].not_compared == std::vector<std::string>{"summary 5"});
+  CHECK(d.held_out[0].improves);
+  CHECK(std::isnan(d.held_out[0].scores[0].prediction.value[5]));
+  CHECK(std::isfinite(d.held_out[0].scores[0].misfit));
+  CHECK(workshop.recorded[2].value.size() == 16);
+  CHECK(std::any_of(d.notes.begin(), d.notes.end(),
+                    [](const std::string& n) { return n.find("held out, not compared: 'summary 5'") != std::string::npos; }));
+}
+
 TEST_CASE("candidates that cannot matter get their first simulations alone") {
   const Scratch folder;
   const Question q = question_of(folder, kSections);
