@@ -20,6 +20,51 @@ constexpr std::size_t kSpare = 2;          // runs beyond the coefficients of a 
 constexpr double kMostLeverage = 0.95;
 constexpr double kRounding = 1e-11;
 
+/// Coefficients are map · values of the rows.
+struct Solution {
+  MatrixXd map;
+  Index rank = 0;
+};
+
+/// Least squares with a weight for each row.
+Solution solve(const MatrixXd& x, const VectorXd& weight) {
+  const VectorXd root = weight.cwiseSqrt();
+  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr(MatrixXd(root.asDiagonal() * x));
+  return {qr.pseudoInverse() * root.asDiagonal(), qr.rank()};
+}
+
+/// Rows with an effect that the surface follows worse than it follows the base weigh less, by the mean over the observables of how much
+/// larger their squared left-out residuals are: else what it cannot follow of a strong effect would pull the base its way, and a recording
+/// without the effect would seem to have some of it. `group`: the candidate of each row, −1 without.
+VectorXd weights_of(const MatrixXd& x, const MatrixXd& y, const std::vector<int>& group) {
+  VectorXd weight = VectorXd::Ones(x.rows());
+  const Solution even = solve(x, weight);
+  MatrixXd left_out = y - x * (even.map * y);
+  for (Index r = 0; r < x.rows(); ++r) left_out.row(r) /= 1 - std::min(kMostLeverage, x.row(r).dot(even.map.col(r)));
+  const auto mean_square = [&](int candidate) {
+    VectorXd sum = VectorXd::Zero(y.cols());
+    double rows = 0;
+    for (Index r = 0; r < x.rows(); ++r) {
+      if (group[static_cast<std::size_t>(r)] == candidate) sum += left_out.row(r).cwiseAbs2().transpose(), ++rows;
+    }
+    return VectorXd(sum / std::max(1.0, rows));
+  };
+  const VectorXd base = mean_square(-1);
+  for (const int candidate : std::set<int>(group.begin(), group.end())) {
+    if (candidate < 0) continue;
+    const VectorXd own = mean_square(candidate);
+    double ratio = 0, counted = 0;
+    for (Index i = 0; i < y.cols(); ++i) {
+      if (base[i] > kRounding * kRounding * y.col(i).squaredNorm()) ratio += own[i] / base[i], ++counted;
+    }
+    if (counted == 0 || ratio <= counted) continue;
+    for (Index r = 0; r < x.rows(); ++r) {
+      if (group[static_cast<std::size_t>(r)] == candidate) weight[r] = counted / ratio;
+    }
+  }
+  return weight;
+}
+
 }  // namespace
 
 double Coordinate::coded(double value) const {
@@ -143,28 +188,29 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
                     points.size(), features_.size(), data.left_out.empty() ? "" : "; ", fmt::join(data.left_out, "; ")));
   }
   MatrixXd x(rows, features_.size()), y(rows, data.value.cols());
+  std::vector<int> group;
   Index k = 0, without = 0;
   for (std::size_t r = 0; r < data.rows.size(); ++r) {
     if (!used[r]) continue;
+    group.push_back(data.rows[r].effects.empty() ? -1 : data.rows[r].effects.front().candidate);
     x.row(k) = features_.all(data.coded(data.rows[r].theta), data.rows[r].effects).transpose();
     y.row(k++) = data.value.row(static_cast<Index>(r));
   }
-  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr(x);
-  coefficients_ = qr.solve(y);
-  const MatrixXd pseudo = qr.pseudoInverse();
-  inverse_ = pseudo * pseudo.transpose();
+  const Solution solution = solve(x, weights_of(x, y, group));
+  coefficients_ = solution.map * y;
+  inverse_ = solution.map * solution.map.transpose();
   residual_ = y - x * coefficients_;
   for (Index i = 0; i < y.cols(); ++i) {  // what is left of an exact column is rounding, whose correlations mean nothing
     if (residual_.col(i).norm() < kRounding * y.col(i).norm()) residual_.col(i).setZero();
   }
-  degrees_ = static_cast<Index>(points.size()) - qr.rank();
+  degrees_ = static_cast<Index>(points.size()) - solution.rank;
   left_out_ = residual_;
   k = 0;
   for (std::size_t r = 0; r < data.rows.size(); ++r) {
     if (!used[r]) continue;
-    const double leverage = x.row(k).dot(inverse_ * x.row(k).transpose());
-    left_out_.row(k++) /= 1 - std::min(kMostLeverage, leverage);
-    if (data.rows[r].effects.empty()) mean_leverage_ += leverage, ++without;
+    const double own = x.row(k).dot(solution.map.col(k));  // what the row's own value does to its prediction
+    if (data.rows[r].effects.empty()) mean_leverage_ += own, ++without;
+    left_out_.row(k++) /= 1 - std::min(kMostLeverage, own);
   }
   mean_leverage_ /= static_cast<double>(std::max<Index>(1, without));
   keep_scatter(points, y);
