@@ -214,6 +214,15 @@ campaign::Simulation simulation_at(const Question& q, const VectorXd& theta, con
   return s;
 }
 
+calibrate::Observation Workshop::look(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
+                                      const VectorXd& theta) const {
+  if (outcome.state == campaign::State::failed) throw config::UserError(outcome.message);
+  calibrate::Observation o = observe(condition, outcome, question.camera(theta));
+  if (!readings.empty()) add_readings(question, readings[condition], theta, o);
+  if (!without.empty()) calibrate::leave_out(o, without[condition]);
+  return o;
+}
+
 Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoint> points, std::vector<std::size_t> conditions) {
   std::vector<campaign::Simulation> simulations;
   for (const BankPoint& p : points) {

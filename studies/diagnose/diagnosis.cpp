@@ -111,7 +111,7 @@ Diagnosis diagnose(const Question& question, Workshop& workshop, const NamingOpt
     d.missing = missing_force(request);
     d.terms = offer_terms(d.missing);
   }
-  for (const std::string& line : d.problem.data.left_out) d.notes.push_back(line);
+  d.notes.insert(d.notes.end(), d.problem.data.left_out.begin(), d.problem.data.left_out.end());
   for (std::size_t c = 0; c < workshop.readings.size(); ++c) {
     if (!workshop.readings[c].empty())
       d.notes.push_back(

@@ -33,14 +33,26 @@ Solution solve(const MatrixXd& x, const VectorXd& weight) {
   return {qr.pseudoInverse() * root.asDiagonal(), qr.rank()};
 }
 
+/// What each row's own value does to its prediction.
+VectorXd leverages(const MatrixXd& x, const Solution& solution) {
+  VectorXd own(x.rows());
+  for (Index r = 0; r < x.rows(); ++r) own[r] = x.row(r).dot(solution.map.col(r));
+  return own;
+}
+
+/// Residuals, each as from a fit without its row.
+MatrixXd without_own(MatrixXd residual, const VectorXd& leverage) {
+  for (Index r = 0; r < residual.rows(); ++r) residual.row(r) /= 1 - std::min(kMostLeverage, leverage[r]);
+  return residual;
+}
+
 /// Rows with an effect that the surface follows worse than it follows the base weigh less, by the mean over the observables of how much
 /// larger their squared left-out residuals are: else what it cannot follow of a strong effect would pull the base its way, and a recording
 /// without the effect would seem to have some of it. `group`: the candidate of each row, −1 without.
 VectorXd weights_of(const MatrixXd& x, const MatrixXd& y, const std::vector<int>& group) {
   VectorXd weight = VectorXd::Ones(x.rows());
   const Solution even = solve(x, weight);
-  MatrixXd left_out = y - x * (even.map * y);
-  for (Index r = 0; r < x.rows(); ++r) left_out.row(r) /= 1 - std::min(kMostLeverage, x.row(r).dot(even.map.col(r)));
+  const MatrixXd left_out = without_own(y - x * (even.map * y), leverages(x, even));
   const auto mean_square = [&](int candidate) {
     VectorXd sum = VectorXd::Zero(y.cols());
     double rows = 0;
@@ -189,7 +201,7 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
   }
   MatrixXd x(rows, features_.size()), y(rows, data.value.cols());
   std::vector<int> group;
-  Index k = 0, without = 0;
+  Index k = 0;
   for (std::size_t r = 0; r < data.rows.size(); ++r) {
     if (!used[r]) continue;
     group.push_back(data.rows[r].effects.empty() ? -1 : data.rows[r].effects.front().candidate);
@@ -204,15 +216,10 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
     if (residual_.col(i).norm() < kRounding * y.col(i).norm()) residual_.col(i).setZero();
   }
   degrees_ = static_cast<Index>(points.size()) - solution.rank;
-  left_out_ = residual_;
-  k = 0;
-  for (std::size_t r = 0; r < data.rows.size(); ++r) {
-    if (!used[r]) continue;
-    const double own = x.row(k).dot(solution.map.col(k));  // what the row's own value does to its prediction
-    if (data.rows[r].effects.empty()) mean_leverage_ += own, ++without;
-    left_out_.row(k++) /= 1 - std::min(kMostLeverage, own);
-  }
-  mean_leverage_ /= static_cast<double>(std::max<Index>(1, without));
+  const VectorXd leverage = leverages(x, solution);
+  left_out_ = without_own(residual_, leverage);
+  for (Index r = 0; r < rows; ++r) mean_leverage_ += group[static_cast<std::size_t>(r)] < 0 ? leverage[r] : 0;
+  mean_leverage_ /= static_cast<double>(std::max<std::ptrdiff_t>(1, std::count(group.begin(), group.end(), -1)));
   keep_scatter(points, y);
 }
 

@@ -4,19 +4,9 @@
 #include <cmath>
 #include <map>
 
-#include "kernel/config/error.hpp"
 #include "studies/diagnose/bank.hpp"
 
 namespace millscope::diagnose {
-
-calibrate::Observation Workshop::look(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
-                                      const VectorXd& theta) const {
-  if (outcome.state == campaign::State::failed) throw config::UserError(outcome.message);
-  calibrate::Observation o = observe(condition, outcome, question.camera(theta));
-  if (!readings.empty()) add_readings(question, readings[condition], theta, o);
-  if (!without.empty()) calibrate::leave_out(o, without[condition]);
-  return o;
-}
 
 std::vector<std::string> leave_out_undefined(const Question& q, Workshop& workshop, Bank& bank) {
   workshop.without.resize(workshop.recorded.size());

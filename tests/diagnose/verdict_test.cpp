@@ -1,5 +1,6 @@
 // Diagnoses end to end on a mill that is a formula: every verdict, where it belongs.
 #include <catch2/catch.hpp>
+#include <functional>
 #include <set>
 
 #include "made_up_study.hpp"
@@ -45,6 +46,17 @@ const Judged& judged(const Diagnosis& d, const std::string& name) {
     if (d.problem.rivals[j].name == name) return d.naming.judged[j];
   }
   throw std::runtime_error("not judged: " + name);
+}
+
+/// A mill in which no bead is thrown to where 'summary 5' is taken, in the simulations that `lacks` names by condition and key.
+Workshop lacking(MadeUpMill& mill, const std::function<bool(std::size_t, const std::string&)>& lacks) {
+  Workshop w = mill.workshop();
+  w.observe = [look = w.observe, lacks](std::size_t condition, const campaign::Outcome& o, const std::string& camera) {
+    calibrate::Observation seen = look(condition, o, camera);
+    if (lacks(condition, o.key)) seen.value[5] = std::nan("");
+    return seen;
+  };
+  return w;
 }
 
 Diagnosis found(const Question& q, MadeUpMill& mill) {
@@ -233,13 +245,10 @@ TEST_CASE("what simulations leave undefined is compared nowhere, and that is sai
   const Scratch folder;
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, usual(), with(kRolling + "=0.12"));
-  // No bead is thrown there, neither without the effect nor where it is weak: in the fitted condition 1 and in the held-out one.
-  Workshop workshop = mill.workshop();
-  workshop.observe = [look = workshop.observe](std::size_t condition, const campaign::Outcome& o, const std::string& camera) {
-    calibrate::Observation seen = look(condition, o, camera);
-    if (condition > 0 && o.key.find(kRolling + "=0.1") == std::string::npos) seen.value[5] = std::nan("");
-    return seen;
-  };
+  // Neither without the effect nor where it is weak: in the fitted condition 1 and in the held-out one.
+  Workshop workshop = lacking(mill, [](std::size_t condition, const std::string& key) {
+    return condition > 0 && key.find(kRolling + "=0.1") == std::string::npos;
+  });
   const Diagnosis d = diagnose::diagnose(q, workshop, quick());
   INFO(d.sentence);
   CHECK(d.verdict == Verdict::named);
@@ -258,13 +267,9 @@ TEST_CASE("what a prediction leaves undefined none is judged by, and that is sai
   const Scratch folder;
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, usual(), with(kRolling + "=0.12"));
-  Workshop workshop = mill.workshop();
-  // One seed of each prediction of the held-out condition throws no bead there; no run of the bank has this seed.
-  workshop.observe = [look = workshop.observe](std::size_t condition, const campaign::Outcome& o, const std::string& camera) {
-    calibrate::Observation seen = look(condition, o, camera);
-    if (condition == 2 && o.key.ends_with("seed=15855")) seen.value[5] = std::nan("");
-    return seen;
-  };
+  // One seed of each prediction of the held-out condition; no run of the bank has this seed.
+  Workshop workshop =
+      lacking(mill, [](std::size_t condition, const std::string& key) { return condition == 2 && key.ends_with("seed=15855"); });
   const Diagnosis d = diagnose::diagnose(q, workshop, quick());
   INFO(d.sentence);
   CHECK(d.named == std::vector<std::string>{"rolling_resistance"});
