@@ -83,10 +83,10 @@ void know_charge(const config::Case& c, const std::optional<config::Vessel>& ves
 
 }  // namespace
 
-std::optional<std::array<double, 2>> slice_of(const MillOfCase& mill) {
+std::optional<Slice> slice_of(const MillOfCase& mill) {
   if (!(mill.period > 0)) return std::nullopt;
   const double middle = 0.5 * (mill.context.mill_low + mill.context.mill_high);
-  return std::array{middle - 0.5 * mill.period, middle + 0.5 * mill.period};
+  return Slice{middle - 0.5 * mill.period, middle + 0.5 * mill.period};
 }
 
 MillOfCase read_mill_of_case(const std::filesystem::path& case_file, const host::Registry& registry,

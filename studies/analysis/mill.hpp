@@ -1,7 +1,6 @@
 // The mill of a case: its shell, its motion and its charge, without the physics.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -10,6 +9,7 @@
 #include "kernel/dem/motion.hpp"
 #include "kernel/host/registry.hpp"
 #include "millscope/analyzer.hpp"
+#include "studies/recording/recording.hpp"
 
 namespace millscope::studies {
 
@@ -24,7 +24,7 @@ struct MillOfCase {
 };
 
 /// Where a slice that repeats along z begins and ends, m; nothing for a mill with ends.
-std::optional<std::array<double, 2>> slice_of(const MillOfCase& mill);
+std::optional<Slice> slice_of(const MillOfCase& mill);
 
 /// Reads a case, or what `millscope run` left of it (case.resolved.yaml). Of the plugins only those of geometry and gravity are used.
 /// `settings`: as `--set`. Throws config::UserError.

@@ -143,7 +143,7 @@ RecordedCondition recorded_from(const Json& j, const std::string& identity) {
 /// Nine tenths of the locations along the axis, and the middle from which the camera's noise is counted; of a slice that repeats all of it,
 /// as its beads are where their nearest image is.
 AxialPlace place_of(const studies::Recording& recording, const Observing& observing) {
-  if (const auto& slice = recording.condition.slice) return {(*slice)[0], (*slice)[1], 0.5 * ((*slice)[0] + (*slice)[1])};
+  if (const auto& slice = recording.condition.slice) return {slice->low, slice->high, slice->middle()};
   std::vector<double> z;
   for (const studies::Run& run : recording.runs) {
     for (const double value : run.position[2]) {

@@ -62,7 +62,7 @@ std::string recording_text(const std::vector<std::string>& files, const Conditio
   }
   number("mill_diameter", c.mill_diameter, " m");
   number("mill_length", c.mill_length, " m");
-  if (c.slice) condition += fmt::format("  slice: [{} m, {} m]\n", config::number_text((*c.slice)[0]), config::number_text((*c.slice)[1]));
+  if (c.slice) condition += fmt::format("  slice: [{} m, {} m]\n", config::number_text(c.slice->low), config::number_text(c.slice->high));
   if (c.power) {
     condition +=
         fmt::format("  power: {{value: {} W, sem: {} W}}\n", config::number_text(c.power->value), config::number_text(c.power->sem));

@@ -68,8 +68,8 @@ CameraEstimate estimate_camera(const Recording& recording, const EstimateOptions
   e.axis = axis_of(recording, frame);
   e.middle = middle_of(recording, e.axis, frame);
   const auto& slice = recording.condition.slice;
-  if (slice) e.middle[2] = 0.5 * ((*slice)[0] + (*slice)[1]);
-  const camera::Middle middle{e.middle, slice ? (*slice)[1] - (*slice)[0] : 0};
+  if (slice) e.middle[2] = slice->middle();
+  const camera::Middle middle{e.middle, slice ? slice->length() : 0};
 
   const double usual = median_interval(recording), pause = 30 * usual;
   const std::vector<camera::RateWindow> windows = camera::rate_windows(recording, middle, pause);

@@ -75,13 +75,13 @@ void read_speed(const Node& section, Condition& condition) {
   if (direction || speed < 0) condition.angular_velocity = (clockwise || speed < 0 ? -1 : 1) * *condition.speed;
 }
 
-std::array<double, 2> read_slice(const Node& node) {
+Slice read_slice(const Node& node) {
   const auto items = node.items();
   if (items.size() != 2) node.fail("wants where the slice begins and ends along z, e.g. [0 mm, 20 mm]");
-  const std::array<double, 2> slice{read_number(items[0], "m"), read_number(items[1], "m")};
-  if (!(slice[1] > slice[0])) node.fail("must rise; the first is its end at the smaller z");
-  if (slice[1] - slice[0] > kLongestSlice)
-    node.fail(fmt::format("is {:.4g} m long, and no slice is; say the unit, e.g. [0 mm, 20 mm]", slice[1] - slice[0]));
+  const Slice slice{read_number(items[0], "m"), read_number(items[1], "m")};
+  if (!(slice.high > slice.low)) node.fail("must rise; the first is its end at the smaller z");
+  if (slice.length() > kLongestSlice)
+    node.fail(fmt::format("is {:.4g} m long, and no slice is; say the unit, e.g. [0 mm, 20 mm]", slice.length()));
   return slice;
 }
 

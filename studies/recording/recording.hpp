@@ -24,6 +24,13 @@ struct MeasuredPower {
   double sem;    ///< W
 };
 
+/// Where a slice that repeats lies along z, m.
+struct Slice {
+  double low = 0, high = 0;
+  double middle() const { return 0.5 * (low + high); }
+  double length() const { return high - low; }
+};
+
 /// What the user says of the mill; what is absent is unknown and is never guessed.
 struct Condition {
   std::optional<double> angular_velocity;  ///< Ω about z, rad/s; the sign is the turning sense. Absent where the sense was not said
@@ -36,7 +43,7 @@ struct Condition {
   std::optional<double> mill_diameter;  ///< of the bare shell, m
   std::optional<double> mill_length;    ///< inner, m
   /// m along z: of a simulated slice that repeats, whose beads' paths go on from image to image; a real mill is none.
-  std::optional<std::array<double, 2>> slice;
+  std::optional<Slice> slice;
   std::optional<MeasuredPower> power;
   std::filesystem::path geometry;  ///< case file with the mill's geometry; empty: none
 };

@@ -121,7 +121,7 @@ TEST_CASE("in a slice that repeats along z noise depends on where the nearest im
   }
   slice.gap_limit = 0.1;
   slice.frame = MillFrame{{0, 0}, 0, 0};
-  slice.condition.slice = {0, 0.06};
+  slice.condition.slice = Slice{0, 0.06};
   const double square = (2 * (0.35 * 0.35 + 0.25 * 0.25) + 0.45 * 0.45 + 0.32 * 0.32) / 3 * 1e-6;
   const CameraEstimate e = estimate_camera(slice, {std::nullopt, 120});
   check("growth", e.noise.growth, 8, 6);
@@ -214,7 +214,7 @@ TEST_CASE("an .a file reads back as it was written") {
   condition.angular_velocity = -6;
   condition.filling = 0.313;
   condition.bead_diameter = 0.01;
-  condition.slice = {-0.017, 0.034};
+  condition.slice = Slice{-0.017, 0.034};
   condition.power = MeasuredPower{7.335, 0.003};
   std::ofstream(folder / "bead.yaml") << recording_text({"bead.a"}, condition, "A test.");
   const Recording back = read_recording(folder / "bead.yaml");
@@ -224,7 +224,8 @@ TEST_CASE("an .a file reads back as it was written") {
   CHECK(back.condition.angular_velocity == -6.0);
   CHECK(back.condition.filling == 0.313);
   REQUIRE(back.condition.slice);
-  CHECK(*back.condition.slice == std::array{-0.017, 0.034});
+  CHECK(back.condition.slice->low == -0.017);
+  CHECK(back.condition.slice->high == 0.034);
   CHECK(back.condition.power->value == 7.335);
   std::size_t j = 0;
   for (std::size_t i = 0; i < back.runs[0].size(); ++i) {

@@ -87,8 +87,8 @@ TEST_CASE("sets are recordings of drawn mills, and tell nothing of what was draw
     CHECK(*r.condition.filling == Approx(0.395));  // as believed
     CHECK(r.condition.geometry.empty());
     REQUIRE(r.condition.slice);
-    CHECK((*r.condition.slice)[0] == Approx(0).margin(1e-12));
-    CHECK((*r.condition.slice)[1] == Approx(0.04));
+    CHECK(r.condition.slice->low == Approx(0).margin(1e-12));
+    CHECK(r.condition.slice->high == Approx(0.04));
     CHECK(r.condition.power->value == Approx(a.made.at("fast").at("measured_power_W").get<double>()));
     for (const auto& file : fs::directory_iterator(made.sets / a.set)) {
       const std::string text = read(file.path());
