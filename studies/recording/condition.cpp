@@ -28,7 +28,8 @@ config::Range positive_up_to(double highest, const char* reason) {
 }
 
 /// Of beads: from light polymers to tungsten and beyond.
-config::Range bead_densities() { return config::between(100, 25000, "it is in kg/m^3, or say the unit, e.g. 2.5 g/cm^3"); }
+/// From foam on; densities that were meant in g/cm³, 22.6 at most, lie below.
+config::Range bead_densities() { return config::between(25, 25000, "it is in kg/m^3, or say the unit, e.g. 2.5 g/cm^3"); }
 
 /// The diameter of the bare shell that a case file gives in its section `mill`.
 std::optional<double> diameter_of_case(const std::string& file) {

@@ -113,6 +113,8 @@ TEST_CASE("numbers of the condition that cannot be meant are refused with the un
   CHECK_THAT(folder.why("files: a.txt\ncondition: {slice: [0 mm, 60 mm]}\nframe: {axis: [0 mm, 0 mm], ends: [0 mm, 60 mm]}\n"),
              Contains("'condition.slice'") && Contains("no ends"));
   CHECK_THAT(why("bead_density: 2.5"), Contains("r.yaml:3:") && Contains("kg/m^3"));
+  CHECK_THAT(why("bead_density: 22.6"), Contains("kg/m^3"));  // osmium in g/cm^3
+  CHECK(why("bead_density: 30").empty());                     // foam
   CHECK_THAT(why("tracer: {density: 2.5}"), Contains("kg/m^3"));
   CHECK_THAT(why("porosity: 1"), Contains("r.yaml:3:") && Contains("no bead"));
   CHECK_THAT(why("mill_diameter: 300"), Contains("r.yaml:3:") && Contains("300 mm"));
