@@ -13,6 +13,7 @@
 #include "studies/calibrate/bead_paths.hpp"
 #include "studies/camera/ctrack_writer.hpp"
 #include "studies/camera/simulated_beads.hpp"
+#include "studies/recording/recording.hpp"
 
 namespace millscope::challenge {
 
@@ -71,8 +72,9 @@ void write_recording(const RecordingOf& what, const studies::Camera& camera, con
   }
   if (names.empty())
     throw UserError(fmt::format("{}: the camera saw none of the beads for long enough; loosen it, or give more seconds", what.name));
-  output::write_file(what.folder / (what.name + ".yaml"),
-                     studies::recording_text(names, what.condition, "Tracers in one state of a mill, and what is known of it."));
+  const fs::path file = what.folder / (what.name + ".yaml");
+  output::write_file(file, studies::recording_text(names, what.condition, "Tracers in one state of a mill, and what is known of it."));
+  studies::read_recording(file);  // throws for a mill that no recording may be of: better now than when all sets are sealed
 }
 
 }  // namespace millscope::challenge

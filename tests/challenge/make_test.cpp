@@ -100,6 +100,15 @@ TEST_CASE("sets are recordings of drawn mills, and tell nothing of what was draw
   CHECK(testing::refusal([&] { made.make_sets(); }).find("holds sealed sets already") != std::string::npos);
 }
 
+TEST_CASE("sets that could not be read back are not sealed") {
+  Made made;
+  std::string study = kStudy;
+  study.insert(study.find("time.analyze_from_s"), "materials.glass.density: 20 kg/m^3, time.step_fraction: 10 %, ");
+  std::ofstream(made.folder / "study.yaml") << study;
+  CHECK_THROWS_WITH(made.make_sets(), Catch::Contains("r_fast.yaml") && Catch::Contains("bead_density"));
+  CHECK_FALSE(fs::exists(made.sets / "manifest.json"));
+}
+
 TEST_CASE("a nuisance apart is in every truth what the challenge makes it, or the set itself") {
   Made made;
   std::string study = kStudy, text = kChallenge;
