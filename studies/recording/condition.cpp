@@ -27,8 +27,7 @@ config::Range positive_up_to(double highest, const char* reason) {
   return range;
 }
 
-/// Of beads: from light polymers to tungsten and beyond.
-/// From foam on; densities that were meant in g/cm³, 22.6 at most, lie below.
+/// Of beads: from foam to tungsten and beyond; what was meant in g/cm³, 22.6 at most, lies below.
 config::Range bead_densities() { return config::between(25, 25000, "it is in kg/m^3, or say the unit, e.g. 2.5 g/cm^3"); }
 
 /// The diameter of the bare shell that a case file gives in its section `mill`.
