@@ -4,9 +4,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
+#include <string_view>
 
 #include "kernel/config/error.hpp"
 #include "kernel/output/file.hpp"
@@ -21,6 +26,22 @@ namespace {
 constexpr std::size_t kBufferBytes = 64 * 1024;
 
 std::string header(std::span<const std::string> columns) { return fmt::format("{}\n", fmt::join(columns, ",")); }
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (std::size_t from = 0; from <= line.size();) {
+    const std::size_t to = std::min(line.find(',', from), line.size());
+    cells.push_back(line.substr(from, to - from));
+    from = to + 1;
+  }
+  return cells;
+}
+
+double number_of(std::string_view cell) {
+  double value = std::nan("");
+  std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return value;
+}
 
 // Bytes of the file that are kept: the header and all complete rows up to `time`.
 std::uint64_t kept_bytes(const fs::path& path, const std::string& head, double time) {
@@ -94,6 +115,33 @@ void SeriesWriter::close() {
   flush();
   impl_->file.close();
   impl_.reset();
+}
+
+const std::vector<double>& Series::column(const std::string& name) const {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) throw UserError(fmt::format("series.csv has no column '{}', but {}", name, fmt::join(names, ", ")));
+  return columns[static_cast<std::size_t>(found - names.begin())];
+}
+
+Series read_series(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw UserError(fmt::format("{}: cannot be read", path.string()));
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  Series series;
+  std::size_t from = 0;
+  for (std::size_t to = text.find('\n'); to != std::string::npos; from = to + 1, to = text.find('\n', from)) {
+    const std::vector<std::string_view> cells = cells_of(std::string_view(text).substr(from, to - from));
+    if (series.names.empty()) {
+      series.names.assign(cells.begin(), cells.end());
+      series.columns.resize(cells.size());
+      continue;
+    }
+    if (cells.size() != series.names.size())
+      throw UserError(fmt::format("{}: a row of {} numbers where the first line has {} names; the file is damaged", path.string(),
+                                  cells.size(), series.names.size()));
+    for (std::size_t c = 0; c < cells.size(); ++c) series.columns[c].push_back(number_of(cells[c]));
+  }
+  return series;
 }
 
 }  // namespace millscope::output

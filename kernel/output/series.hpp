@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace millscope::output {
 
@@ -31,5 +32,18 @@ class SeriesWriter {
   explicit SeriesWriter(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+/// series.csv, column by column.
+struct Series {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> columns;  ///< NaN where no number stands
+
+  /// Throws config::UserError when no column has the name.
+  const std::vector<double>& column(const std::string& name) const;
+};
+
+/// All whole rows: one that is just being written is left out. Throws config::UserError when the file cannot be read or its rows differ in
+/// length.
+Series read_series(const std::filesystem::path& path);
 
 }  // namespace millscope::output

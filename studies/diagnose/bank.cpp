@@ -230,8 +230,10 @@ Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoin
   }
   const std::vector<campaign::Outcome> outcomes = workshop.run(simulations);
   if (workshop.say) workshop.say(fmt::format("looking at {} simulations through the recordings' cameras", outcomes.size()));
-  Bank bank{std::move(points), std::move(conditions), {}, {}};
+  Bank bank{std::move(points), std::move(conditions), {}, {}, {}};
   const std::size_t per_point = bank.conditions.size();
+  bank.runs.resize(bank.points.size());
+  for (std::size_t i = 0; i < outcomes.size(); ++i) bank.runs[i / per_point].push_back(outcomes[i].folder);
   bank.seen.assign(bank.points.size(), std::vector<std::optional<calibrate::Observation>>(per_point));
   std::vector<std::string> failures(outcomes.size());
   // Whole simulations side by side: looking at one is half of it a single thread's work.

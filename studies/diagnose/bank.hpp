@@ -1,6 +1,7 @@
 // The bank: simulations of the mill over θ, without and with each candidate, in every condition; computed once, kept by content.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <set>
@@ -78,6 +79,7 @@ struct Bank {
   std::vector<std::size_t> conditions;
   std::vector<std::vector<std::optional<calibrate::Observation>>> seen;  ///< [points][conditions]; nothing: it failed
   std::vector<std::string> failures;                                     ///< one line each
+  std::vector<std::vector<std::filesystem::path>> runs = {};             ///< [points][conditions] where each simulation is
 };
 
 /// Runs what is not in the cache. What is undefined is NaN.
@@ -86,6 +88,10 @@ Bank fill_bank(const Question& question, const Workshop& workshop, std::vector<B
 /// Takes what any of the bank's simulations leaves undefined (the speed in a region into which they throw no bead) from the recordings, the
 /// bank and what is looked at later. One sentence for each observable.
 std::vector<std::string> leave_out_undefined(const Question& question, Workshop& workshop, Bank& bank);
+
+/// Which conditions' simulations are not steady yet when they begin to be looked at, by all of them together: one run's chance hides what
+/// they share, and what they share is wrong in all of the surrogate. One sentence for each.
+std::vector<std::string> unsettled(const Question& question, const Bank& bank);
 
 /// The numbers of some of the bank's conditions; points of which one failed are left out.
 BankData data_of(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions);

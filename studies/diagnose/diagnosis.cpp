@@ -98,6 +98,10 @@ Diagnosis diagnose(const Question& question, Workshop& workshop, const NamingOpt
   std::vector<std::size_t> all = d.fit;
   all.insert(all.end(), d.held.begin(), d.held.end());
   d.bank = filled(question, workshop, points, all, d);
+  for (std::string& line : unsettled(question, d.bank)) {
+    say(workshop, line);
+    d.notes.push_back(std::move(line));
+  }
   d.problem = problem_of(question, workshop, d.bank, d.fit);
   d.naming = name_physics(d.problem, options);
   const HeldOutRequest request{question, workshop, d.bank, d.problem, d.naming, d.fit, kSeeds, options.seed};

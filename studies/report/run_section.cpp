@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 
 #include "kernel/config/case.hpp"
+#include "kernel/output/series.hpp"
 #include "studies/analysis/mill.hpp"
 #include "studies/report/movie.hpp"
 #include "studies/report/one_section.hpp"
@@ -25,47 +25,6 @@ std::string text_of(const fs::path& file) {
   return text.str();
 }
 
-/// series.csv without the row that is being written.
-struct Series {
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> columns;
-};
-
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (std::size_t from = 0; from <= line.size();) {
-    const std::size_t to = std::min(line.find(',', from), line.size());
-    cells.push_back(line.substr(from, to - from));
-    from = to + 1;
-  }
-  return cells;
-}
-
-double number_of(std::string_view cell) {
-  double value = std::nan("");
-  std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return value;
-}
-
-Series read_series(const fs::path& file) {
-  Series series;
-  const std::string text = text_of(file);
-  std::size_t from = 0;
-  for (std::size_t to = text.find('\n'); to != std::string::npos; from = to + 1, to = text.find('\n', from)) {
-    const auto cells = cells_of(std::string_view(text).substr(from, to - from));
-    if (series.names.empty()) {
-      series.names.assign(cells.begin(), cells.end());
-      series.columns.resize(cells.size());
-      continue;
-    }
-    if (cells.size() != series.names.size())
-      throw config::UserError(fmt::format("{}: a row of {} numbers where the first line has {} names; the file is damaged", file.string(),
-                                          cells.size(), series.names.size()));
-    for (std::size_t c = 0; c < cells.size(); ++c) series.columns[c].push_back(number_of(cells[c]));
-  }
-  return series;
-}
-
 /// Means over as many neighbouring rows as it takes to have at most kMostRows.
 Json thinned(const std::vector<double>& column) {
   const std::size_t width = (column.size() + kMostRows - 1) / kMostRows;
@@ -82,7 +41,7 @@ Json thinned(const std::vector<double>& column) {
 Json series_json(const fs::path& folder) {
   Json out = Json::object();
   if (!fs::exists(folder / "series.csv")) return out;
-  const Series series = read_series(folder / "series.csv");
+  const output::Series series = output::read_series(folder / "series.csv");
   for (std::size_t c = 0; c < series.names.size(); ++c) out[series.names[c]] = thinned(series.columns[c]);
   return out;
 }
