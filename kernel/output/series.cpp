@@ -38,9 +38,10 @@ std::vector<std::string_view> cells_of(std::string_view line) {
 }
 
 double number_of(std::string_view cell) {
-  double value = std::nan("");
-  std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return value;
+  const char* const end = cell.data() + cell.size();
+  double value = 0;
+  const auto [stopped, error] = std::from_chars(cell.data(), end, value);
+  return error == std::errc() && stopped == end ? value : std::nan("");
 }
 
 // Bytes of the file that are kept: the header and all complete rows up to `time`.

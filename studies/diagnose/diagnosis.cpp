@@ -33,7 +33,9 @@ Bank filled(const Question& question, Workshop& workshop, const std::vector<Bank
 /// The bank's first runs of each candidate tell which cannot matter; the others get all of theirs.
 std::vector<BankPoint> screened(const Question& question, Workshop& workshop, Diagnosis& d, double noise_units) {
   std::vector<BankPoint> points = plan_screening(question);
-  const Problem problem = problem_of(question, workshop, filled(question, workshop, points, d.fit, d), d.fit);
+  const Bank bank = filled(question, workshop, points, d.fit, d);
+  for (const std::string& line : unsettled(question, bank)) say(workshop, line);  // before the rest is simulated in vain
+  const Problem problem = problem_of(question, workshop, bank, d.fit);
   const Surrogate surrogate(problem.data);
   const MatrixXd whitening = whitener(problem.covariance + surrogate.error_covariance(problem.covariance));
   const FitResult base = Model(problem.data, surrogate, whitening, {}, {}).fit(problem.observed);
@@ -98,10 +100,7 @@ Diagnosis diagnose(const Question& question, Workshop& workshop, const NamingOpt
   std::vector<std::size_t> all = d.fit;
   all.insert(all.end(), d.held.begin(), d.held.end());
   d.bank = filled(question, workshop, points, all, d);
-  for (std::string& line : unsettled(question, d.bank)) {
-    say(workshop, line);
-    d.notes.push_back(std::move(line));
-  }
+  for (std::string& line : unsettled(question, d.bank)) d.notes.push_back(std::move(line));
   d.problem = problem_of(question, workshop, d.bank, d.fit);
   d.naming = name_physics(d.problem, options);
   const HeldOutRequest request{question, workshop, d.bank, d.problem, d.naming, d.fit, kSeeds, options.seed};

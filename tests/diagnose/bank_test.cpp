@@ -151,6 +151,15 @@ TEST_CASE("numbers stand under their condition when the first parameter set has 
     return "pairs.glass~glass.static_friction=" + s.at("pairs.glass~glass.static_friction") == first &&
            s.at("mill.speed") == "60 %critical";
   };
+  Workshop workshop = mill.workshop();
+  workshop.run = [run = workshop.run](std::span<const campaign::Simulation> simulations) {
+    std::vector<campaign::Outcome> outcomes = run(simulations);
+    for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i].folder = simulations[i].label;
+    return outcomes;
+  };
+  const Bank bank = fill_bank(q, workshop, points, {1, 0});
+  for (std::size_t p = 0; p < points.size(); ++p)
+    CHECK(bank.runs[p] == std::vector<std::filesystem::path>{simulation_of(q, points[p], 1).label, simulation_of(q, points[p], 0).label});
   const BankData data = data_of(q, fill_bank(q, mill.workshop(), points, {0, 1}), {0, 1});
   REQUIRE(data.condition.size() == 32);
   CHECK(data.condition[15] == 0);

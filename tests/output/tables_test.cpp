@@ -55,6 +55,26 @@ TEST_CASE("a series refuses what does not belong to it") {
   CHECK_THAT(refusal([&] { SeriesWriter::resume(scratch / "series.csv", other, 0); }), Contains("its columns"));
 }
 
+TEST_CASE("a series is read back as it was written, without the row that is being written") {
+  const Scratch scratch;
+  SeriesWriter writer = SeriesWriter::create(scratch / "series.csv", kColumns);
+  write(writer, 0, 50);
+  writer.close();
+  const std::string whole = slurp(scratch / "series.csv");
+  spill(scratch / "series.csv", whole + "0.5,1.5abc\n0.51,7.1");
+  const Series series = read_series(scratch / "series.csv");
+  CHECK(series.names == kColumns);
+  const std::vector<double>& energy = series.column("kinetic_energy_J");
+  REQUIRE(energy.size() == 51);
+  for (int k = 0; k < 50; ++k) CHECK(energy[static_cast<std::size_t>(k)] == std::sqrt(k));
+  CHECK(std::isnan(energy[50]));
+  CHECK(series.column("time_s")[50] == 0.5);
+  CHECK_THAT(refusal([&] { static_cast<void>(series.column("power_W")); }), Contains("no column 'power_W'"));
+  spill(scratch / "series.csv", whole + "1\n");
+  CHECK_THAT(refusal([&] { read_series(scratch / "series.csv"); }), Contains("a row of 1 numbers where the first line has 2 names"));
+  CHECK_THAT(refusal([&] { read_series(scratch / "none.csv"); }), Contains("cannot be read"));
+}
+
 TEST_CASE("a cell is quoted where a table would break, and only there") {
   CHECK(csv_cell("") == "");
   CHECK(csv_cell("dry 75 %") == "dry 75 %");
