@@ -32,7 +32,7 @@ constexpr std::array kQuantities = {Quantity{"com_x_m", "the centre of mass x", 
                                     Quantity{"rotational_energy_J", "the rotational energy", false}};
 constexpr double kFirst = 0.125, kLater = 0.5;  // of the analysed time: what is compared with what comes after kLater
 constexpr std::size_t kLeastRuns = 24;
-constexpr double kSure = 4.5;    // standard errors: one of about a thousand banks of 32 runs by chance, over all conditions and quantities
+constexpr double kSure = 4;      // standard errors: one of some hundred banks of 32 runs by chance, over all conditions and quantities
 constexpr double kLeast = 1e-3;  // of the quantity, of a centre of mass of its distance from the axis: less does not matter
 
 /// Of each quantity, mean over the first part of the analysed time and over the later one.
