@@ -42,8 +42,8 @@ struct Series {
   const std::vector<double>& column(const std::string& name) const;
 };
 
-/// All whole rows: one that is just being written is left out; a cell that is no number is NaN. Throws config::UserError when the file cannot be read or its rows differ in
-/// length.
+/// All whole rows: one that is just being written is left out; a cell that is no number is NaN. Throws config::UserError when the file
+/// cannot be read or its rows differ in length.
 Series read_series(const std::filesystem::path& path);
 
 }  // namespace millscope::output

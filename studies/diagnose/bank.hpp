@@ -89,9 +89,9 @@ Bank fill_bank(const Question& question, const Workshop& workshop, std::vector<B
 /// bank and what is looked at later. One sentence for each observable.
 std::vector<std::string> leave_out_undefined(const Question& question, Workshop& workshop, Bank& bank);
 
-/// Which conditions' simulations are not steady yet when they begin to be looked at, by all of them together: one run's chance hides what
-/// they share, and what they share is wrong in all of the surrogate. One sentence for each.
-std::vector<std::string> unsettled(const Question& question, const Bank& bank);
+/// Which of some conditions' simulations are not steady yet when they begin to be looked at, by all of them together: one run's chance
+/// hides what they share, and what they share is wrong in all of the surrogate. One sentence for each.
+std::vector<std::string> unsettled(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions);
 
 /// The numbers of some of the bank's conditions; points of which one failed are left out.
 BankData data_of(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions);

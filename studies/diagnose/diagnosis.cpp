@@ -19,14 +19,18 @@ void say(const Workshop& workshop, const std::string& line) {
   if (workshop.say) workshop.say(line);
 }
 
+void note(const Workshop& workshop, std::vector<std::string> lines, Diagnosis& d) {
+  for (std::string& line : lines) {
+    say(workshop, line);
+    d.notes.push_back(std::move(line));
+  }
+}
+
 /// The bank, with what is compared defined in all of it.
 Bank filled(const Question& question, Workshop& workshop, const std::vector<BankPoint>& points, const std::vector<std::size_t>& conditions,
             Diagnosis& d) {
   Bank bank = fill_bank(question, workshop, points, conditions);
-  for (std::string& line : leave_out_undefined(question, workshop, bank)) {
-    say(workshop, line);
-    d.notes.push_back(std::move(line));
-  }
+  note(workshop, leave_out_undefined(question, workshop, bank), d);
   return bank;
 }
 
@@ -34,7 +38,7 @@ Bank filled(const Question& question, Workshop& workshop, const std::vector<Bank
 std::vector<BankPoint> screened(const Question& question, Workshop& workshop, Diagnosis& d, double noise_units) {
   std::vector<BankPoint> points = plan_screening(question);
   const Bank bank = filled(question, workshop, points, d.fit, d);
-  for (const std::string& line : unsettled(question, bank)) say(workshop, line);  // before the rest is simulated in vain
+  note(workshop, unsettled(question, bank, d.fit), d);  // before the rest, all with an effect, is simulated in vain
   const Problem problem = problem_of(question, workshop, bank, d.fit);
   const Surrogate surrogate(problem.data);
   const MatrixXd whitening = whitener(problem.covariance + surrogate.error_covariance(problem.covariance));
@@ -100,7 +104,7 @@ Diagnosis diagnose(const Question& question, Workshop& workshop, const NamingOpt
   std::vector<std::size_t> all = d.fit;
   all.insert(all.end(), d.held.begin(), d.held.end());
   d.bank = filled(question, workshop, points, all, d);
-  for (std::string& line : unsettled(question, d.bank)) d.notes.push_back(std::move(line));
+  note(workshop, unsettled(question, d.bank, d.held), d);
   d.problem = problem_of(question, workshop, d.bank, d.fit);
   d.naming = name_physics(d.problem, options);
   const HeldOutRequest request{question, workshop, d.bank, d.problem, d.naming, d.fit, kSeeds, options.seed};

@@ -124,9 +124,10 @@ std::string sentence(const std::string& condition, const Quantity& quantity, con
 
 }  // namespace
 
-std::vector<std::string> unsettled(const Question& q, const Bank& bank) {
+std::vector<std::string> unsettled(const Question& q, const Bank& bank, const std::vector<std::size_t>& conditions) {
   std::vector<std::string> told;
-  for (std::size_t k = 0; k < bank.conditions.size(); ++k) {
+  for (const std::size_t condition : conditions) {
+    const auto k = static_cast<std::size_t>(std::find(bank.conditions.begin(), bank.conditions.end(), condition) - bank.conditions.begin());
     std::vector<std::optional<Parts>> of_point(bank.points.size());
     studies::for_each_item(of_point.size(), studies::worker_count(0, of_point.size()), [&](std::size_t p, std::size_t) {
       if (bank.points[p].effects.empty() && bank.seen[p][k]) of_point[p] = parts_of(bank.runs[p][k]);
@@ -136,14 +137,13 @@ std::vector<std::string> unsettled(const Question& q, const Bank& bank) {
       if (parts) runs.push_back(*parts);
     }
     if (runs.size() < kLeastRuns) continue;
-    std::size_t most = 0;
-    std::array<Excess, kQuantities.size()> excess;
-    for (std::size_t i = 0; i < excess.size(); ++i) {
-      excess[i] = excess_of(runs, i);
-      if (excess[i].sureness > excess[most].sureness) most = i;
+    Excess surest;
+    std::size_t quantity = 0;
+    for (std::size_t i = 0; i < kQuantities.size(); ++i) {
+      const Excess e = excess_of(runs, i);
+      if (e.sureness > surest.sureness) surest = e, quantity = i;
     }
-    if (excess[most].sureness < kSure) continue;
-    told.push_back(sentence(q.study.conditions[bank.conditions[k]].name, kQuantities[most], excess[most], runs.size()));
+    if (surest.sureness >= kSure) told.push_back(sentence(q.study.conditions[condition].name, kQuantities[quantity], surest, runs.size()));
   }
   return told;
 }

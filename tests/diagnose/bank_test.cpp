@@ -151,6 +151,17 @@ TEST_CASE("numbers stand under their condition when the first parameter set has 
     return "pairs.glass~glass.static_friction=" + s.at("pairs.glass~glass.static_friction") == first &&
            s.at("mill.speed") == "60 %critical";
   };
+  const BankData data = data_of(q, fill_bank(q, mill.workshop(), points, {0, 1}), {0, 1});
+  REQUIRE(data.condition.size() == 32);
+  CHECK(data.condition[15] == 0);
+  CHECK(data.condition[16] == 1);
+}
+
+TEST_CASE("a bank knows where each of its simulations is") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  MadeUpMill mill(q, {}, {});
+  const std::vector<BankPoint> points = plan_group(q, {-1}, 8);
   Workshop workshop = mill.workshop();
   workshop.run = [run = workshop.run](std::span<const campaign::Simulation> simulations) {
     std::vector<campaign::Outcome> outcomes = run(simulations);
@@ -160,10 +171,6 @@ TEST_CASE("numbers stand under their condition when the first parameter set has 
   const Bank bank = fill_bank(q, workshop, points, {1, 0});
   for (std::size_t p = 0; p < points.size(); ++p)
     CHECK(bank.runs[p] == std::vector<std::filesystem::path>{simulation_of(q, points[p], 1).label, simulation_of(q, points[p], 0).label});
-  const BankData data = data_of(q, fill_bank(q, mill.workshop(), points, {0, 1}), {0, 1});
-  REQUIRE(data.condition.size() == 32);
-  CHECK(data.condition[15] == 0);
-  CHECK(data.condition[16] == 1);
 }
 
 TEST_CASE("errors that a velocity profile states are correlated as it says, those of tracks half as simulations are") {

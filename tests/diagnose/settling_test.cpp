@@ -16,7 +16,7 @@ using testing::Scratch;
 namespace {
 
 constexpr int kSteps = 600;
-constexpr double kSpeed = 8;  // rad/s: the analysed time 1 … 4 s is four turns
+constexpr double kSpeed = 8;  // rad/s: the analysed time 1 … 4 s is nearly four turns
 
 /// What all runs of a condition share, mm.
 struct Shared {
@@ -64,7 +64,7 @@ TEST_CASE("what is left of the start in all runs of a bank is told") {
   const Scratch folder;
   const Question q = question_of(folder, "");
   const Bank bank = bank_of(folder, 60, {3, 0}, 1);
-  const std::vector<std::string> told = unsettled(q, bank);
+  const std::vector<std::string> told = unsettled(q, bank, {0, 1});
   REQUIRE(told.size() == 1);
   CHECK_THAT(told[0], Contains(q.study.conditions[0].name) && Contains("centre of mass x") && Contains("mm") && Contains("mean of 60") &&
                           Contains("time.analyze_from_s"));
@@ -74,7 +74,7 @@ TEST_CASE("what is left of the start in all runs of a bank is told") {
   std::ofstream(bank.runs[5][0] / "series.csv", std::ios::app) << "1,2\n";
   std::ofstream(bank.runs[6][0] / "series.csv") << "time_s\n0\n1\n";
   std::filesystem::remove_all(bank.runs[7][0]);
-  const std::vector<std::string> still = unsettled(q, bank);
+  const std::vector<std::string> still = unsettled(q, bank, {0, 1});
   REQUIRE(still.size() == 1);
   CHECK_THAT(still[0], Contains("mean of 55"));
 }
@@ -82,17 +82,17 @@ TEST_CASE("what is left of the start in all runs of a bank is told") {
 TEST_CASE("chance of runs, or a ripple, is not taken for a start") {
   const Scratch folder;
   const Question q = question_of(folder, "");
-  for (const std::uint64_t seed : {2, 3, 4, 5}) CHECK(unsettled(q, bank_of(folder, 40, {}, seed)).empty());
-  CHECK(unsettled(q, bank_of(folder, 40, {0, 2}, 6)).empty());
+  for (const std::uint64_t seed : {2, 3, 4, 5}) CHECK(unsettled(q, bank_of(folder, 40, {}, seed), {0, 1}).empty());
+  CHECK(unsettled(q, bank_of(folder, 40, {0, 2}, 6), {0, 1}).empty());
 }
 
 TEST_CASE("runs with an effect, that failed or are too few tell nothing of their start") {
   const Scratch folder;
   const Question q = question_of(folder, "");
-  CHECK(unsettled(q, bank_of(folder, 20, {3, 0}, 7)).empty());
+  CHECK(unsettled(q, bank_of(folder, 20, {3, 0}, 7), {0, 1}).empty());
   Bank failed = bank_of(folder, 60, {3, 0}, 8), with = failed;
   for (auto& point : failed.seen) point[0].reset();
-  CHECK(unsettled(q, failed).empty());
+  CHECK(unsettled(q, failed, {0, 1}).empty());
   for (BankPoint& point : with.points) point.effects = {{0, 0.5}};
-  CHECK(unsettled(q, with).empty());
+  CHECK(unsettled(q, with, {0, 1}).empty());
 }
