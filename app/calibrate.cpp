@@ -17,12 +17,12 @@ namespace fs = std::filesystem;
 using config::UserError;
 
 void print_found(const calibrate::Study& study, const calibrate::Calibration& c, const fs::path& output) {
-  fmt::print("\n{:<24} {:>10}   90 % interval\n", "parameter", "value");
+  fmt::print("\n{:<24} {:>10} {:>12}   90 % interval\n", "parameter", "value", "most likely");
   for (std::size_t p = 0; p < study.parameters.size(); ++p) {
     fmt::print("{:<24} {:>10.4g}", study.parameters[p].name, c.best[static_cast<Eigen::Index>(p)]);
     if (c.inference) {
       const auto& m = c.inference->posterior.marginal[p];
-      fmt::print("   {:.4g} … {:.4g}", m.low90, m.high90);
+      fmt::print(" {:>12.4g}   {:.4g} … {:.4g}", m.mode, m.low90, m.high90);
     }
     fmt::print("\n");
   }

@@ -29,8 +29,9 @@ set -- --cache cache --set "conditions.speed75.recording=$out/recording75.yaml" 
 chapter "Practice: retune the friction of the simulation until it fits the recording at 75 %"
 quietly calibrate "$story/study.yaml" -o retuned "$@"
 quietly validate "$story/study.yaml" --calibration retuned/calibration.json -o retuned-at-55 "$@"
-grep '^bead_friction  ' log.txt
+grep -E '^(parameter|bead_friction)  ' log.txt
 grep '^no parameters fit' log.txt || true
+grep '^note: bead_friction' log.txt || true
 
 chapter "What differs at 55 %, which was not fitted"
 quietly run retuned/calibrated.yaml -o retuned-mill --set "mill.speed=55 %critical" --set "time={end_s: 11, analyze_from_s: 1}" \

@@ -165,6 +165,14 @@ Calibration by_cma_es(Evaluator& evaluator) {
   return c;
 }
 
+std::string contradiction(const Study& study, std::size_t parameter, double best, const emulate::Marginal& marginal) {
+  if (best >= marginal.low90 && best <= marginal.high90) return "";
+  return fmt::format(
+      "{}: the value {:.4g}, which has the least {} objective, lies outside the interval, which is from all observables: no set of these "
+      "parameters serves both",
+      study.parameters[parameter].name, best, name_of(study.objective.kind));
+}
+
 Calibration calibrate(Evaluator& evaluator) {
   const Method method = evaluator.study().method;
   Calibration c = method == Method::emulator ? by_emulator(evaluator)
@@ -172,6 +180,10 @@ Calibration calibrate(Evaluator& evaluator) {
                                              : response_surface(evaluator);
   evaluator.say("posterior of the parameters");
   c.inference = infer(evaluator, c.notes);
+  for (std::size_t p = 0; c.inference && p < evaluator.study().parameters.size(); ++p) {
+    const std::string said = contradiction(evaluator.study(), p, c.best[static_cast<Eigen::Index>(p)], c.inference->posterior.marginal[p]);
+    if (!said.empty()) c.notes.push_back(said);
+  }
   return c;
 }
 

@@ -15,6 +15,7 @@ namespace {
 constexpr double kLengthScale = 0.1;    // m, makes the growth a number of order one
 constexpr double kWhiteScale = 5e-4;    // m
 constexpr double kNoCorrelation = -20;  // ln of correlated/white
+constexpr double kNothing = 0.25;       // of likelihood's logarithm: slow noise that gains less explains nothing
 /// Locations share events with their neighbours only: known beforehand is a correlation time of one and a half intervals (the scale is
 /// two), within a factor of two. A longer memory is told from the bead's own wandering by the data alone.
 constexpr double kUsualTime = -0.2877, kTimeDeviation = 0.7;
@@ -35,14 +36,20 @@ struct Estimator {
   Fit shape;  ///< of white (all axes), ratio, time
   Fit size;   ///< of white x, y, z, growth, memory
 
-  double likelihood(const Stretch& s, const NoisePoint& p) const {
-    const Steps steps(s, time_scale * std::exp(p.time), time_scale * std::exp(p.memory), p.growth / kLengthScale);
-    double sum = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double white = kWhiteScale * std::exp(p.white[axis]);
-      sum += stretch_likelihood(s, axis, steps, {white, white * std::exp(p.ratio)});
+  /// Of each stretch.
+  std::vector<double> likelihoods(const std::vector<Stretch>& stretches, const NoisePoint& p) const {
+    std::vector<Rungs> rungs;
+    for (const Stretch& s : stretches) {
+      const Steps steps(s, time_scale * std::exp(p.time), time_scale * std::exp(p.memory), p.growth / kLengthScale);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double white = kWhiteScale * std::exp(p.white[axis]);
+        rungs.push_back(rung_likelihoods(s, axis, steps, {white, white * std::exp(p.ratio)}));
+      }
     }
-    return sum;
+    const std::vector<double> each = averaged_over_ladder(rungs);
+    std::vector<double> sums;
+    for (std::size_t i = 0; i < each.size(); i += 3) sums.push_back(each[i] + each[i + 1] + each[i + 2]);
+    return sums;
   }
 
   /// Maximum over the numbers that `place` writes into the point; the others stay as they are.
@@ -51,9 +58,7 @@ struct Estimator {
     const LogLikelihood groups = [&](const std::vector<double>& x) {
       NoisePoint p = point;
       place(x, p);
-      std::vector<double> terms;
-      for (const Stretch& s : stretches) terms.push_back(likelihood(s, p));
-      return terms;
+      return likelihoods(stretches, p);
     };
     const Fit found = maximise(groups, parameters);
     place(found.value, point);
@@ -77,7 +82,7 @@ struct Estimator {
     // Left out only where it explains nothing at all, or fades before the next location comes, which makes it white: leaving a weak one
     // out would make the whole too small. The scale of time is two intervals.
     const double lasts = std::exp(-0.5 / std::exp(point.time));
-    if (shape.log_likelihood - plain.log_likelihood < 1 || lasts < 0.05) point.ratio = kNoCorrelation;
+    if (shape.log_likelihood - plain.log_likelihood < kNothing || lasts < 0.05) point.ratio = kNoCorrelation;
   }
 
   void fit_size() {

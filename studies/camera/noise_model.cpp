@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace millscope::studies::camera {
 namespace {
 
 /// From a bed turning as one body to impacts, in steps of a factor of two and a half, m/s^1.5.
-constexpr std::array<double, 8> kLadder{0.02, 0.05, 0.125, 0.3, 0.8, 2.0, 5.0, 12.5};
+constexpr Rungs kLadder{0.008, 0.02, 0.05, 0.125, 0.3, 0.8, 2.0, 5.0, 12.5};
 
 using State = std::array<double, 3>;  ///< x, v, c
 
@@ -26,6 +27,8 @@ struct Covariance {
     cc = kept * kept * cc + correlated * correlated * (1 - kept * kept);
   }
 };
+
+constexpr int kRounds = 60;  ///< of expectation and maximisation: weights are then known to a hundredth
 
 constexpr std::size_t kSeries = 5;  ///< the data and the powers 0 to 3 of time
 
@@ -100,13 +103,34 @@ double stretch_likelihood(const Stretch& s, std::size_t axis, const Steps& steps
   return removal.log_likelihood(s.time.size());
 }
 
-double stretch_likelihood(const Stretch& s, std::size_t axis, const Steps& steps, const NoiseStrength& noise) {
-  std::array<double, kLadder.size()> log{};
+Rungs rung_likelihoods(const Stretch& s, std::size_t axis, const Steps& steps, const NoiseStrength& noise) {
+  Rungs log{};
   for (std::size_t k = 0; k < kLadder.size(); ++k) log[k] = stretch_likelihood(s, axis, steps, noise, kLadder[k]);
-  const double best = *std::max_element(log.begin(), log.end());
-  double sum = 0;
-  for (const double l : log) sum += std::exp(l - best);
-  return best + std::log(sum / static_cast<double>(kLadder.size()));
+  return log;
+}
+
+std::vector<double> averaged_over_ladder(const std::vector<Rungs>& logs) {
+  std::vector<Rungs> relative;  // likelihoods over the best rung's
+  std::vector<double> best;
+  for (const Rungs& log : logs) {
+    best.push_back(*std::max_element(log.begin(), log.end()));
+    Rungs& r = relative.emplace_back();
+    for (std::size_t k = 0; k < r.size(); ++k) r[k] = std::exp(log[k] - best.back());
+  }
+  Rungs weight;
+  weight.fill(1.0 / static_cast<double>(weight.size()));
+  const auto averaged = [&](const Rungs& r) { return std::inner_product(r.begin(), r.end(), weight.begin(), 0.0); };
+  for (int round = 0; round < kRounds; ++round) {
+    Rungs sum{};
+    for (const Rungs& r : relative) {
+      const double all = averaged(r);
+      for (std::size_t k = 0; k < r.size(); ++k) sum[k] += weight[k] * r[k] / all;
+    }
+    for (std::size_t k = 0; k < sum.size(); ++k) weight[k] = sum[k] / static_cast<double>(relative.size());
+  }
+  std::vector<double> result;
+  for (std::size_t i = 0; i < logs.size(); ++i) result.push_back(best[i] + std::log(averaged(relative[i])));
+  return result;
 }
 
 }  // namespace millscope::studies::camera

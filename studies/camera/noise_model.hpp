@@ -10,7 +10,10 @@
 //
 // The restricted likelihood (the cubic integrated out) is exact and costs a Kalman filter per stretch. A bead that turns with the bed
 // through less than a radian follows a cubic to 0.1 % of the radius, so that stretches in a resting bed show the noise alone. q is not
-// one number for all stretches: each takes its own from a fixed ladder, all rungs being equally likely beforehand.
+// one number for all stretches: each takes its own from a fixed ladder. How often each rung is taken is learnt from the stretches (a
+// mixture whose weights have the largest likelihood: Laird 1978, doi:10.1080/01621459.1978.10480103). Were all rungs equally likely
+// beforehand, a resting bead would pay for those that it cannot be on, and a wandering that is quickly forgotten, which makes the lower
+// rungs alike, would be preferred and take the slow noise for itself.
 #pragma once
 
 #include <array>
@@ -44,7 +47,13 @@ struct Steps {
 /// Restricted log-likelihood of one axis of a stretch for one strength of the wandering, m/s^1.5.
 double stretch_likelihood(const Stretch& stretch, std::size_t axis, const Steps& steps, const NoiseStrength& noise, double strength);
 
-/// The same, averaged over the ladder of strengths.
-double stretch_likelihood(const Stretch& stretch, std::size_t axis, const Steps& steps, const NoiseStrength& noise);
+/// A number for every strength of the ladder.
+using Rungs = std::array<double, 9>;
+
+/// The same for every strength.
+Rungs rung_likelihoods(const Stretch& stretch, std::size_t axis, const Steps& steps, const NoiseStrength& noise);
+
+/// Log-likelihoods, one from those of each ladder: averaged with the weights of the rungs that make all of them together most likely.
+std::vector<double> averaged_over_ladder(const std::vector<Rungs>& logs);
 
 }  // namespace millscope::studies::camera

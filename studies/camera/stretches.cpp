@@ -18,7 +18,7 @@ constexpr std::size_t kLength = 24;  // locations in a stretch: some three to te
 constexpr std::size_t kFewest = 20;  // stretches
 constexpr double kImpact = 8;        // contrasts beyond so many medians: an impact or a stray location
 constexpr std::size_t kStride = 4;   // between candidates for quiet stretches
-constexpr double kQuietShare = 0.06;
+constexpr double kQuietShare = 0.10;
 
 Stretch stretch_of(const Run& run, std::size_t first, const Middle& middle) {
   Stretch s;

@@ -48,6 +48,17 @@ TEST_CASE("a calibration leaves its numbers, its case, its runs and its report")
   CHECK(std::filesystem::exists(folder.path / "val" / "validation.json"));
 }
 
+TEST_CASE("a value outside its own interval says why that can be") {
+  const Folder folder;
+  const Study study = testing::study_of(folder, "  a.mu: {range: [0.1, 0.8]}\n", "");
+  emulate::Marginal marginal;
+  marginal.low90 = 0.1, marginal.high90 = 0.112;
+  CHECK(contradiction(study, 0, 0.105, marginal).empty());
+  const std::string said = contradiction(study, 0, 0.376, marginal);
+  CHECK(said.find("the value 0.376, which has the least") != std::string::npos);
+  CHECK(said.find("lies outside the interval") != std::string::npos);
+}
+
 TEST_CASE("a calibration of another study is refused") {
   const Folder folder;
   const Study study = testing::study_of(folder, "  a.mu: {range: [0.1, 0.8]}\n", "");

@@ -74,7 +74,7 @@ void check(const char* what, const Estimated& found, double truth, double larges
 }  // namespace
 
 TEST_CASE("a known camera is found again within the stated errors") {
-  const CameraEstimate e = estimate_camera(seen(kKnown, 2), {std::nullopt, 120});
+  const CameraEstimate e = estimate_camera(seen(kKnown, 3), {std::nullopt, 120});
   check("rate", e.sampling.rate, 220, 15);
   CHECK(e.sampling.dead_time == 0);
   check("evenness", e.sampling.shape, 1, 0.2);

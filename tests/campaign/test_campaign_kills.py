@@ -47,8 +47,9 @@ class Kills(CampaignTest):
         head.send_signal(signal.SIGKILL)
         head.wait(60)
         finished = {run: tree_of(run) for run in runs if (run / "summary.json").exists()}
-        under_way = [run for run in runs if run not in finished and (run / "checkpoint.h5").exists()]
         self.wait_until(lambda: not any(self.is_writing(run) for run in runs), "the orphan had stopped", patience=10)
+        # One that came to its end before it heard of the head's is none that has to be resumed.
+        under_way = [run for run in runs if (run / "checkpoint.h5").exists() and not (run / "summary.json").exists()]
         self.finish()
         for run, before in finished.items():
             self.assertEqual(tree_of(run), before)

@@ -1,0 +1,77 @@
+// The likelihood from which the camera's noise is read: it must not take slow noise for a bead that wanders.
+#include "studies/camera/noise_model.hpp"
+
+#include <numeric>
+
+#include "millscope/observation_adapter.hpp"
+#include "support.hpp"
+
+using namespace camera_test;
+using namespace studies::camera;
+
+namespace {
+
+constexpr double kWhite = 0.29e-3, kCorrelated = 0.21e-3, kTime = 8e-3;  // m, m, s
+
+/// A bead that rests, or goes straight ahead, seen 24 times, 5 ms apart.
+Stretch straight(Random& random) {
+  Stretch s;
+  std::array<double, 3> slow{}, speed{};
+  for (std::size_t axis = 0; axis < 3; ++axis) slow[axis] = kCorrelated * random.normal(), speed[axis] = 0.1 * random.normal();
+  for (int i = 0; i < 24; ++i) {
+    const double t = 5e-3 * i, kept = i > 0 ? std::exp(-5e-3 / kTime) : 1;
+    s.time.push_back(t);
+    s.distance.push_back(0.02);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      slow[axis] = kept * slow[axis] + kCorrelated * std::sqrt(1 - kept * kept) * random.normal();
+      s.value[axis].push_back(speed[axis] * t + slow[axis] + kWhite * random.normal());
+    }
+  }
+  return s;
+}
+
+struct Tried {
+  NoiseStrength noise;
+  double time, memory;  // s
+};
+
+double log_likelihood(const std::vector<Stretch>& stretches, const Tried& tried) {
+  std::vector<Rungs> rungs;
+  for (const Stretch& s : stretches) {
+    const Steps steps(s, tried.time, tried.memory, 0);
+    for (std::size_t axis = 0; axis < 3; ++axis) rungs.push_back(rung_likelihoods(s, axis, steps, tried.noise));
+  }
+  const std::vector<double> each = averaged_over_ladder(rungs);
+  return std::accumulate(each.begin(), each.end(), 0.0);
+}
+
+}  // namespace
+
+TEST_CASE("of beads that do not wander it makes no difference how quickly they would forget it") {
+  Random random(11);
+  std::vector<Stretch> stretches;
+  for (int k = 0; k < 300; ++k) stretches.push_back(straight(random));
+  const NoiseStrength truth{kWhite, kCorrelated};
+  const double best = log_likelihood(stretches, {truth, kTime, 0.02});
+  // With rungs that are equally likely a memory of 3 ms would be more likely by a hundred, and with it slow noise too small and too short.
+  // A wandering that is forgotten at once can stand in for slow noise, but must not be preferred.
+  CHECK(std::fabs(log_likelihood(stretches, {truth, kTime, 3e-3}) - best) < 5);
+  CHECK(std::fabs(log_likelihood(stretches, {truth, kTime, 0.06}) - best) < 5);
+  CHECK(log_likelihood(stretches, {{kWhite, 0.8 * kCorrelated}, 0.5 * kTime, 3e-3}) < best + 2);
+  CHECK(log_likelihood(stretches, {{0.9 * kWhite, kCorrelated}, kTime, 0.02}) < best - 20);
+  CHECK(log_likelihood(stretches, {{1.1 * kWhite, kCorrelated}, kTime, 0.02}) < best - 20);
+}
+
+TEST_CASE("the weights of the ladder are those of its rungs among the stretches") {
+  // Three in four can only be on the first rung, the others only on the last: averages are 3/4 and 1/4 of their likelihoods.
+  Rungs low, high;
+  low.fill(-1000), high.fill(-1000);
+  low.front() = -10, high.back() = -12;
+  const std::vector<double> each = averaged_over_ladder({low, low, high, low});
+  CHECK(each[0] == Approx(-10 + std::log(0.75)));
+  CHECK(each[2] == Approx(-12 + std::log(0.25)));
+  // Where all rungs serve a stretch equally well, the weights do not matter.
+  Rungs any;
+  any.fill(-7);
+  CHECK(averaged_over_ladder({any, low, low})[0] == Approx(-7));
+}
