@@ -121,7 +121,7 @@ std::vector<std::string> settings_of(const Candidate& candidate, double share) {
 Library library_of(const config::Case& base, const host::Registry& registry) {
   Library library;
   for (const Descriptor* d : registry.descriptors()) add_plugin(base, *d, library);
-  for (Candidate& c : targets_of(base)) library.candidates.push_back(std::move(c));
+  add_targets(base, library);
   std::sort(library.candidates.begin(), library.candidates.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return library;
 }

@@ -1,7 +1,10 @@
 // Values of the case that may be other than they are said to be.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "kernel/config/units.hpp"
@@ -183,9 +186,18 @@ void stiffness(const config::Case& base, std::vector<Candidate>& out) {
                  {}});
 }
 
-}  // namespace
+/// What each target needs of a case.
+constexpr std::array<std::array<const char*, 2>, 7> kNeeds{{
+    {"contact_stiffness", "softened contacts: a stiffness_factor below 1"},
+    {"end_faces_at_rest", "a geometry of kind mill whose end_faces turn"},
+    {"lifter_face_angle", "a geometry of kind mill with lifters whose faces could be steeper or shallower"},
+    {"lifter_wear", "a geometry of kind mill with lifters"},
+    {"size_spread", "one class of beads, given by its 'diameter', without tracers of its own"},
+    {"speed_ripple", "a geometry of kind mill that follows the mill's speed, without a ripple or travel of its own"},
+    {"unlike_tracer", "one class of beads, given by its 'diameter', without tracers of its own"},
+}};
 
-std::vector<Candidate> targets_of(const config::Case& base) {
+std::vector<Candidate> applying(const config::Case& base) {
   std::vector<Candidate> out;
   if (const config::BeadCase* beads = equal_beads(base)) {
     unlike_tracer(*beads, out);
@@ -199,6 +211,17 @@ std::vector<Candidate> targets_of(const config::Case& base) {
     ripple(base, g, out);
   }
   return out;
+}
+
+}  // namespace
+
+void add_targets(const config::Case& base, Library& library) {
+  std::vector<Candidate> targets = applying(base);
+  for (const auto& [name, need] : kNeeds) {
+    if (std::none_of(targets.begin(), targets.end(), [n = name](const Candidate& c) { return c.name == n; }))
+      library.left_out.push_back(fmt::format("{}: needs {}", name, need));
+  }
+  std::move(targets.begin(), targets.end(), std::back_inserter(library.candidates));
 }
 
 }  // namespace millscope::diagnose

@@ -52,6 +52,21 @@ TEST_CASE("hypotheses of plugins that the base lacks apply, others say why they 
              StartsWith("needs pairs.glass~glass.reference_restitution; give it in the base case or under hypotheses."));
 }
 
+TEST_CASE("a target that does not apply says what it needs") {
+  const std::string shell = "geometry.liner.";
+  CHECK(why_not(library({"stiffness_factor=1"}), "contact_stiffness") == "needs softened contacts: a stiffness_factor below 1");
+  const Library smooth = library({shell + "lifters=0"});
+  CHECK(find(smooth, "lifter_wear") == nullptr);
+  CHECK_THAT(why_not(smooth, "lifter_wear"), StartsWith("needs a geometry of kind mill with lifters"));
+  CHECK_THAT(why_not(smooth, "lifter_face_angle"), StartsWith("needs a geometry of kind mill with lifters whose faces"));
+  CHECK_THAT(why_not(library({shell + "end_faces=false"}), "end_faces_at_rest"),
+             StartsWith("needs a geometry of kind mill whose end_faces"));
+  const Library all = library();
+  for (const char* name :
+       {"contact_stiffness", "end_faces_at_rest", "lifter_face_angle", "lifter_wear", "size_spread", "speed_ripple", "unlike_tracer"})
+    CHECK((find(all, name) == nullptr) != why_not(all, name).empty());
+}
+
 TEST_CASE("what is in the base is no candidate") {
   const Library l = library({"contact.interactions.roll.kind=rolling_epsd", "pairs.glass~glass.rolling_friction=0.01",
                              "pairs.glass~liner.rolling_friction=0.01", "body_forces.air.kind=air_drag", "contact.law={kind: jkr}",
