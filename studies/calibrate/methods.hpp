@@ -63,8 +63,8 @@ std::optional<Inference> infer(const Evaluator& evaluator, std::vector<std::stri
 /// The method of the study, then `infer`.
 Calibration calibrate(Evaluator& evaluator);
 
-/// Says that the best value of a parameter lies outside its interval, and why that can be: the one has the least objective, the other is
-/// from all observables. Empty where it lies inside.
+/// Says that a value is outside its interval because the objective prefers another one than all observables do; empty where nothing has to
+/// be said.
 std::string contradiction(const Study& study, std::size_t parameter, double best, const emulate::Marginal& marginal);
 
 /// The study's ranges and constraints for the emulator.

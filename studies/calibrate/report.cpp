@@ -30,7 +30,6 @@ void parameters(const Study& study, const Calibration& c, std::string& out) {
     }
   }
   out += "\n";
-  for (const std::string& note : c.notes) add(out, "- {}\n", note);
   if (!c.inference) return;
   for (const emulate::Marginal& m : c.inference->posterior.marginal) add(out, "- {}\n", m.statement);
   for (const std::string& s : c.inference->posterior.statements) add(out, "- {}\n", s);

@@ -15,7 +15,9 @@ namespace {
 constexpr double kLengthScale = 0.1;    // m, makes the growth a number of order one
 constexpr double kWhiteScale = 5e-4;    // m
 constexpr double kNoCorrelation = -20;  // ln of correlated/white
-constexpr double kNothing = 0.25;       // of likelihood's logarithm: slow noise that gains less explains nothing
+/// Slow noise that raises the likelihood's logarithm by less explains nothing. By chance alone a quarter of the recordings without any gain
+/// more; they then show a little, with an error as large, which does less harm than a whole that is too small.
+constexpr double kNothing = 0.25;
 /// Locations share events with their neighbours only: known beforehand is a correlation time of one and a half intervals (the scale is
 /// two), within a factor of two. A longer memory is told from the bead's own wandering by the data alone.
 constexpr double kUsualTime = -0.2877, kTimeDeviation = 0.7;
@@ -36,7 +38,8 @@ struct Estimator {
   Fit shape;  ///< of white (all axes), ratio, time
   Fit size;   ///< of white x, y, z, growth, memory
 
-  /// Of each stretch.
+  /// Of each stretch, with weights of the ladder learnt from all. Were these the likeliest, the errors from the stretches' gradients and
+  /// the curvature of the sum would be those of a fit of weights and parameters together; they nearly are.
   std::vector<double> likelihoods(const std::vector<Stretch>& stretches, const NoisePoint& p) const {
     std::vector<Rungs> rungs;
     for (const Stretch& s : stretches) {

@@ -53,7 +53,7 @@ using Rungs = std::array<double, 9>;
 /// The same for every strength.
 Rungs rung_likelihoods(const Stretch& stretch, std::size_t axis, const Steps& steps, const NoiseStrength& noise);
 
-/// Log-likelihoods, one from those of each ladder: averaged with the weights of the rungs that make all of them together most likely.
+/// Log-likelihoods, one from those of each ladder: averaged with weights of the rungs that make all of them together likely.
 std::vector<double> averaged_over_ladder(const std::vector<Rungs>& logs);
 
 }  // namespace millscope::studies::camera

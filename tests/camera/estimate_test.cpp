@@ -149,6 +149,19 @@ TEST_CASE("even intervals, a dead time and a camera without losses are recognise
   check("noise", e.noise.total_near, 0.4e-3, 0.1e-3);
 }
 
+TEST_CASE("where there is no slow noise, what chance makes of it is not told from none") {
+  for (int k = 0; k < 4; ++k) {
+    INFO("recording " << k);
+    Recording r = seen(
+        "schema_version: 1\nobservations:\n  rate: {kind: sampling, rate: 200 Hz}\n  noise: {kind: noise, white: [0.4, 0.4, 0.4, mm]}\n",
+        k + 1);
+    r.runs = {r.runs.back()};
+    const CameraEstimate e = estimate_camera(r, {std::nullopt, 60});
+    check("noise", e.noise.total_near, 0.4e-3, 0.2e-3);
+    CHECK(e.noise.correlated[0].value <= 3 * e.noise.correlated[0].error);
+  }
+}
+
 TEST_CASE("the estimate as YAML is a camera file") {
   const CameraEstimate e = estimate_camera(seen(kKnown, 1), {std::nullopt, 40});
   const Camera camera = parse_camera(camera_text(e, "made here"), "estimated.yaml", registry());

@@ -70,6 +70,16 @@ TEST_CASE("the weights of the ladder are those of its rungs among the stretches"
   const std::vector<double> each = averaged_over_ladder({low, low, high, low});
   CHECK(each[0] == Approx(-10 + std::log(0.75)));
   CHECK(each[2] == Approx(-12 + std::log(0.25)));
+  // Where rungs are nearly alike their weights settle slowly, and must all the same: two in five are likelier by e on the last rung, the
+  // rest by e^(1/2) on the first. With weight w on the last the mean of ln(1 + w (e - 1)) and ln(e^(1/2) + w (1 - e^(1/2))) is largest at
+  // w = 2/5 / (e^(1/2) - 1) * e^(1/2) - 3/5 / (e - 1).
+  Rungs late{}, early{};
+  late.fill(-1000), early.fill(-1000);
+  late.front() = 0, late.back() = 1, early.front() = 0.5, early.back() = 0;
+  const double e = std::exp(1.0), root = std::exp(0.5), w = 0.4 * root / (root - 1) - 0.6 / (e - 1);
+  const std::vector<double> mixed = averaged_over_ladder({late, early, early, late, early});
+  CHECK(mixed[0] == Approx(std::log(1 + w * (e - 1))).margin(0.03));
+  CHECK(mixed[1] == Approx(std::log(root + w * (1 - root))).margin(0.03));
   // Where all rungs serve a stretch equally well, the weights do not matter.
   Rungs any;
   any.fill(-7);
