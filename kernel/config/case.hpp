@@ -103,9 +103,10 @@ struct MillCase {
 
 /// Speed multiplied by 1 + amplitude · sin(2π frequency t + phase).
 struct RippleCase {
-  double amplitude = 0;  ///< 1, 0…1
-  double frequency = 0;  ///< Hz, > 0
-  double phase = 0;      ///< rad
+  double amplitude = 0;            ///< 1, 0…1
+  double frequency = 0;            ///< Hz, ≥ 0; 0 only where `per_turn` is of a body that does not turn
+  double phase = 0;                ///< rad
+  std::optional<double> per_turn;  ///< `per_turn`, > 0: in place of `frequency`, which follows the speed
 };
 
 /// `motion.rotation`.

@@ -18,12 +18,19 @@ double read_angular_speed(const Node& node, const std::optional<double>& critica
   return quantity.unit.to_si(quantity.number) * *critical;
 }
 
-std::optional<RippleCase> read_ripple(const std::optional<Node>& node) {
+/// `speed`: of the body, rad/s.
+std::optional<RippleCase> read_ripple(const std::optional<Node>& node, double speed) {
   if (!node) return std::nullopt;
-  node->expect({"amplitude", "frequency", "phase"});
+  node->expect({"amplitude", "frequency", "per_turn", "phase"});
   RippleCase ripple;
   ripple.amplitude = read_number(node->at("amplitude", "part of the speed, e.g. 2 %"), "1", between(0, 1));
-  ripple.frequency = read_number(node->at("frequency", "e.g. 10 Hz"), "1/s", positive());
+  if (const auto per_turn = node->find("per_turn")) {
+    if (node->has("frequency")) per_turn->fail("is given beside 'frequency'; give one of them");
+    ripple.per_turn = read_number(*per_turn, "1", positive());
+    ripple.frequency = *ripple.per_turn * std::fabs(speed) / (2 * std::numbers::pi);
+  } else {
+    ripple.frequency = read_number(node->at("frequency", "e.g. 10 Hz, or per_turn: 1"), "1/s", positive());
+  }
   ripple.phase = number_or(*node, "phase", "rad", any_number(), 0);
   return ripple;
 }
@@ -56,7 +63,7 @@ RotationCase read_rotation(const Node& node, const std::optional<MillCase>& mill
   rotation.point = vector_or(node, "point", "m", {0, 0, 0});
   rotation.start = number_or(node, "start_s", "s", not_negative(), 0);
   rotation.ramp = number_or(node, "ramp_s", "s", not_negative(), 0);
-  rotation.ripple = read_ripple(node.find("ripple"));
+  rotation.ripple = read_ripple(node.find("ripple"), rotation.speed);
   return rotation;
 }
 

@@ -134,7 +134,10 @@ json fill_schema() {
 }
 
 json motion_schema() {
-  const json ripple = object({{"amplitude", quantity("part of the speed")}, {"frequency", quantity("Hz")}, {"phase", quantity("rad")}});
+  const json ripple = object({{"amplitude", quantity("part of the speed")},
+                              {"frequency", quantity("Hz")},
+                              {"per_turn", quantity("1, in place of frequency")},
+                              {"phase", quantity("rad")}});
   const json rotation = object({{"speed", quantity("mill (default) or rad/s about the axis")},
                                 {"axis", vector()},
                                 {"point", vector()},

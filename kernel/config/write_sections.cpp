@@ -16,8 +16,10 @@ void write_rotation(Lines& out, const RotationCase& r) {
   out.value("start_s", r.start);
   out.value("ramp_s", r.ramp);
   if (r.ripple) {
-    out.value("ripple", fmt::format("{{amplitude: {}, frequency: {}, phase: {}}}", number_text(r.ripple->amplitude),
-                                    number_text(r.ripple->frequency), number_text(r.ripple->phase)));
+    const std::string how_often =
+        r.ripple->per_turn ? "per_turn: " + number_text(*r.ripple->per_turn) : "frequency: " + number_text(r.ripple->frequency);
+    out.value("ripple",
+              fmt::format("{{amplitude: {}, {}, phase: {}}}", number_text(r.ripple->amplitude), how_often, number_text(r.ripple->phase)));
   }
   out.close();
 }

@@ -112,8 +112,7 @@ void ripple(const config::Case& base, const config::GeometryCase& g, std::vector
               kRipple,
               {},
               {}};
-  c.set = {fmt::format("{}={{rotation: {{speed: mill, ripple: {{amplitude: 0, frequency: {:.6g}}}}}}}", at,
-                       std::abs(base.mill->speed) / (2 * std::numbers::pi))};
+  c.set = {at + "={rotation: {speed: mill, ripple: {amplitude: 0, per_turn: 1}}}"};
   c.paths = {at + ".rotation.ripple.amplitude"};
   out.push_back(std::move(c));
 }

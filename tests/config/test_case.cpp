@@ -95,6 +95,15 @@ TEST_CASE("senses, speeds and motions") {
   CHECK(motion.rotation->axis == Vector3{0, 0, 1});
   CHECK(motion.rotation->ripple->amplitude == 0.02);
   CHECK(motion.translation->velocity[0] == 0.001);
+  const auto twice = [](const std::string& speed) {
+    const std::string liner = "geometry.liner.motion={rotation: {ripple: {amplitude: 2 %, per_turn: 2}}}";
+    return read_all(testing::kCase, {"mill.speed=" + speed, liner}).geometry[0].motion.rotation->ripple->frequency;
+  };
+  CHECK(twice("30 rpm") == Approx(1));  // the frequency follows the speed
+  CHECK(twice("45 rpm") == Approx(1.5));
+  CHECK(message_of([] {
+          read_all(testing::kCase, {"geometry.liner.motion={rotation: {ripple: {amplitude: 2 %, per_turn: 2, frequency: 1 Hz}}}"});
+        }).find("is given beside 'frequency'; give one of them") != std::string::npos);
   const Case own = read_all(testing::kCase, {"mill=~", "geometry.liner.motion={rotation: {speed: -2 rad/s}}"});
   CHECK(own.geometry[0].motion.rotation->speed == -2);
   CHECK_FALSE(own.mill.has_value());

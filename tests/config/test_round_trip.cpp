@@ -30,6 +30,7 @@ TEST_CASE("a resolved case reads back to the same case") {
   check_fixed_point(read_all(testing::kCase, {"geometry.liner.motion={rotation: {ripple: {amplitude: 1 %, frequency: 3}}, "
                                               "translation: {oscillation: {amplitude: [1, 0, 0], frequency: 2}}}",
                                               "fill.region={low: [0, 0, 0], high: [1, 1, 1]}", "domain.low={x: -1}"}));
+  check_fixed_point(read_all(testing::kCase, {"geometry.liner.motion={rotation: {ripple: {amplitude: 1 %, per_turn: 3}}}"}));
   check_fixed_point(read_all(
       testing::case_with("beads",
                          "beads: {a: {material: glass, share: 30 %, distribution: {kind: lognormal, mean: 5 mm, deviation: 0.7 mm}}, "

@@ -67,6 +67,16 @@ TEST_CASE("a target that does not apply says what it needs") {
     CHECK((find(all, name) == nullptr) != why_not(all, name).empty());
 }
 
+TEST_CASE("a ripple comes once in a turn at every speed") {
+  for (const std::string speed : {"75 %critical", "50 %critical"}) {
+    const Library l = library();  // of the base's own speed
+    std::vector<std::string> settings = settings_of(*find(l, "speed_ripple"), 0.5);
+    settings.push_back("mill.speed=" + speed);
+    const config::Case c = config::read_case(kMill, settings);
+    CHECK_THAT(c.geometry[0].motion.rotation->ripple->frequency, WithinRel(std::fabs(c.mill->speed) / (2 * M_PI), 1e-9));
+  }
+}
+
 TEST_CASE("what is in the base is no candidate") {
   const Library l = library({"contact.interactions.roll.kind=rolling_epsd", "pairs.glass~glass.rolling_friction=0.01",
                              "pairs.glass~liner.rolling_friction=0.01", "body_forces.air.kind=air_drag", "contact.law={kind: jkr}",
