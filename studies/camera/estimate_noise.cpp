@@ -63,7 +63,7 @@ struct Estimator {
       place(x, p);
       return likelihoods(stretches, p);
     };
-    const Fit found = maximise(groups, parameters);
+    Fit found = maximise(groups, parameters);
     place(found.value, point);
     return found;
   }
