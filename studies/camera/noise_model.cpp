@@ -10,6 +10,7 @@ namespace {
 
 /// From a bed turning as one body to impacts, in steps of a factor of two and a half, m/s^1.5.
 constexpr Rungs kLadder{0.008, 0.02, 0.05, 0.125, 0.3, 0.8, 2.0, 5.0, 12.5};
+static_assert(kLadder.back() > 0, "Rungs has room for more strengths than there are");
 
 using State = std::array<double, 3>;  ///< x, v, c
 
@@ -27,8 +28,6 @@ struct Covariance {
     cc = kept * kept * cc + correlated * correlated * (1 - kept * kept);
   }
 };
-
-static_assert(kLadder.back() > 0, "Rungs has room for more strengths than there are");
 
 constexpr std::size_t kSeries = 5;  ///< the data and the powers 0 to 3 of time
 

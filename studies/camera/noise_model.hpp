@@ -10,10 +10,10 @@
 //
 // The restricted likelihood (the cubic integrated out) is exact and costs a Kalman filter per stretch. A bead that turns with the bed
 // through less than a radian follows a cubic to 0.1 % of the radius, so that stretches in a resting bed show the noise alone. q is not
-// one number for all stretches: each takes its own from a fixed ladder. How often each rung is taken is learnt from the stretches (a
-// mixture whose weights have the largest likelihood: Laird 1978, doi:10.1080/01621459.1978.10480103). Were all rungs equally likely
-// beforehand, a resting bead would pay for those that it cannot be on, and a wandering that is quickly forgotten, which makes the lower
-// rungs alike, would be preferred and take the slow noise for itself.
+// one number for all stretches: each takes its own from a fixed ladder. How often each rung is taken is learnt from the stretches
+// (Laird 1978, doi:10.1080/01621459.1978.10480103; a fixed number of rounds). Were all rungs equally likely beforehand, a resting bead
+// would pay for those that it cannot be on, and a wandering that is quickly forgotten, which makes the lower rungs alike, would be
+// preferred and take the slow noise for itself.
 #pragma once
 
 #include <array>
