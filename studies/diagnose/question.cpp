@@ -201,6 +201,20 @@ void read_usual(Question& q) {
   }
 }
 
+/// Speeds of the conditions, rad/s. One in % of critical depends on the largest bead, which a candidate may change; the recorded mill
+/// turned as it did, so that it is what the base makes of it in all simulations.
+void settle_speeds(Question& q) {
+  for (calibrate::Condition& c : q.study.conditions) {
+    const config::Case at = config::read_case(q.study.base.string(), c.settings);
+    q.speed.push_back(at.mill ? std::fabs(at.mill->speed) : 0.0);
+    if (!at.mill) continue;
+    const config::Quantity said = config::read_quantity(at.root.at("mill").at("speed"));
+    if (!said.has_unit || said.unit.dimension != config::parse_unit("%critical").dimension) continue;
+    std::erase_if(c.settings, [](const std::string& setting) { return setting.starts_with("mill.speed="); });
+    c.settings.push_back(fmt::format("mill.speed={} rad/s", q.speed.back()));
+  }
+}
+
 /// Every candidate of the library that gives a case which can be run.
 void take_all(const Library& library, const host::Registry& registry, Question& q) {
   for (const Candidate& c : library.candidates) {
@@ -279,10 +293,7 @@ Question read_question(const std::filesystem::path& file, const std::vector<std:
   std::stable_sort(q.nuisances.begin(), q.nuisances.end(), [&](const Nuisance& a, const Nuisance& b) { return rank(a) < rank(b); });
   read_usual(q);
   const config::Case base = config::read_case(q.study.base.string(), q.study.conditions.front().settings);
-  for (const calibrate::Condition& c : q.study.conditions) {
-    const config::Case at = config::read_case(q.study.base.string(), c.settings);
-    q.speed.push_back(at.mill ? std::fabs(at.mill->speed) : 0.0);
-  }
+  settle_speeds(q);
   check_parameters(q, registry);
   for (const Nuisance& n : q.nuisances) check_nuisance(q, n, registry);
   const Library library = library_of(base, registry);

@@ -1,7 +1,11 @@
 // study.yaml of a diagnosis: what is read, and what is refused with its place.
 #include "studies/diagnose/question.hpp"
 
+#include <fmt/format.h>
+
+#include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "made_up_study.hpp"
 
@@ -75,6 +79,22 @@ TEST_CASE("a question reads as it is written") {
   CHECK(theta[0].name == "bead_friction");
   CHECK_FALSE(theta[0].nuisance());
   CHECK(theta[2].nuisance());
+}
+
+TEST_CASE("a mill turns as recorded, also where larger beads would lower its critical speed") {
+  const Scratch folder;
+  const Question q = question_of(folder, "hypotheses: {size_spread: {}}\n");
+  for (std::size_t condition = 0; condition < 3; ++condition) {
+    const std::vector<std::string>& settings = q.study.conditions[condition].settings;
+    std::vector<std::string> with = settings, in_percent{fmt::format("mill.speed={} %critical", std::array{75, 60, 50}.at(condition))};
+    for (const std::string& s : settings_of(q.candidates[0], 1)) with.push_back(s), in_percent.push_back(s);
+    const auto speed = [&](const std::vector<std::string>& of) {
+      return std::fabs(config::read_case(q.study.base.string(), of).mill->speed);
+    };
+    CHECK(speed(settings) == q.speed[condition]);
+    CHECK(speed(with) == q.speed[condition]);
+    CHECK(speed(in_percent) > 1.005 * q.speed[condition]);
+  }
 }
 
 TEST_CASE("without a map of hypotheses all that apply are asked, in alphabetical order, with the standards of the documentation") {
