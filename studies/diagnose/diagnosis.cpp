@@ -41,15 +41,15 @@ std::vector<BankPoint> screened(const Question& question, Workshop& workshop, Di
   note(workshop, unsettled(question, bank, d.fit), d);  // before the rest, all with an effect, is simulated in vain
   const Problem problem = problem_of(question, workshop, bank, d.fit);
   const Surrogate surrogate(problem.data);
-  const MatrixXd whitening = whitener(problem.covariance + surrogate.error_covariance(problem.covariance));
-  const FitResult base = Model(problem.data, surrogate, whitening, {}, {}).fit(problem.observed);
+  const Weighting weighting(problem.covariance, surrogate);
+  const FitResult base = Model(problem.data, surrogate, weighting, {}).fit(problem.observed);
   const double limit = kMargin * noise_units;
   for (std::size_t j = 0; j < question.candidates.size(); ++j) {
     if (surrogate.features().count(static_cast<int>(j)) == 0) {
       say(workshop, fmt::format("{}: none of its first simulations came to its end: it is not tested", question.candidates[j].name));
       continue;
     }
-    const Visibility seen(problem, surrogate, whitening, base.coded, static_cast<int>(j));
+    const Visibility seen(problem, surrogate, weighting, base.coded, static_cast<int>(j));
     const double most = std::sqrt(seen.lambda_high());
     const std::string what =
         fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate, below {:.1f} with 95 %",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,8 @@ namespace {
 
 constexpr int kIterations = 40;
 constexpr double kFinished = 1e-9;  // of Q, relative
+constexpr double kRounding = 1e-13;
+constexpr double kReliable = 0.3;
 constexpr std::size_t kDescents = 3;
 constexpr int kLevels = 3;  // of the grid of starting points, for each flat coordinate
 
@@ -33,22 +36,20 @@ MatrixXd whitener(const MatrixXd& covariance) {
   return factor(covariance).triangularView<Eigen::Lower>().solve(MatrixXd::Identity(covariance.rows(), covariance.cols()));
 }
 
-Model::Model(const BankData& data, const Surrogate& surrogate, const MatrixXd& whitener, std::vector<int> active,
-             const std::vector<ShareRange>& ranges, Index freed)
-    : features_(&surrogate.features()), whitener_(whitener), active_(std::move(active)), theta_(static_cast<Index>(data.theta.size())) {
-  Index columns = features_->base_size();
-  for (const int j : active_) columns += features_->count(j);
-  MatrixXd b(columns, data.value.cols());
-  b.topRows(features_->base_size()) = surrogate.coefficients().topRows(features_->base_size());
-  Index next = features_->base_size();
-  for (const int j : active_) {
-    b.middleRows(next, features_->count(j)) = surrogate.coefficients().middleRows(features_->first(j), features_->count(j));
-    next += features_->count(j);
-  }
-  const Index kept = std::min(columns, whitener.rows());
-  const Eigen::HouseholderQR<MatrixXd> qr(whitener * b.transpose());
-  r_ = qr.matrixQR().topRows(kept).triangularView<Eigen::Upper>();
-  qt_ = (qr.householderQ() * MatrixXd::Identity(whitener.rows(), kept)).transpose();
+Weighting::Weighting(const MatrixXd& recording, const Surrogate& surrogate)
+    : run(surrogate.residual_covariance(recording)),
+      covariance(recording + surrogate.error_covariance(recording)),
+      whitener(diagnose::whitener(covariance)),
+      run_noise((whitener * run * whitener.transpose()).trace()) {}
+
+Model::Model(const BankData& data, const Surrogate& surrogate, const Weighting& weighting, const Switched& switched)
+    : surrogate_(&surrogate),
+      features_(&surrogate.features()),
+      weighting_(&weighting),
+      active_(switched.on),
+      columns_(surrogate.features().columns(switched.on)),
+      theta_(static_cast<Index>(data.theta.size())) {
+  use(surrogate.coefficients());
   const Index all = theta_ + static_cast<Index>(active_.size());
   low_ = VectorXd::Constant(all, -1), high_ = VectorXd::Constant(all, 1);
   prior_ = VectorXd::Zero(all), weight_ = VectorXd::Zero(all);
@@ -56,12 +57,48 @@ Model::Model(const BankData& data, const Surrogate& surrogate, const MatrixXd& w
     const Coordinate& c = data.theta[static_cast<std::size_t>(i)];
     if (!c.nuisance()) continue;
     prior_[i] = c.coded(c.prior_mean);
-    if (i != freed) weight_[i] = c.prior_weight();
+    if (i != switched.freed) weight_[i] = c.prior_weight();
   }
   for (std::size_t k = 0; k < active_.size(); ++k) {
-    low_[theta_ + static_cast<Index>(k)] = ranges[static_cast<std::size_t>(active_[k])].low;
-    high_[theta_ + static_cast<Index>(k)] = ranges[static_cast<std::size_t>(active_[k])].high;
+    const ShareRange& range = switched.ranges[static_cast<std::size_t>(active_[k])];
+    low_[theta_ + static_cast<Index>(k)] = range.low;
+    high_[theta_ + static_cast<Index>(k)] = range.high;
   }
+}
+
+void Model::use(const MatrixXd& coefficients) {
+  const MatrixXd& w = weighting_->whitener;
+  const Index kept = std::min(static_cast<Index>(columns_.size()), w.rows());
+  const Eigen::HouseholderQR<MatrixXd> qr(w * coefficients(columns_, Eigen::all).transpose());
+  r_ = qr.matrixQR().topRows(kept).triangularView<Eigen::Upper>();
+  qt_ = (qr.householderQ() * MatrixXd::Identity(w.rows(), kept)).transpose();
+  if (!active_.empty()) correct();
+}
+
+/// |W (y − Bᵀx)|² − xᵀ D x is a sum of squares and a constant, too: with G = RᵀR, D V = G V diag(μ) and Vᵀ G V = 1
+///
+///   |R x − z|² − xᵀ D x = |R' x − z'|² + |z|² − |z'|²,  R' = (1 − μ)^½ Vᵀ G,  z' = (1 − μ)^−½ Vᵀ Rᵀ z
+///
+/// 1 − μ is how reliable a direction in the space of the coefficients is: the part of its square that is no chance. Below `kReliable`,
+/// where chance alone often leaves as much, μ is taken for less and less, at 0 for nothing.
+void Model::correct() {
+  const Index base = features_->base_size();
+  MatrixXd d = weighting_->run_noise * surrogate_->coefficient_error()(columns_, columns_);
+  d.topLeftCorner(base, base).setZero();
+  MatrixXd g = r_.transpose() * r_;
+  g.diagonal().array() += kRounding * g.diagonal().maxCoeff();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(d, g);
+  const Eigen::ArrayXd mu = solver.eigenvalues().array();
+  const VectorXd root = (1 - mu * ((1 - mu) / kReliable).max(0).min(1)).sqrt();
+  const MatrixXd vt = solver.eigenvectors().transpose();
+  qt_ = (root.cwiseInverse().asDiagonal() * vt * r_.transpose() * qt_).eval();
+  r_ = root.asDiagonal() * vt * g;
+}
+
+Model Model::with(const MatrixXd& coefficients) const {
+  Model out = *this;
+  out.use(coefficients);
+  return out;
 }
 
 VectorXd Model::features(const VectorXd& t) const {
@@ -145,9 +182,9 @@ std::vector<VectorXd> Model::starts() const {
 }
 
 FitResult Model::fit(const VectorXd& observed) const {
-  const VectorXd white = whitener_ * observed;
+  const VectorXd white = weighting_->whitener * observed;
   Target target{qt_ * white, 0};
-  target.beyond = std::max(0.0, white.squaredNorm() - target.z.squaredNorm());
+  target.beyond = white.squaredNorm() - target.z.squaredNorm();
   std::vector<std::pair<double, VectorXd>> tried;
   for (VectorXd& t : starts()) {
     const double q = residual(t, target).squaredNorm();

@@ -1,8 +1,13 @@
 // Parameters that explain observations best, with none, one or two candidates switched on.
 //
-//   Q(u, s) = (y − m(u, s))ᵀ Σ⁻¹ (y − m(u, s)) + Σ ((θ_n − prior)/σ_n)² over the nuisances
+//   Q(u, s) = (y − m(u, s))ᵀ Σ⁻¹ (y − m(u, s)) − tr(Σ⁻¹ S) (h(u, s) − h(u, 0)) + Σ ((θ_n − prior)/σ_n)² over the nuisances
 //
-// u stays within the bank's ranges, a one-sided share within 0 … 1. y enters through QR factors of the whitened coefficients, so that a
+// S is the covariance of one run about the surrogate and h its leverage: the second term is what the chance of the bank's runs adds to the
+// first on average where effects are on. Without it a strength is drawn towards nothing, as every slope is whose abscissae have errors
+// (regression dilution; corrected as in Fuller 1987, Measurement Error Models, section 2.2). Where chance may have made all of a slope
+// there is nothing to correct: the correction would fit chance with more of it.
+//
+// u stays within the bank's ranges, a one-sided share within 0 … 1. y enters through factors of the whitened coefficients, so that a
 // fit costs the number of coefficients, not of observables.
 #pragma once
 
@@ -18,6 +23,17 @@ MatrixXd whitener(const MatrixXd& covariance);
 /// L itself.
 MatrixXd factor(const MatrixXd& covariance);
 
+/// What a difference between observations and surrogate is measured with.
+struct Weighting {
+  /// `recording`: its covariance.
+  Weighting(const MatrixXd& recording, const Surrogate& surrogate);
+
+  MatrixXd run;         ///< S
+  MatrixXd covariance;  ///< Σ: recording and surrogate
+  MatrixXd whitener;    ///< W = L⁻¹ with Σ = L Lᵀ
+  double run_noise;     ///< tr(Σ⁻¹ S)
+};
+
 struct FitResult {
   VectorXd coded;              ///< θ
   std::vector<double> shares;  ///< of the active candidates
@@ -29,34 +45,47 @@ struct ShareRange {
   double low = 0, high = 1;
 };
 
+/// What a model may do besides turning θ within its priors.
+struct Switched {
+  std::vector<int> on = {};             ///< candidates
+  std::vector<ShareRange> ranges = {};  ///< of all candidates
+  Index freed = -1;                     ///< a nuisance whose prior does not count; −1: none
+};
+
+/// Surrogate and weighting must outlive it.
 class Model {
  public:
-  /// `active`: candidates that are switched on. `freed`: a nuisance whose prior does not count; −1: none.
-  Model(const BankData& data, const Surrogate& surrogate, const MatrixXd& whitener, std::vector<int> active,
-        const std::vector<ShareRange>& ranges, Index freed = -1);
+  Model(const BankData& data, const Surrogate& surrogate, const Weighting& weighting, const Switched& switched);
+  Model(const BankData&, const Surrogate&, Weighting&&, const Switched&) = delete;
 
+  /// The same on a bank that has turned out other: coefficients of all features × observables.
+  Model with(const MatrixXd& coefficients) const;
   FitResult fit(const VectorXd& observed) const;
   /// The same with one of θ and the shares, in that order, held at a value within its limits.
   FitResult fit_holding(Index coordinate, double value, const VectorXd& observed) const;
   double low(Index coordinate) const { return low_[coordinate]; }
   double high(Index coordinate) const { return high_[coordinate]; }
-  const std::vector<int>& active() const { return active_; }
   std::vector<Effect> effects(const FitResult& fit) const;
 
  private:
   struct Target {
     VectorXd z;         ///< Qᵀ W y
-    double beyond = 0;  ///< what no coefficients reach
+    double beyond = 0;  ///< Q less the sum of squares of the residual
   };
+  void use(const MatrixXd& coefficients);
+  void correct();
   VectorXd features(const VectorXd& t) const;
   VectorXd residual(const VectorXd& t, const Target& target) const;
   MatrixXd jacobian(const VectorXd& t) const;
   double descend(VectorXd& t, const Target& target) const;
   std::vector<VectorXd> starts() const;
 
+  const Surrogate* surrogate_;
   const Features* features_;
-  MatrixXd whitener_, r_, qt_;
+  const Weighting* weighting_;
+  MatrixXd r_, qt_;
   std::vector<int> active_;
+  std::vector<Index> columns_;            ///< of all features those that are in use
   VectorXd low_, high_, prior_, weight_;  ///< of (u, s); weight 1/σ in coded units, 0: flat
   Index theta_ = 0;
 };

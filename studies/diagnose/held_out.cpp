@@ -192,12 +192,13 @@ std::vector<Alone> fit_alone(const HeldOutRequest& r) {
   for (const std::size_t condition : r.bank.conditions) {
     const Problem one = problem_alone(r.question, r.workshop, r.bank, condition, r.problem.data);
     const Surrogate surrogate(one.data);
-    const MatrixXd w = whitener(one.covariance + surrogate.error_covariance(one.covariance));
+    const Weighting weighting(one.covariance, surrogate);
+    const MatrixXd& w = weighting.whitener;
     const auto fit = [&](const std::vector<Effect>& on) {
-      std::vector<ShareRange> ranges(static_cast<std::size_t>(one.data.candidates));
-      std::vector<int> active;
-      for (const Effect& e : on) active.push_back(e.candidate), ranges[static_cast<std::size_t>(e.candidate)] = {e.share, e.share};
-      const FitResult found = Model(one.data, surrogate, w, active, ranges).fit(one.observed);
+      Switched switched{{}, std::vector<ShareRange>(static_cast<std::size_t>(one.data.candidates)), -1};
+      for (const Effect& e : on)
+        switched.on.push_back(e.candidate), switched.ranges[static_cast<std::size_t>(e.candidate)] = {e.share, e.share};
+      const FitResult found = Model(one.data, surrogate, weighting, switched).fit(one.observed);
       const Index d = found.coded.size();
       MatrixXd information = MatrixXd::Zero(d, d), tangent(w.rows(), d);
       for (Index i = 0; i < d; ++i) {

@@ -48,7 +48,7 @@ class Namer {
   Namer(const Problem& problem, const NamingOptions& options) : p_(problem), o_(options), pseudo_(problem, options) {}
 
   Naming run() {
-    out_.covariance = pseudo_.covariance();
+    out_.covariance = pseudo_.weighting().covariance;
     out_.chance = pseudo_.chance();
     against_base();
     choose_best();
@@ -123,7 +123,7 @@ class Namer {
 
   void visibility(int j) {
     Judged& judged = out_.judged[static_cast<std::size_t>(j)];
-    const Visibility seen(p_, pseudo_.surrogate(), pseudo_.whitening(), judged.fit.coded, j);
+    const Visibility seen(p_, pseudo_.surrogate(), pseudo_.weighting(), judged.fit.coded, j);
     const double found =
         judged.fit.shares.empty() ? judged.fit.coded[p_.rivals[static_cast<std::size_t>(j)].freed] : judged.fit.shares.front();
     for (const BankRow& row : p_.data.rows) {

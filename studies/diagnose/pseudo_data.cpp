@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "kernel/config/error.hpp"
 #include "studies/analysis/parallel.hpp"
@@ -15,6 +16,7 @@ namespace {
 constexpr std::size_t kLeastBase = 8;
 constexpr std::size_t kEnoughWith = 12;  // runs with an effect, for intervals from them alone
 constexpr double kFaint = 0.1;           // of a share: the bank has no runs with less
+constexpr double kSingular = 1e-12;
 
 std::vector<ShareRange> ranges_of(const Problem& problem) {
   std::vector<ShareRange> ranges(static_cast<std::size_t>(problem.data.candidates));
@@ -22,6 +24,21 @@ std::vector<ShareRange> ranges_of(const Problem& problem) {
     if (r.candidate >= 0) ranges[static_cast<std::size_t>(r.candidate)] = r.range;
   }
   return ranges;
+}
+
+/// Of a symmetric matrix A without negative eigenvalues, which may be singular: F with F Fᵀ = A, and G with Gᵀ F F ᵀ G = 1 where A is not
+/// 0.
+struct Root {
+  MatrixXd factor, inverse;
+};
+
+Root root_of(const MatrixXd& a) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(a);
+  const VectorXd& values = solver.eigenvalues();
+  const double least = kSingular * values.cwiseAbs().maxCoeff();
+  const VectorXd root = (values.array() > least).select(values.cwiseMax(0).cwiseSqrt(), 0);
+  const VectorXd inverse = (values.array() > least).select(root.cwiseInverse(), 0);
+  return {solver.eigenvectors() * root.asDiagonal(), solver.eigenvectors() * inverse.asDiagonal()};
 }
 
 }  // namespace
@@ -32,8 +49,8 @@ PseudoData::PseudoData(const Problem& problem, const NamingOptions& options)
   const std::vector<bool> all(data.rows.size(), true);
   surrogate_ = std::make_unique<Surrogate>(data, *features_, all);
   chance_ = surrogate_->chance(problem.covariance);
-  covariance_ = problem.covariance + surrogate_->error_covariance(problem.covariance);
-  whitener_ = whitener(covariance_);
+  weighting_ = std::make_unique<Weighting>(problem.covariance, *surrogate_);
+  run_factor_ = root_of(weighting_->run).factor;
   for (const MatrixXd& law : problem.noise) noise_factors_.push_back(factor(law));
   if (noise_factors_.empty()) noise_factors_.push_back(factor(problem.covariance));
   std::size_t base = 0;
@@ -51,29 +68,14 @@ PseudoData::PseudoData(const Problem& problem, const NamingOptions& options)
     base += effects.empty() && data.usual(data.rows[r]) ? 1 : 0;
     left_out_.push_back(std::move(left));
   }
-  weigh_effects();
   if (base < kLeastBase)
     throw config::UserError(
         fmt::format("the bank has {} finished runs without an effect, the null needs {}; raise bank.base", base, kLeastBase));
 }
 
-/// With an effect the surrogate may err by more than without: mean whitened square of the left-out deviations over that without one, at
-/// least 1.
-void PseudoData::weigh_effects() {
-  std::vector<double> sum(ranges_.size() + 1, 0.0), runs(sum.size(), 0.0);  // the first: without
-  for (const LeftOut& left : left_out_) {
-    const auto k = static_cast<std::size_t>(left.candidate + 1);
-    sum[k] += (whitener_ * left.deviation).squaredNorm() / (1 + left.leverage), runs[k] += 1;
-  }
-  error_with_.assign(ranges_.size(), 1.0);
-  for (std::size_t j = 0; j < ranges_.size(); ++j) {
-    if (runs[j + 1] > 0 && sum[0] > 0) error_with_[j] = std::max(1.0, sum[j + 1] / runs[j + 1] * runs[0] / sum[0]);
-  }
-}
-
-double PseudoData::error_of(const std::vector<Effect>& effects) const {
+double PseudoData::scatter_of(const std::vector<Effect>& effects) const {
   double out = 1;
-  for (const Effect& e : effects) out += std::fabs(e.share) < kFaint ? 0 : error_with_[static_cast<std::size_t>(e.candidate)] - 1;
+  for (const Effect& e : effects) out += std::fabs(e.share) < kFaint ? 0 : surrogate_->scatter_with(e.candidate) - 1;
   return out;
 }
 
@@ -89,14 +91,13 @@ std::vector<const PseudoData::LeftOut*> PseudoData::runs_for(const Truth& truth,
 }
 
 Model PseudoData::model(const Surrogate& surrogate, const Choice& choice) const {
-  std::vector<int> active;
-  Index freed = -1;
+  Switched switched{{}, ranges_, -1};
   for (const int r : choice) {
     const Rival& rival = problem_.rivals[static_cast<std::size_t>(r)];
-    if (rival.candidate >= 0) active.push_back(rival.candidate);
-    if (rival.freed >= 0) freed = rival.freed;
+    if (rival.candidate >= 0) switched.on.push_back(rival.candidate);
+    if (rival.freed >= 0) switched.freed = rival.freed;
   }
-  return {problem_.data, surrogate, whitener_, active, ranges_, freed};
+  return {problem_.data, surrogate, *weighting_, switched};
 }
 
 VectorXd Truth::coordinates() const {
@@ -125,12 +126,17 @@ VectorXd PseudoData::drawn_theta(const Truth& truth, emulate::Random& random) co
   return u;
 }
 
-VectorXd PseudoData::pseudo_recording(const LeftOut& left, const Truth& truth, double chance, const MatrixXd& noise,
-                                      emulate::Random& random) const {
-  const VectorXd& u = truth.coded;
-  const double wanted = (1 - chance + left.surrogate->leverage(u, truth.effects)) * error_of(truth.effects);
-  const double scale = std::sqrt(wanted / ((1 + left.leverage) * error_of(left.effects)));
-  return left.surrogate->at(u, truth.effects) + scale * left.deviation + noise * random.normals(left.deviation.size());
+double PseudoData::part_of(const LeftOut& left, const Truth& truth, double chance) const {
+  const double wanted =
+      truth.effects.empty() ? 1 - chance + left.surrogate->leverage(truth.coded) : (1 - chance) * scatter_of(truth.effects);
+  return std::sqrt(wanted / (scatter_of(left.effects) + left.leverage));
+}
+
+double PseudoData::reliability(const Truth& truth, const Effect& effect) const {
+  const std::vector<Effect> some{{effect.candidate, std::copysign(std::max(kFaint, std::fabs(effect.share)), effect.share)}};
+  const double square = (weighting_->whitener * (surrogate_->at(truth.coded, some) - surrogate_->at(truth.coded))).squaredNorm();
+  const double chance = weighting_->run_noise * surrogate_->leverage_of(truth.coded, some);
+  return square > 0 ? std::max(0.0, 1 - chance / square) : 1;
 }
 
 VectorXd PseudoData::rise(const Model& model, const Truth& truth, double least, const VectorXd& y) {
@@ -140,24 +146,53 @@ VectorXd PseudoData::rise(const Model& model, const Truth& truth, double least, 
   return out;
 }
 
-std::vector<PseudoData::Drawn> PseudoData::draw(const Truth& truth, const std::vector<Choice>& choices, const Draws& how) const {
-  const std::vector<const LeftOut*> runs = runs_for(truth, how.for_intervals);
-  std::vector<std::vector<Model>> models;  // [left out][choices]
-  for (const LeftOut* left : runs) {
-    models.emplace_back();
-    for (const Choice& choice : choices) models.back().push_back(model(*left->surrogate, choice));
+PseudoData::Refit PseudoData::refit(const LeftOut& left, const Truth& truth, const std::vector<Choice>& choices) const {
+  Refit out{&left, left.surrogate->coefficients(), {}, {}};
+  for (const Choice& choice : choices) out.models.push_back(model(*left.surrogate, choice));
+  if (truth.effects.empty()) return out;
+  std::vector<int> on;
+  for (const Effect& e : truth.effects) {
+    on.push_back(e.candidate);
+    out.coefficients.middleRows(features_->first(e.candidate), features_->count(e.candidate)) *= std::sqrt(reliability(truth, e));
   }
+  // Base and effects of the truth are drawn again; the other candidates' coefficients move as they do with those on average.
+  const std::vector<Index> columns = features_->columns(on);
+  const MatrixXd& error = left.surrogate->coefficient_error();
+  out.again = error(Eigen::all, columns) * root_of(error(columns, columns)).inverse;
+  return out;
+}
+
+PseudoData::Drawn PseudoData::drawn(const Refit& refit, const Truth& truth, const Draws& how, std::size_t b) const {
+  emulate::Random random(options_.seed + how.stream, b);
+  const Truth at{drawn_theta(truth, random), truth.effects, truth.freed};
+  const LeftOut& left = *refit.left;
+  const Index n = left.deviation.size();
+  const VectorXd y = refit.coefficients.transpose() * features_->all(at.coded, at.effects) +
+                     part_of(left, at, how.for_intervals ? 0 : chance_) * left.deviation + noise_factors_[b % laws()] * random.normals(n);
+  MatrixXd coefficients = refit.coefficients;
+  if (refit.again.size() > 0) {
+    const Index k = refit.again.cols();
+    coefficients += refit.again * random.normals(k * n).reshaped(k, n) * run_factor_.transpose();
+  }
+  Drawn out;
+  std::optional<Model> first;
+  for (const Model& fixed : refit.models) {
+    const Model again = refit.again.size() > 0 ? fixed.with(coefficients) : fixed;
+    out.fit.push_back(again.fit(y));
+    if (!first) first = again;
+  }
+  const FitResult& found = out.fit.front();
+  out.residual = y - coefficients.transpose() * features_->all(found.coded, first->effects(found));
+  if (how.for_intervals) out.rise = rise(*first, at, found.q, y);
+  return out;
+}
+
+std::vector<PseudoData::Drawn> PseudoData::draw(const Truth& truth, const std::vector<Choice>& choices, const Draws& how) const {
+  std::vector<Refit> refits;
+  for (const LeftOut* left : runs_for(truth, how.for_intervals)) refits.push_back(refit(*left, truth, choices));
   std::vector<Drawn> out(static_cast<std::size_t>(how.count));
-  studies::for_each_item(out.size(), studies::worker_count(options_.threads, out.size()), [&](std::size_t b, std::size_t) {
-    emulate::Random random(options_.seed + how.stream, b);
-    const std::size_t r = b / laws() % runs.size();
-    const Truth drawn{drawn_theta(truth, random), truth.effects, truth.freed};
-    const VectorXd y = pseudo_recording(*runs[r], drawn, how.for_intervals ? 0 : chance_, noise_factors_[b % laws()], random);
-    for (const Model& m : models[r]) out[b].fit.push_back(m.fit(y));
-    const FitResult& first = out[b].fit.front();
-    out[b].residual = y - runs[r]->surrogate->at(first.coded, models[r].front().effects(first));
-    if (how.for_intervals) out[b].rise = rise(models[r].front(), drawn, first.q, y);
-  });
+  studies::for_each_item(out.size(), studies::worker_count(options_.threads, out.size()),
+                         [&](std::size_t b, std::size_t) { out[b] = drawn(refits[b / laws() % refits.size()], truth, how, b); });
   return out;
 }
 

@@ -95,7 +95,8 @@ Index RivalModels::partner(Index i, std::size_t fitted) const {
 
 Prediction RivalModels::placebo(const Prediction& base) const {
   const Index n = base.value.size(), m = r_.problem.observed.size();
-  const MatrixXd whitening = whitener(r_.naming.covariance);
+  const Weighting weighting(r_.problem.covariance, surrogate_);
+  const MatrixXd& whitening = weighting.whitener;
   VectorXd moved = VectorXd::Zero(n);
   double least = std::numeric_limits<double>::infinity();
   const auto is_fitted = [&](Index i) {
@@ -115,7 +116,7 @@ Prediction RivalModels::placebo(const Prediction& base) const {
       at += r_.workshop.recorded[c].value.size();
     }
     // θ and the placebo's size in turn: the problem is nearly linear.
-    const Model model(r_.problem.data, surrogate_, whitening, {}, {});
+    const Model model(r_.problem.data, surrogate_, weighting, {});
     const VectorXd v = whitening * fitted;
     double size = 0;
     FitResult fit = r_.naming.base;

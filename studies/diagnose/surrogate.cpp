@@ -6,6 +6,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -46,12 +47,11 @@ MatrixXd without_own(MatrixXd residual, const VectorXd& leverage) {
   return residual;
 }
 
-/// Rows with an effect that the surface follows worse than it follows the base weigh less, by the mean over the observables of how much
-/// larger their squared left-out residuals are: else what it cannot follow of a strong effect would pull the base its way, and a recording
-/// without the effect would seem to have some of it. `group`: the candidate of each row, −1 without.
-VectorXd weights_of(const MatrixXd& x, const MatrixXd& y, const std::vector<int>& group) {
-  VectorXd weight = VectorXd::Ones(x.rows());
-  const Solution even = solve(x, weight);
+/// By how much more the rows of each candidate scatter about the surface than those without: the mean over the observables of how much
+/// larger their squared left-out residuals are, at least 1. `group`: the candidate of each row, −1 without.
+std::vector<double> scatter_of(const MatrixXd& x, const MatrixXd& y, const std::vector<int>& group, int candidates) {
+  std::vector<double> out(static_cast<std::size_t>(candidates), 1.0);
+  const Solution even = solve(x, VectorXd::Ones(x.rows()));
   const MatrixXd left_out = without_own(y - x * (even.map * y), leverages(x, even));
   const auto mean_square = [&](int candidate) {
     VectorXd sum = VectorXd::Zero(y.cols());
@@ -69,12 +69,9 @@ VectorXd weights_of(const MatrixXd& x, const MatrixXd& y, const std::vector<int>
     for (Index i = 0; i < y.cols(); ++i) {
       if (base[i] > kRounding * kRounding * y.col(i).squaredNorm()) ratio += own[i] / base[i], ++counted;
     }
-    if (counted == 0 || ratio <= counted) continue;
-    for (Index r = 0; r < x.rows(); ++r) {
-      if (group[static_cast<std::size_t>(r)] == candidate) weight[r] = counted / ratio;
-    }
+    if (counted > 0) out[static_cast<std::size_t>(candidate)] = std::max(1.0, ratio / counted);
   }
-  return weight;
+  return out;
 }
 
 }  // namespace
@@ -188,6 +185,15 @@ VectorXd Features::all(const VectorXd& u, const std::vector<Effect>& effects) co
   return x;
 }
 
+std::vector<Index> Features::columns(const std::vector<int>& candidates) const {
+  std::vector<Index> out(static_cast<std::size_t>(base_size_));
+  std::iota(out.begin(), out.end(), 0);
+  for (const int j : candidates) {
+    for (Index k = 0; k < count(j); ++k) out.push_back(first(j) + k);
+  }
+  return out;
+}
+
 Surrogate::Surrogate(const BankData& data) : Surrogate(data, Features(data), std::vector<bool>(data.rows.size(), true)) {}
 
 Surrogate::Surrogate(const BankData& data, Features features, const std::vector<bool>& used) : features_(std::move(features)) {
@@ -208,9 +214,17 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
     x.row(k) = features_.all(data.coded(data.rows[r].theta), data.rows[r].effects).transpose();
     y.row(k++) = data.value.row(static_cast<Index>(r));
   }
-  const Solution solution = solve(x, weights_of(x, y, group));
+  // Rows that scatter more weigh less: else what the surface cannot follow of a strong effect would pull the base its way, and a recording
+  // without the effect would seem to have some of it.
+  scatter_with_ = scatter_of(x, y, group, features_.candidates());
+  VectorXd scatter(rows);
+  for (Index r = 0; r < rows; ++r) {
+    const int candidate = group[static_cast<std::size_t>(r)];
+    scatter[r] = candidate < 0 ? 1 : scatter_with(candidate);
+  }
+  const Solution solution = solve(x, scatter.cwiseInverse());
   coefficients_ = solution.map * y;
-  inverse_ = solution.map * solution.map.transpose();
+  coefficient_error_ = solution.map * scatter.asDiagonal() * solution.map.transpose();
   residual_ = y - x * coefficients_;
   for (Index i = 0; i < y.cols(); ++i) {  // what is left of an exact column is rounding, whose correlations mean nothing
     if (residual_.col(i).norm() < kRounding * y.col(i).norm()) residual_.col(i).setZero();
@@ -220,7 +234,7 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
   left_out_ = without_own(residual_, leverage);
   for (Index r = 0; r < rows; ++r) mean_leverage_ += group[static_cast<std::size_t>(r)] < 0 ? leverage[r] : 0;
   mean_leverage_ /= static_cast<double>(std::max<std::ptrdiff_t>(1, std::count(group.begin(), group.end(), -1)));
-  keep_scatter(points, y);
+  keep_scatter(points, y, scatter);
 }
 
 VectorXd Surrogate::at(const VectorXd& coded, const std::vector<Effect>& effects) const {
@@ -234,12 +248,12 @@ VectorXd Surrogate::at(const VectorXd& coded, const std::vector<Effect>& effects
 
 double Surrogate::leverage(const VectorXd& coded, const std::vector<Effect>& effects) const {
   const VectorXd x = features_.all(coded, effects);
-  return x.dot(inverse_ * x);
+  return x.dot(coefficient_error_ * x);
 }
 
 double Surrogate::leverage_of(const VectorXd& coded, const std::vector<Effect>& effects) const {
   const VectorXd x = features_.all(coded, effects) - features_.all(coded, {});
-  return x.dot(inverse_ * x);
+  return x.dot(coefficient_error_ * x);
 }
 
 void choose_scales(BankData& data) {

@@ -25,6 +25,8 @@ class Features {
   Index count(int candidate) const { return count_[static_cast<std::size_t>(candidate)]; }
   VectorXd block(int candidate, const VectorXd& coded, double share) const;
   VectorXd all(const VectorXd& coded, const std::vector<Effect>& effects) const;
+  /// Of all columns those of the base and of some candidates, one after the other.
+  std::vector<Index> columns(const std::vector<int>& candidates) const;
 
  private:
   void add_candidate(const BankData& data, int candidate);
@@ -44,7 +46,11 @@ class Surrogate {
   explicit Surrogate(const BankData& data);
 
   VectorXd at(const VectorXd& coded, const std::vector<Effect>& effects = {}) const;
-  /// Variance of the prediction over that of one run's residual.
+  /// Covariance of the coefficients' errors over S: runs that scatter more tell less. Features × features.
+  const MatrixXd& coefficient_error() const { return coefficient_error_; }
+  /// By how much larger than S the covariance of runs with a candidate is, at least 1.
+  double scatter_with(int candidate) const { return scatter_with_[static_cast<std::size_t>(candidate)]; }
+  /// Variance of the prediction over that of one run's residual without a candidate.
   double leverage(const VectorXd& coded, const std::vector<Effect>& effects = {}) const;
   /// The same of the difference that effects make.
   double leverage_of(const VectorXd& coded, const std::vector<Effect>& effects) const;
@@ -53,8 +59,8 @@ class Surrogate {
   Index degrees() const { return degrees_; }  ///< points − coefficients
   /// Row residuals, each from a fit without that row: (y − m)/(1 − h).
   const MatrixXd& left_out() const { return left_out_; }
-  /// S, covariance of one run about the surface: the runs' chance and what a quadratic surface cannot follow. Correlations are shrunk
-  /// in coordinates in which the recording's noise has none.
+  /// S, covariance of one run without a candidate about the surface: the runs' chance and what a quadratic surface cannot follow; that of
+  /// runs with one is `scatter_with` times as large. Correlations are shrunk in coordinates in which the recording's noise has none.
   MatrixXd residual_covariance(const MatrixXd& recording) const;
   /// ρ, the part of S that is chance, of which a recording has its own instead: by what runs of equal parameters and other seeds differ
   /// (pure error; Montgomery 2013, ch. 10). The low end of its 90 % interval, over all observables or in the span of what coordinates
@@ -65,11 +71,12 @@ class Surrogate {
 
  private:
   Features features_;
-  void keep_scatter(const std::vector<std::vector<Index>>& points, const MatrixXd& y);
+  void keep_scatter(const std::vector<std::vector<Index>>& points, const MatrixXd& y, const VectorXd& scatter);
   MatrixXd first_order() const;
 
-  MatrixXd coefficients_, inverse_, residual_, left_out_;
-  MatrixXd scatter_;   ///< [points, observables]
+  MatrixXd coefficients_, coefficient_error_, residual_, left_out_;
+  std::vector<double> scatter_with_;
+  MatrixXd scatter_;   ///< [points, observables], as of runs without a candidate
   MatrixXd repeated_;  ///< runs about the mean of those at their point
   double mean_leverage_ = 0;
   Index degrees_ = 0, degrees_repeated_ = 0;

@@ -33,16 +33,17 @@ std::vector<std::vector<Index>> points_of(const BankData& data, const std::vecto
 }
 
 /// Of k runs at one point: √k times their mean residual, whose variance is that of one run where nothing is left unfollowed, and more than
-/// that where something is; and what they differ by.
-void Surrogate::keep_scatter(const std::vector<std::vector<Index>>& points, const MatrixXd& y) {
+/// that where something is; and what they differ by. `more`: how much more each row scatters than rows without a candidate.
+void Surrogate::keep_scatter(const std::vector<std::vector<Index>>& points, const MatrixXd& y, const VectorXd& more) {
   scatter_ = MatrixXd::Zero(static_cast<Index>(points.size()), y.cols());
   degrees_repeated_ = y.rows() - scatter_.rows();
   repeated_ = MatrixXd::Zero(y.rows(), y.cols());
   for (std::size_t p = 0; p < points.size(); ++p) {
     const auto runs = static_cast<double>(points[p].size());
     Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(y.cols());
-    for (const Index r : points[p]) mean += y.row(r) / runs, scatter_.row(static_cast<Index>(p)) += residual_.row(r) / std::sqrt(runs);
-    for (const Index r : points[p]) repeated_.row(r) = y.row(r) - mean;
+    for (const Index r : points[p])
+      mean += y.row(r) / runs, scatter_.row(static_cast<Index>(p)) += residual_.row(r) / std::sqrt(runs * more[r]);
+    for (const Index r : points[p]) repeated_.row(r) = (y.row(r) - mean) / std::sqrt(more[r]);
   }
 }
 

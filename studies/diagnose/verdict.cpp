@@ -36,7 +36,7 @@ double seconds(const Workshop& workshop, const std::vector<std::size_t>& conditi
 double separation(const Question& q, const Workshop& workshop, const Diagnosis& d, std::size_t condition, int a, int b) {
   const Problem one = problem_alone(q, workshop, d.bank, condition, d.problem.data);
   const Surrogate s(one.data);
-  const MatrixXd w = whitener(one.covariance + s.error_covariance(one.covariance));
+  const MatrixXd w = Weighting(one.covariance, s).whitener;
   const auto at = [&](int rival) {
     const FitResult& fit = d.naming.judged[static_cast<std::size_t>(rival)].fit;
     return s.at(fit.coded, effects_of(d.problem.rivals[static_cast<std::size_t>(rival)], fit));
@@ -64,8 +64,8 @@ std::string to_separate(const Question& q, const Workshop& workshop, const Diagn
 /// λ of a candidate if the recordings were longer by a factor; what the surrogate cannot follow stays.
 double lambda_if(const Diagnosis& d, int rival, double longer) {
   const Surrogate s(d.problem.data);
-  const MatrixXd w = whitener(d.problem.covariance / longer + s.error_covariance(d.problem.covariance));
-  return Visibility(d.problem, s, w, d.naming.judged[static_cast<std::size_t>(rival)].fit.coded, rival).lambda();
+  const Weighting weighting(d.problem.covariance / longer, s);
+  return Visibility(d.problem, s, weighting, d.naming.judged[static_cast<std::size_t>(rival)].fit.coded, rival).lambda();
 }
 
 std::string to_see(const Workshop& workshop, const Diagnosis& d, double noise_units) {

@@ -22,20 +22,20 @@ BankData about(BankData data, const VectorXd& coded, Index freed) {
 
 }  // namespace
 
-Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const MatrixXd& whitening, const VectorXd& coded, int rival)
+Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const Weighting& weighting, const VectorXd& coded, int rival)
     : problem_(problem),
       surrogate_(surrogate),
-      whitening_(whitening),
+      weighting_(weighting),
       coded_(coded),
       rival_(problem.rivals[static_cast<std::size_t>(rival)]),
-      base_(about(problem.data, coded, rival_.freed), surrogate, whitening, {}, {}) {
-  const auto n = static_cast<double>(whitening.rows());
-  run_covariance_ = whitening * surrogate.residual_covariance(problem.covariance) * whitening.transpose();
-  run_noise_ = run_covariance_.trace() * (n - static_cast<double>(coded.size())) / n;
+      base_(about(problem.data, coded, rival_.freed), surrogate, weighting, {}) {
+  const auto n = static_cast<double>(weighting.whitener.rows());
+  run_covariance_ = weighting.whitener * weighting.run * weighting.whitener.transpose();
+  run_noise_ = weighting.run_noise * (n - static_cast<double>(coded.size())) / n;
   const std::vector<double> far = ends();
   const double full = far.front();
   lambda_ = at(full);
-  const double whole = std::max(0.0, (whitening * (observed(full) - observed(none()))).squaredNorm() - noise(full));
+  const double whole = std::max(0.0, (weighting.whitener * (observed(full) - observed(none()))).squaredNorm() - noise(full));
   kappa_ = whole > 0 ? std::min(1.0, std::sqrt(lambda_ / whole)) : 0;
   if (far.size() > 1) lambda_ = std::max(lambda_, at(far.back()));
 }
@@ -72,7 +72,7 @@ VectorXd Visibility::observed(double share) const {
 Visibility::Rest Visibility::rest(double share) const {
   const VectorXd y = observed(share);
   const FitResult fit = base_.fit(y);
-  return {whitening_ * (y - surrogate_.at(fit.coded)), fit.q};
+  return {weighting_.whitener * (y - surrogate_.at(fit.coded)), fit.q};
 }
 
 double Visibility::high(double share) const {

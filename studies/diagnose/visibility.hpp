@@ -20,7 +20,7 @@ namespace millscope::diagnose {
 class Visibility {
  public:
   /// About the coded θ: best that which was fitted with the effect.
-  Visibility(const Problem& problem, const Surrogate& surrogate, const MatrixXd& whitening, const VectorXd& coded, int rival);
+  Visibility(const Problem& problem, const Surrogate& surrogate, const Weighting& weighting, const VectorXd& coded, int rival);
 
   double lambda() const { return lambda_; }  ///< at full strength, the better visible end of a two-sided range
   double kappa() const { return kappa_; }
@@ -45,7 +45,7 @@ class Visibility {
 
   const Problem& problem_;
   const Surrogate& surrogate_;
-  const MatrixXd& whitening_;
+  const Weighting& weighting_;
   VectorXd coded_;
   const Rival& rival_;
   Model base_;

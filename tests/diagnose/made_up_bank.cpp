@@ -48,11 +48,12 @@ Problem made_up_problem(const MadeUp& mill, const VectorXd& coded, const std::ve
     std::vector<double> s(3, 0.0);
     if (candidate >= 0) s[static_cast<std::size_t>(candidate)] = share;
     p.data.rows.push_back({u, candidate < 0 ? std::vector<Effect>{} : std::vector<Effect>{{candidate, share}}});
-    values.push_back(truth_of(mill, u, s) + mill.run_noise * random.normals(n));
+    values.push_back(truth_of(mill, u, s) + (candidate < 0 ? 1 : mill.chancier) * mill.run_noise * random.normals(n));
   };
   for (Index r = 0; r < base.rows(); ++r) add(base.row(r).transpose(), -1, 0);
   for (Index r = 0; r < mill.again; ++r) add(base.row(r).transpose(), -1, 0);
-  for (Index r = 0; r < with.rows(); ++r) add(with.row(r).head(3).transpose(), static_cast<int>(r) % 3, 0.55 + 0.45 * with(r, 3));
+  for (Index r = 0; r < with.rows(); ++r)
+    add(with.row(r).head(3).transpose(), static_cast<int>(r) % 3, mill.weakest + (1 - mill.weakest) * with(r, 3));
   p.data.value.resize(static_cast<Index>(values.size()), n);
   for (std::size_t r = 0; r < values.size(); ++r) p.data.value.row(static_cast<Index>(r)) = values[r].transpose();
   for (Index i = 0; i < n; ++i) p.data.condition.push_back(static_cast<int>(i) / mill.observables);

@@ -8,6 +8,8 @@ namespace millscope::diagnose {
 struct MadeUp {
   int runs = 24, each = 10, again = 0;  ///< of the runs without a candidate, as many are repeated
   double run_noise = 0.3, recording_noise = 1.0;
+  double weakest = 0.55;                 ///< share of a candidate in the bank
+  double chancier = 1;                   ///< noise of runs with an effect over that of the others
   int conditions = 2, observables = 18;  ///< of each
   double cubic = 0;                      ///< what no quadratic surface follows
   double flattens = 0;                   ///< 1: bead friction does nothing more at the upper end of its range

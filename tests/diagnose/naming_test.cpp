@@ -81,7 +81,8 @@ TEST_CASE("a fit finds its truth without noise, at limits too") {
   const Problem p = made_up_problem(mill, point(0, 0, 0), {0, 0, 0}, 2);
   const Features features(p.data);
   const Surrogate s(p.data, features, std::vector<bool>(p.data.rows.size(), true));
-  const Model model(p.data, s, whitener(p.covariance), {0}, std::vector<ShareRange>(3));
+  const Weighting weighting(p.covariance, s);
+  const Model model(p.data, s, weighting, {{0}, std::vector<ShareRange>(3)});
   for (const double share : {0.0, 0.4, 1.0}) {
     const FitResult f = model.fit(truth_of(mill, point(0.4, -0.6, 0), {share, 0, 0}));
     CHECK_THAT(f.coded[0], WithinAbs(0.4, 1e-3));
@@ -123,12 +124,13 @@ TEST_CASE("lambda is what the nearest retuned base is away, wherever it lies") {
   const VectorXd u = point(-0.4, 0.3, 0.2);
   const Problem p = made_up_problem(mill, u, {0, 0, 0}, 1);
   const Surrogate s(p.data);
-  const MatrixXd w = whitener(p.covariance + s.error_covariance(p.covariance));
+  const Weighting weighting(p.covariance, s);
+  const MatrixXd& w = weighting.whitener;
   const double weight = p.data.theta[2].prior_weight();
   for (const int j : {0, 1}) {
     const VectorXd y = s.at(u, {{j, 1.0}});
-    const double noise = (w * s.residual_covariance(p.covariance) * w.transpose()).trace() * s.leverage_of(u, {{j, 1.0}}) *
-                         static_cast<double>(y.size() - 3) / static_cast<double>(y.size());
+    const double noise =
+        weighting.run_noise * s.leverage_of(u, {{j, 1.0}}) * static_cast<double>(y.size() - 3) / static_cast<double>(y.size());
     double nearest = 1e300;
     const int steps = 40;
     for (int a = -steps; a <= steps; ++a) {
@@ -139,9 +141,10 @@ TEST_CASE("lambda is what the nearest retuned base is away, wherever it lies") {
         }
       }
     }
-    const Visibility seen(p, s, w, u, j);
-    CHECK(seen.lambda() <= nearest - noise + 1e-9);
-    CHECK_THAT(seen.lambda(), WithinAbs(nearest - noise, 0.02 * nearest + 0.5));
+    const Visibility seen(p, s, weighting, u, j);
+    const double expected = std::max(0.0, nearest - noise);
+    CHECK(seen.lambda() <= expected + 1e-9);
+    CHECK_THAT(seen.lambda(), WithinAbs(expected, 0.02 * nearest + 0.5));
     CHECK(seen.curve().front().first == 0);
     CHECK(seen.curve().front().second < 1e-9);
     CHECK(seen.curve().back().second == Approx(seen.lambda()));
@@ -154,9 +157,9 @@ TEST_CASE("at the fitted strength lambda is what delta Q is on average, wherever
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
       const Problem p = made_up_problem({}, point(-0.3, 0.2, filling), {0.6, 0, 0}, seed);
       const Surrogate s(p.data);
-      const MatrixXd w = whitener(p.covariance + s.error_covariance(p.covariance));
-      const FitResult base = Model(p.data, s, w, {}, {}).fit(p.observed);
-      const FitResult with = Model(p.data, s, w, {0}, std::vector<ShareRange>(3)).fit(p.observed);
+      const Weighting w(p.covariance, s);
+      const FitResult base = Model(p.data, s, w, {}).fit(p.observed);
+      const FitResult with = Model(p.data, s, w, {{0}, std::vector<ShareRange>(3)}).fit(p.observed);
       gained += (base.q - with.q) / 40;
       expected += Visibility(p, s, w, with.coded, 0).at(with.shares[0]) / 40;
     }
@@ -178,7 +181,7 @@ TEST_CASE("what few runs say of an effect's visibility is below its bound in nin
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const Problem p = made_up_problem(mill, u, {0, 0, 0}, seed);
     const Surrogate surrogate(p.data);
-    const MatrixXd w = whitener(p.covariance + surrogate.error_covariance(p.covariance));
+    const Weighting w(p.covariance, surrogate);
     for (const int j : {0, 1, 2}) {
       const Visibility seen(p, surrogate, w, u, j);
       const double truth = Visibility(p, right, w, u, j).lambda();
@@ -229,6 +232,31 @@ TEST_CASE("where an effect is there its model is not rejected and its strength's
     CAPTURE(share, inside, rejected);
     CHECK(inside >= 31);   // of 36 expected
     CHECK(rejected <= 6);  // of 2 expected
+  }
+}
+
+TEST_CASE("few chancy runs with an effect do not draw its strength towards nothing, and its interval knows of them") {
+  MadeUp mill;
+  mill.runs = 48, mill.again = 8, mill.each = 16, mill.run_noise = 0.4, mill.chancier = 5, mill.weakest = 0.15;
+  NamingOptions o = quick();
+  constexpr int kMills = 60;
+  for (const double share : {0.3, 0.6}) {
+    int inside = 0, rejected = 0;
+    double mean = 0;
+    for (std::uint64_t seed = 1; seed <= kMills; ++seed) {
+      const Problem p = made_up_problem(mill, point(0.1, -0.2, 0.1), {share, 0, 0}, 300 + seed);
+      const PseudoData pseudo(p, o);
+      const FitResult fit = pseudo.fit({0});
+      mean += fit.shares[0] / kMills;
+      inside += pseudo.intervals({0}, fit, o.rival_draws, 1).back().holds(share) ? 1 : 0;
+      int beyond = 0;
+      for (const auto& d : pseudo.draw(pseudo.truth({0}, fit), {{0}}, {o.rival_draws, 2})) beyond += d.fit[0].q >= fit.q ? 1 : 0;
+      rejected += beyond < 0.05 * o.rival_draws ? 1 : 0;
+    }
+    CAPTURE(share, mean, inside, rejected);
+    CHECK_THAT(mean, WithinRel(share, 0.08));
+    CHECK(inside >= 48);   // of 54 expected
+    CHECK(rejected <= 8);  // of 3 expected
   }
 }
 

@@ -1,6 +1,8 @@
 // What a diagnosis leaves: figures for programs, a page for people, a corrected case to go on with.
 #include "studies/diagnose/outputs.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <fstream>
 
@@ -129,7 +131,7 @@ TEST_CASE("corrected/ is a case with the physics on, and a study that can be dia
   CHECK_THAT(friction, WithinRel(j["contact_parameters"]["unmasked"]["bead_friction"]["value"].get<double>(), 1e-3));
   const Question again = read_question(folder / "out/corrected/study.yaml", {}, registry());
   CHECK(again.study.conditions.size() == 3);
-  CHECK(again.study.conditions[0].settings == std::vector<std::string>{"mill.speed=75 %critical"});
+  CHECK(again.study.conditions[0].settings == std::vector<std::string>{fmt::format("mill.speed={} rad/s", again.speed[0])});
   CHECK(again.study.conditions[2].role == calibrate::Role::held_out);
   CHECK(again.study.parameters[1].name == "wall_friction");
   CHECK(again.study.observing.beads == 300);
@@ -154,7 +156,7 @@ TEST_CASE("corrected/ has what was varied apart as it was fitted, and doubts it 
   const Scratch folder;
   // The mill is stiffer than the range allows for: the fit stands at its end, which the corrected case has then.
   const nlohmann::json j =
-      written(folder, {kBase[0], kBase[1], "stiffness_factor=0.012", kRolling + "=0.12"},
+      written(folder, {kBase[0], kBase[1], "stiffness_factor=0.0105", kRolling + "=0.12"},
               "nuisances: {stiffness_factor: {range: [0.001, 0.0100004], mean: 0.004, sigma: 0.004, name: stiffness, apart: true}}\n", 0.4);
   REQUIRE(j["hypotheses"][0]["name"] == "rolling_resistance");
   const config::Case c = config::read_case((folder / "out/corrected/case.yaml").string());
