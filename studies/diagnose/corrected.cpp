@@ -72,7 +72,8 @@ void write_corrected(const Told& t, const fs::path& folder) {
     if (candidate >= 0) effects.push_back({candidate, fit.shares.at(effects.size())});
   }
   const VectorXd theta = t.diagnosis.problem.data.natural(fit.coded);
-  const std::vector<std::string> settings = t.question.settings(theta, effects);
+  std::vector<std::string> settings = t.question.base_speeds;
+  for (const std::string& s : t.question.settings(theta, effects)) settings.push_back(s);
   const bool of_camera = std::any_of(t.question.nuisances.begin(), t.question.nuisances.end(),
                                      [&](const Nuisance& nuisance) { return nuisance.of_camera() && is_named(t, nuisance); });
   fs::create_directories(folder);

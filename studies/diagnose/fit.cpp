@@ -15,9 +15,9 @@ namespace millscope::diagnose {
 namespace {
 
 constexpr int kIterations = 40;
-constexpr double kFinished = 1e-9;  // of Q, relative
-constexpr double kRounding = 1e-13;
-constexpr double kReliable = 0.3;
+constexpr double kFinished = 1e-9;   // of Q, relative
+constexpr double kRounding = 1e-13;  // of the largest diagonal element, where more coefficients than observables leave G singular
+constexpr double kReliable = 0.3;    // of 1 − μ: below it the correction fades, chosen on made-up banks
 constexpr std::size_t kDescents = 3;
 constexpr int kLevels = 3;  // of the grid of starting points, for each flat coordinate
 
@@ -36,9 +36,9 @@ MatrixXd whitener(const MatrixXd& covariance) {
   return factor(covariance).triangularView<Eigen::Lower>().solve(MatrixXd::Identity(covariance.rows(), covariance.cols()));
 }
 
-Weighting::Weighting(const MatrixXd& recording, const Surrogate& surrogate)
+Weighting::Weighting(const MatrixXd& recording, const Surrogate& surrogate, double longer)
     : run(surrogate.residual_covariance(recording)),
-      covariance(recording + surrogate.error_covariance(recording)),
+      covariance(recording / longer + surrogate.error_covariance(recording)),
       whitener(diagnose::whitener(covariance)),
       run_noise((whitener * run * whitener.transpose()).trace()) {}
 
@@ -72,24 +72,39 @@ void Model::use(const MatrixXd& coefficients) {
   const Eigen::HouseholderQR<MatrixXd> qr(w * coefficients(columns_, Eigen::all).transpose());
   r_ = qr.matrixQR().topRows(kept).triangularView<Eigen::Upper>();
   qt_ = (qr.householderQ() * MatrixXd::Identity(w.rows(), kept)).transpose();
-  if (!active_.empty()) correct();
+  if (r_.cols() > features_->base_size()) correct();
+}
+
+/// tr(Σ⁻¹ S) (h(u, s) − h(u, 0)) = xᵀ D x with the features x and D = tr(Σ⁻¹ S) C less its block of the base. What of the effects' slopes
+/// the base could not do itself has the squares G_e in noise units; with C_e V = G_e V diag(μ) and Vᵀ G_e V = 1 a direction of V is
+/// reliable by 1 − μ, the part of its square that is no chance. Where that is below `kReliable` chance alone often leaves as much, and D
+/// has less and less of it, nothing at μ = 1: D = [0, C_be T; Tᵀ C_eb, Tᵀ C_e T], T = V diag(t) Vᵀ G_e.
+MatrixXd Model::chance_of_slopes(double ridge) const {
+  const Index base = features_->base_size(), effects = r_.cols() - base, apart = std::max<Index>(0, r_.rows() - base);
+  const MatrixXd c = weighting_->run_noise * surrogate_->coefficient_error()(columns_, columns_);
+  const MatrixXd own = r_.bottomRightCorner(apart, effects), c_e = c.bottomRightCorner(effects, effects);
+  const MatrixXd g_e = own.transpose() * own + ridge * MatrixXd::Identity(effects, effects);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(c_e, g_e);
+  const VectorXd t = ((1 - solver.eigenvalues().array()) / kReliable).max(0).min(1).sqrt();
+  const MatrixXd taper = solver.eigenvectors() * t.asDiagonal() * solver.eigenvectors().transpose() * g_e;
+  MatrixXd d = MatrixXd::Zero(r_.cols(), r_.cols());
+  d.topRightCorner(base, effects) = c.topRightCorner(base, effects) * taper;
+  d.bottomLeftCorner(effects, base) = d.topRightCorner(base, effects).transpose();
+  d.bottomRightCorner(effects, effects) = taper.transpose() * c_e * taper;
+  return d;
 }
 
 /// |W (y − Bᵀx)|² − xᵀ D x is a sum of squares and a constant, too: with G = RᵀR, D V = G V diag(μ) and Vᵀ G V = 1
 ///
 ///   |R x − z|² − xᵀ D x = |R' x − z'|² + |z|² − |z'|²,  R' = (1 − μ)^½ Vᵀ G,  z' = (1 − μ)^−½ Vᵀ Rᵀ z
-///
-/// 1 − μ is how reliable a direction in the space of the coefficients is: the part of its square that is no chance. Below `kReliable`,
-/// where chance alone often leaves as much, μ is taken for less and less, at 0 for nothing.
 void Model::correct() {
-  const Index base = features_->base_size();
-  MatrixXd d = weighting_->run_noise * surrogate_->coefficient_error()(columns_, columns_);
-  d.topLeftCorner(base, base).setZero();
   MatrixXd g = r_.transpose() * r_;
-  g.diagonal().array() += kRounding * g.diagonal().maxCoeff();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(d, g);
+  const double ridge = kRounding * g.diagonal().maxCoeff();
+  g.diagonal().array() += ridge;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(chance_of_slopes(ridge), g);
   const Eigen::ArrayXd mu = solver.eigenvalues().array();
-  const VectorXd root = (1 - mu * ((1 - mu) / kReliable).max(0).min(1)).sqrt();
+  const double sure = 1 - kReliable, whole = std::min(1.0, sure / std::max(sure, mu.maxCoeff()));  // rarely less than 1
+  const VectorXd root = (1 - whole * mu).sqrt();
   const MatrixXd vt = solver.eigenvectors().transpose();
   qt_ = (root.cwiseInverse().asDiagonal() * vt * r_.transpose() * qt_).eval();
   r_ = root.asDiagonal() * vt * g;

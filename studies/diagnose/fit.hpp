@@ -4,8 +4,8 @@
 //
 // S is the covariance of one run about the surrogate and h its leverage: the second term is what the chance of the bank's runs adds to the
 // first on average where effects are on. Without it a strength is drawn towards nothing, as every slope is whose abscissae have errors
-// (regression dilution; corrected as in Fuller 1987, Measurement Error Models, section 2.2). Where chance may have made all of a slope
-// there is nothing to correct: the correction would fit chance with more of it.
+// (regression dilution; corrected as in Fuller 1987, Measurement Error Models, ch. 2). The less of a slope is sure, below
+// three tenths of its square, the less is corrected: where chance may have made all of it a correction would fit chance with more of it.
 //
 // u stays within the bank's ranges, a one-sided share within 0 … 1. y enters through factors of the whitened coefficients, so that a
 // fit costs the number of coefficients, not of observables.
@@ -25,8 +25,8 @@ MatrixXd factor(const MatrixXd& covariance);
 
 /// What a difference between observations and surrogate is measured with.
 struct Weighting {
-  /// `recording`: its covariance.
-  Weighting(const MatrixXd& recording, const Surrogate& surrogate);
+  /// `recording`: its covariance, here as if it were `longer` times as long; what the surrogate is wrong by stays.
+  Weighting(const MatrixXd& recording, const Surrogate& surrogate, double longer = 1);
 
   MatrixXd run;         ///< S
   MatrixXd covariance;  ///< Σ: recording and surrogate
@@ -57,6 +57,7 @@ class Model {
  public:
   Model(const BankData& data, const Surrogate& surrogate, const Weighting& weighting, const Switched& switched);
   Model(const BankData&, const Surrogate&, Weighting&&, const Switched&) = delete;
+  Model(const BankData&, Surrogate&&, const Weighting&, const Switched&) = delete;
 
   /// The same on a bank that has turned out other: coefficients of all features × observables.
   Model with(const MatrixXd& coefficients) const;
@@ -73,6 +74,7 @@ class Model {
     double beyond = 0;  ///< Q less the sum of squares of the residual
   };
   void use(const MatrixXd& coefficients);
+  MatrixXd chance_of_slopes(double ridge) const;
   void correct();
   VectorXd features(const VectorXd& t) const;
   VectorXd residual(const VectorXd& t, const Target& target) const;

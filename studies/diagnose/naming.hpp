@@ -1,15 +1,12 @@
 // Which physics the observations ask for: every candidate against the base, all refitted together with θ, judged by pseudo-data that are
 // made of left-out runs of the bank. shared terms: Q and the surrogate of fit.hpp and surrogate.hpp.
 //
-// A pseudo-recording under a model with fitted θ̂ (and shares) is
-//
-//   y* = m₋r(θ̂*) + c (y_r − m₋r(θ_r)) + ε,   ε ~ recording's covariance,  c² = v(ŝ) (1 − ρ + h(θ̂))/(v(s_r) (1 + h(θ_r)))
-//
-// r is a run of the bank, without an effect or with that of the model, taken out of the surrogate that made and that fits y*; h are
-// leverages; v is the variance of the surrogate's error with an effect over that without; ρ is the part of a run's deviation that is chance
-// of its own, of which the recording's is ε; nuisances in θ̂* are drawn from their priors. So the emulator's error is part of every p-value.
-// Tests use this c. Intervals have ρ = 0 there, and runs with the model's effect alone where they are enough: what makes a model wrong in a
-// recording is not all in the bank (docs/challenge.md has the coverage).
+// A pseudo-recording under a fitted model is what a surrogate makes of it, the deviation of the run of the bank that was left out of that
+// surrogate, scaled to what a recording would have of it, and the recording's noise; nuisances are drawn from their priors, and where the
+// model has an effect the bank's slopes are drawn again (pseudo_data.hpp has the equations). Everything is refitted to it with the left-out
+// run's surrogate, so that the emulator's error is part of every p-value. Tests leave out ρ, the part of a run's deviation that is chance
+// of its own, for the recording has its own. Intervals keep it, and come from runs with the model's effect alone where they are enough:
+// what makes a model wrong in a recording is not all in the bank (docs/challenge.md has the coverage).
 #pragma once
 
 #include <cmath>

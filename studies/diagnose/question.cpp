@@ -201,17 +201,15 @@ void read_usual(Question& q) {
   }
 }
 
-/// Speeds of the conditions, rad/s. One in % of critical depends on the largest bead, which a candidate may change; the recorded mill
-/// turned as it did, so that it is what the base makes of it in all simulations.
 void settle_speeds(Question& q) {
+  q.base_speeds = speeds_settled(config::read_case(q.study.base.string(), {}));
   for (calibrate::Condition& c : q.study.conditions) {
     const config::Case at = config::read_case(q.study.base.string(), c.settings);
     q.speed.push_back(at.mill ? std::fabs(at.mill->speed) : 0.0);
-    if (!at.mill) continue;
-    const config::Quantity said = config::read_quantity(at.root.at("mill").at("speed"));
-    if (!said.has_unit || said.unit.dimension != config::parse_unit("%critical").dimension) continue;
-    std::erase_if(c.settings, [](const std::string& setting) { return setting.starts_with("mill.speed="); });
-    c.settings.push_back(fmt::format("mill.speed={} rad/s", q.speed.back()));
+    for (const std::string& settled : speeds_settled(at)) {
+      std::erase_if(c.settings, [&](const std::string& setting) { return setting.starts_with(settled.substr(0, settled.find('=') + 1)); });
+      c.settings.push_back(settled);
+    }
   }
 }
 

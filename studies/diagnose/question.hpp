@@ -46,7 +46,8 @@ struct Question {
   std::vector<Candidate> candidates;
   std::vector<std::string> left_out;  ///< hypotheses that do not apply, and why
   BankSize bank;
-  std::vector<double> speed;  ///< |Ω| of every condition, rad/s
+  std::vector<double> speed;             ///< |Ω| of every condition, rad/s
+  std::vector<std::string> base_speeds;  ///< speeds_settled() of the base case itself
 
   std::size_t dimensions() const { return study.parameters.size() + nuisances.size(); }
   /// Of θ, that vary in every simulation.
@@ -60,6 +61,10 @@ struct Question {
 
 /// A number of the case at a path. Throws config::UserError at `where` when the case does not say it.
 double value_in(const config::Case& c, const std::string& path, const config::Location& where);
+
+/// "path=… rad/s" for every speed that a case gives in % of critical: of the mill and of parts that turn by themselves. The critical speed
+/// depends on the largest bead, which a candidate may change; a recorded mill turned as it did.
+std::vector<std::string> speeds_settled(const config::Case& c);
 
 /// Throws config::UserError with file:line: unknown keys, hypotheses that no loaded plugin has, a prior outside the range.
 Question read_question(const std::filesystem::path& file, const std::vector<std::string>& overrides, const host::Registry& registry);

@@ -19,7 +19,9 @@ constexpr std::size_t kForSquare = 3;      // different shares
 constexpr std::size_t kRunsForSquare = 6;  // fewer leave the far end of the range open
 constexpr std::size_t kSpare = 2;          // runs beyond the coefficients of a candidate's block
 constexpr double kMostLeverage = 0.95;
-constexpr double kRounding = 1e-11;
+constexpr double kRounding = 1e-11;  // of a column's norm
+constexpr double kLeastFreedom = 1;  // runs beyond the coefficients that they decide
+constexpr int kRounds = 4;           // of weights and scatter
 
 /// Coefficients are map · values of the rows.
 struct Solution {
@@ -47,29 +49,44 @@ MatrixXd without_own(MatrixXd residual, const VectorXd& leverage) {
   return residual;
 }
 
-/// By how much more the rows of each candidate scatter about the surface than those without: the mean over the observables of how much
-/// larger their squared left-out residuals are, at least 1. `group`: the candidate of each row, −1 without.
+/// The scatter of each row's group over that of rows without a candidate. `group`: the candidate of each row, −1 without.
+VectorXd of_rows(const std::vector<double>& scatter, const std::vector<int>& group) {
+  VectorXd out(static_cast<Index>(group.size()));
+  for (std::size_t r = 0; r < group.size(); ++r)
+    out[static_cast<Index>(r)] = group[r] < 0 ? 1 : scatter[static_cast<std::size_t>(group[r])];
+  return out;
+}
+
+/// Squared residuals of each group's rows over what they are on average when their scatter is 1, which is a row's 1 − h; all observables
+/// count alike. [candidates + 1], rows without a candidate last; NaN: too few rows to tell.
+VectorXd scatter_seen(const MatrixXd& x, const MatrixXd& y, const std::vector<int>& group, const VectorXd& scatter) {
+  const Solution solution = solve(x, scatter.cwiseInverse());
+  const MatrixXd square = (y - x * (solution.map * y)).cwiseAbs2();
+  const VectorXd leverage = leverages(x, solution);
+  const VectorXd whole = square.transpose() * scatter.cwiseInverse();
+  const VectorXd exact = kRounding * kRounding * y.colwise().squaredNorm().transpose();
+  const VectorXd each = (whole.array() > exact.array()).select(whole.cwiseInverse(), 0);
+  const Index last = 1 + *std::max_element(group.begin(), group.end());
+  VectorXd sum = VectorXd::Zero(last + 1), freedom = VectorXd::Zero(last + 1);
+  for (Index r = 0; r < x.rows(); ++r) {
+    const int candidate = group[static_cast<std::size_t>(r)];
+    const Index k = candidate < 0 ? last : candidate;
+    sum[k] += square.row(r).dot(each), freedom[k] += 1 - leverage[r];
+  }
+  return (freedom.array() >= kLeastFreedom).select(sum.cwiseQuotient(freedom), std::nan(""));
+}
+
+/// By how much more the rows of each candidate scatter about the surface than those without, at least 1. Residuals of rows weighed by their
+/// scatter tell it; a few rounds from equal weights on settle it.
 std::vector<double> scatter_of(const MatrixXd& x, const MatrixXd& y, const std::vector<int>& group, int candidates) {
   std::vector<double> out(static_cast<std::size_t>(candidates), 1.0);
-  const Solution even = solve(x, VectorXd::Ones(x.rows()));
-  const MatrixXd left_out = without_own(y - x * (even.map * y), leverages(x, even));
-  const auto mean_square = [&](int candidate) {
-    VectorXd sum = VectorXd::Zero(y.cols());
-    double rows = 0;
-    for (Index r = 0; r < x.rows(); ++r) {
-      if (group[static_cast<std::size_t>(r)] == candidate) sum += left_out.row(r).cwiseAbs2().transpose(), ++rows;
+  for (int round = 0; round < kRounds; ++round) {
+    const VectorXd seen = scatter_seen(x, y, group, of_rows(out, group));
+    const Index last = seen.size() - 1;
+    for (Index k = 0; k < last; ++k) {
+      const double ratio = seen[k] / seen[last];
+      out[static_cast<std::size_t>(k)] = ratio > 1 ? ratio : 1;  // 1, too, where it cannot be told
     }
-    return VectorXd(sum / std::max(1.0, rows));
-  };
-  const VectorXd base = mean_square(-1);
-  for (const int candidate : std::set<int>(group.begin(), group.end())) {
-    if (candidate < 0) continue;
-    const VectorXd own = mean_square(candidate);
-    double ratio = 0, counted = 0;
-    for (Index i = 0; i < y.cols(); ++i) {
-      if (base[i] > kRounding * kRounding * y.col(i).squaredNorm()) ratio += own[i] / base[i], ++counted;
-    }
-    if (counted > 0) out[static_cast<std::size_t>(candidate)] = std::max(1.0, ratio / counted);
   }
   return out;
 }
@@ -217,11 +234,7 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
   // Rows that scatter more weigh less: else what the surface cannot follow of a strong effect would pull the base its way, and a recording
   // without the effect would seem to have some of it.
   scatter_with_ = scatter_of(x, y, group, features_.candidates());
-  VectorXd scatter(rows);
-  for (Index r = 0; r < rows; ++r) {
-    const int candidate = group[static_cast<std::size_t>(r)];
-    scatter[r] = candidate < 0 ? 1 : scatter_with(candidate);
-  }
+  const VectorXd scatter = of_rows(scatter_with_, group);
   const Solution solution = solve(x, scatter.cwiseInverse());
   coefficients_ = solution.map * y;
   coefficient_error_ = solution.map * scatter.asDiagonal() * solution.map.transpose();

@@ -64,7 +64,7 @@ std::string to_separate(const Question& q, const Workshop& workshop, const Diagn
 /// λ of a candidate if the recordings were longer by a factor; what the surrogate cannot follow stays.
 double lambda_if(const Diagnosis& d, int rival, double longer) {
   const Surrogate s(d.problem.data);
-  const Weighting weighting(d.problem.covariance / longer, s);
+  const Weighting weighting(d.problem.covariance, s, longer);
   return Visibility(d.problem, s, weighting, d.naming.judged[static_cast<std::size_t>(rival)].fit.coded, rival).lambda();
 }
 

@@ -21,6 +21,8 @@ class Visibility {
  public:
   /// About the coded θ: best that which was fitted with the effect.
   Visibility(const Problem& problem, const Surrogate& surrogate, const Weighting& weighting, const VectorXd& coded, int rival);
+  Visibility(const Problem&, Surrogate&&, const Weighting&, const VectorXd&, int) = delete;
+  Visibility(const Problem&, const Surrogate&, Weighting&&, const VectorXd&, int) = delete;
 
   double lambda() const { return lambda_; }  ///< at full strength, the better visible end of a two-sided range
   double kappa() const { return kappa_; }

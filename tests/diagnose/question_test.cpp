@@ -97,6 +97,25 @@ TEST_CASE("a mill turns as recorded, also where larger beads would lower its cri
   }
 }
 
+TEST_CASE("every speed in % of critical is settled, of parts that turn by themselves as well, and no other") {
+  const std::string base = MILLSCOPE_SOURCE_DIR "/configs/mill10/case.yaml";
+  const auto settled = [&](const std::vector<std::string>& settings) { return speeds_settled(config::read_case(base, settings)); };
+  CHECK(settled({"mill.speed=50 rpm"}).empty());
+  CHECK(settled({}).size() == 1);
+  const std::vector<std::string> apart{"mill.speed=50 rpm",
+                                       "geometry.disc={kind: cylinder, diameter: 100 mm, length: 60 mm, material: liner}",
+                                       "geometry.disc.motion={rotation: {speed: 40 %critical}}"};
+  REQUIRE(settled(apart).size() == 1);
+  std::vector<std::string> with = apart;
+  with.push_back(settled(apart)[0]);
+  const auto speed = [&](std::vector<std::string> settings, bool larger) {
+    if (larger) settings.push_back("beads.glass10.diameter=12 mm");
+    return config::read_case(base, settings).geometry.back().motion.rotation->speed;
+  };
+  CHECK(speed(apart, true) > 1.001 * speed(apart, false));
+  CHECK(speed(with, true) == speed(apart, false));
+}
+
 TEST_CASE("without a map of hypotheses all that apply are asked, in alphabetical order, with the standards of the documentation") {
   const Scratch folder;
   const Question q = question_of(folder, "");

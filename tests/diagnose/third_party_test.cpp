@@ -110,6 +110,7 @@ TEST_CASE("a third party's hypothesis is named on a recording made with it") {
           " --set 'hypotheses={wind: {}, rolling_resistance: {}}' --set observe.beads=60",
       log);
   const auto found = nlohmann::json::parse(text_of(scratch / "out" / "diagnosis.json"));
+  INFO(found["sentence"] << "\n" << found["hypotheses"].dump(1));
   CHECK(found["verdict"] == "named");
   REQUIRE(found["named"] == nlohmann::json::array({"wind"}));
   const auto wind = std::find_if(found["hypotheses"].begin(), found["hypotheses"].end(), [](const auto& h) { return h["name"] == "wind"; });
