@@ -82,6 +82,10 @@ Node load_document_with_paths(const std::string& file, const std::vector<std::st
 /// The same from text; `file` is the name used in messages and for relative paths.
 Node parse_document(const std::string& text, const std::string& file, const std::vector<std::string>& overrides = {});
 
+/// YAML lines that a file which includes `base` has to say besides to read as `changed`. Leaves at the paths `named` are said where they
+/// are as in the base, too.
+std::string difference(const Node& base, const Node& changed, const std::vector<std::string>& named = {});
+
 /// The candidate nearest to `word` by edit distance, or "" when none is near enough to be meant.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 

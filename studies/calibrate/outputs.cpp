@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
+#include "kernel/config/document.hpp"
 #include "kernel/config/units.hpp"
 #include "kernel/output/csv.hpp"
 #include "kernel/output/file.hpp"
@@ -111,19 +111,6 @@ Json parameters_json(const Study& study, const Calibration& c) {
   return all;
 }
 
-/// A map of maps from "a.b.c=value".
-struct Tree {
-  std::map<std::string, Tree> children;
-  std::string value;
-};
-
-void print(const Tree& tree, std::size_t indent, std::string& out) {
-  for (const auto& [key, child] : tree.children) {
-    out += std::string(indent, ' ') + key + ":" + (child.children.empty() ? " " + child.value : "") + "\n";
-    print(child, indent + 2, out);
-  }
-}
-
 }  // namespace
 
 Json calibration_json(const Evaluator& evaluator, const Calibration& c) {
@@ -180,19 +167,12 @@ Json calibration_json(const Evaluator& evaluator, const Calibration& c) {
 }
 
 std::string case_with(const std::string& comment, const fs::path& base, const std::vector<std::string>& settings, const fs::path& folder) {
-  Tree tree;
-  for (const std::string& setting : settings) {
-    const std::size_t equals = setting.find('=');
-    Tree* at = &tree;
-    for (std::size_t begin = 0, dot = 0; dot != std::string::npos; begin = dot + 1) {
-      dot = setting.find('.', begin) < equals ? setting.find('.', begin) : std::string::npos;
-      at = &at->children[setting.substr(begin, (dot == std::string::npos ? equals : dot) - begin)];
-    }
-    at->value = setting.substr(equals + 1);
-  }
+  std::vector<std::string> named;
+  for (const std::string& setting : settings) named.push_back(setting.substr(0, setting.find('=')));
   const std::string included = fs::absolute(base).lexically_proximate(fs::absolute(folder)).string();
   std::string out = fmt::format("# {}\nschema_version: 1\ninclude: [{}]\n", comment, Json(included).dump());
-  print(tree, 0, out);
+  const std::string file = base.string();
+  out += config::difference(config::load_document(file), config::load_document(file, settings), named);
   return out;
 }
 

@@ -29,6 +29,15 @@ std::string choices_text(const Question& q) {
   return out;
 }
 
+/// A base that is no case without a condition's settings has none to settle.
+std::vector<std::string> base_speeds(const fs::path& base) {
+  try {
+    return speeds_settled(config::read_case(base.string()));
+  } catch (const config::UserError&) {
+    return {};
+  }
+}
+
 bool is_named(const Told& t, const Nuisance& n) {
   return std::find(t.diagnosis.named.begin(), t.diagnosis.named.end(), n.name) != t.diagnosis.named.end();
 }
@@ -72,7 +81,7 @@ void write_corrected(const Told& t, const fs::path& folder) {
     if (candidate >= 0) effects.push_back({candidate, fit.shares.at(effects.size())});
   }
   const VectorXd theta = t.diagnosis.problem.data.natural(fit.coded);
-  std::vector<std::string> settings = t.question.base_speeds;
+  std::vector<std::string> settings = base_speeds(t.question.study.base);
   for (const std::string& s : t.question.settings(theta, effects)) settings.push_back(s);
   const bool of_camera = std::any_of(t.question.nuisances.begin(), t.question.nuisances.end(),
                                      [&](const Nuisance& nuisance) { return nuisance.of_camera() && is_named(t, nuisance); });

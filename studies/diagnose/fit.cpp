@@ -72,17 +72,17 @@ void Model::use(const MatrixXd& coefficients) {
   const Eigen::HouseholderQR<MatrixXd> qr(w * coefficients(columns_, Eigen::all).transpose());
   r_ = qr.matrixQR().topRows(kept).triangularView<Eigen::Upper>();
   qt_ = (qr.householderQ() * MatrixXd::Identity(w.rows(), kept)).transpose();
-  if (r_.cols() > features_->base_size()) correct();
+  if (r_.cols() > features_->base_size() && r_.rows() == r_.cols()) correct();
 }
 
 /// tr(Σ⁻¹ S) (h(u, s) − h(u, 0)) = xᵀ D x with the features x and D = tr(Σ⁻¹ S) C less its block of the base. What of the effects' slopes
 /// the base could not do itself has the squares G_e in noise units; with C_e V = G_e V diag(μ) and Vᵀ G_e V = 1 a direction of V is
-/// reliable by 1 − μ, the part of its square that is no chance. Where that is below `kReliable` chance alone often leaves as much, and D
-/// has less and less of it, nothing at μ = 1: D = [0, C_be T; Tᵀ C_eb, Tᵀ C_e T], T = V diag(t) Vᵀ G_e.
+/// reliable by 1 − μ, about the part of its square that is no chance. Where that is below `kReliable` chance alone often leaves as much,
+/// and D has less and less of it, nothing at μ = 1: D = [0, C_be T; Tᵀ C_eb, Tᵀ C_e T], T = V diag(t) Vᵀ G_e.
 MatrixXd Model::chance_of_slopes(double ridge) const {
-  const Index base = features_->base_size(), effects = r_.cols() - base, apart = std::max<Index>(0, r_.rows() - base);
+  const Index base = features_->base_size(), effects = r_.cols() - base;
   const MatrixXd c = weighting_->run_noise * surrogate_->coefficient_error()(columns_, columns_);
-  const MatrixXd own = r_.bottomRightCorner(apart, effects), c_e = c.bottomRightCorner(effects, effects);
+  const MatrixXd own = r_.bottomRightCorner(effects, effects), c_e = c.bottomRightCorner(effects, effects);
   const MatrixXd g_e = own.transpose() * own + ridge * MatrixXd::Identity(effects, effects);
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(c_e, g_e);
   const VectorXd t = ((1 - solver.eigenvalues().array()) / kReliable).max(0).min(1).sqrt();

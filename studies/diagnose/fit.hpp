@@ -6,6 +6,7 @@
 // first on average where effects are on. Without it a strength is drawn towards nothing, as every slope is whose abscissae have errors
 // (regression dilution; corrected as in Fuller 1987, Measurement Error Models, ch. 2). The less of a slope is sure, below
 // three tenths of its square, the less is corrected: where chance may have made all of it a correction would fit chance with more of it.
+// Nothing is corrected where there are fewer observables than coefficients: they do not tell slopes apart.
 //
 // u stays within the bank's ranges, a one-sided share within 0 … 1. y enters through factors of the whitened coefficients, so that a
 // fit costs the number of coefficients, not of observables.

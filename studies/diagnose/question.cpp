@@ -18,6 +18,8 @@ using config::Node;
 
 double number(const Node& node) {
   const config::Quantity q = config::read_quantity(node);
+  if (q.has_unit && q.unit.dimension == config::parse_unit("%critical").dimension)
+    node.fail("is in %critical, which depends on the case; give rad/s or rpm");
   return q.has_unit ? q.unit.to_si(q.number) : q.number;
 }
 
@@ -202,7 +204,6 @@ void read_usual(Question& q) {
 }
 
 void settle_speeds(Question& q) {
-  q.base_speeds = speeds_settled(config::read_case(q.study.base.string(), {}));
   for (calibrate::Condition& c : q.study.conditions) {
     const config::Case at = config::read_case(q.study.base.string(), c.settings);
     q.speed.push_back(at.mill ? std::fabs(at.mill->speed) : 0.0);
@@ -234,7 +235,8 @@ double value_in(const config::Case& c, const std::string& path, const config::Lo
     node = *found;
     begin = end + 1;
   }
-  return number(node);
+  const config::Quantity q = config::read_quantity(node);
+  return q.has_unit ? q.unit.to_si(q.number) : q.number;
 }
 
 std::vector<Coordinate> Question::coordinates() const {

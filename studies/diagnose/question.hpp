@@ -47,7 +47,6 @@ struct Question {
   std::vector<std::string> left_out;  ///< hypotheses that do not apply, and why
   BankSize bank;
   std::vector<double> speed;             ///< |Ω| of every condition, rad/s
-  std::vector<std::string> base_speeds;  ///< speeds_settled() of the base case itself
 
   std::size_t dimensions() const { return study.parameters.size() + nuisances.size(); }
   /// Of θ, that vary in every simulation.

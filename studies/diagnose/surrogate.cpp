@@ -57,23 +57,24 @@ VectorXd of_rows(const std::vector<double>& scatter, const std::vector<int>& gro
   return out;
 }
 
-/// Squared residuals of each group's rows over what they are on average when their scatter is 1, which is a row's 1 − h; all observables
-/// count alike. [candidates + 1], rows without a candidate last; NaN: too few rows to tell.
+/// Squared residuals of each group's rows over what they are on average when their scatter is 1, which is a row's 1 − h, summed over the
+/// observables, each over its own of all rows. Rows without a candidate last; NaN: too few rows to tell.
 VectorXd scatter_seen(const MatrixXd& x, const MatrixXd& y, const std::vector<int>& group, const VectorXd& scatter) {
   const Solution solution = solve(x, scatter.cwiseInverse());
   const MatrixXd square = (y - x * (solution.map * y)).cwiseAbs2();
   const VectorXd leverage = leverages(x, solution);
-  const VectorXd whole = square.transpose() * scatter.cwiseInverse();
-  const VectorXd exact = kRounding * kRounding * y.colwise().squaredNorm().transpose();
-  const VectorXd each = (whole.array() > exact.array()).select(whole.cwiseInverse(), 0);
   const Index last = 1 + *std::max_element(group.begin(), group.end());
-  VectorXd sum = VectorXd::Zero(last + 1), freedom = VectorXd::Zero(last + 1);
+  MatrixXd sum = MatrixXd::Zero(last + 1, y.cols());
+  VectorXd freedom = VectorXd::Zero(last + 1);
   for (Index r = 0; r < x.rows(); ++r) {
     const int candidate = group[static_cast<std::size_t>(r)];
     const Index k = candidate < 0 ? last : candidate;
-    sum[k] += square.row(r).dot(each), freedom[k] += 1 - leverage[r];
+    sum.row(k) += square.row(r), freedom[k] += 1 - leverage[r];
   }
-  return (freedom.array() >= kLeastFreedom).select(sum.cwiseQuotient(freedom), std::nan(""));
+  // What is left of rows that a surface follows exactly is rounding: by that nothing is measured.
+  const VectorXd whole = square.transpose() * scatter.cwiseInverse(), exact = kRounding * kRounding * y.colwise().squaredNorm().transpose();
+  const VectorXd each = (sum.row(last).transpose().array() > exact.array()).select(whole.cwiseInverse(), 0);
+  return (freedom.array() >= kLeastFreedom).select((sum * each).cwiseQuotient(freedom), std::nan(""));
 }
 
 /// By how much more the rows of each candidate scatter about the surface than those without, at least 1. Residuals of rows weighed by their

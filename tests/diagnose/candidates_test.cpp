@@ -6,6 +6,7 @@
 
 #include "kernel/config/writer.hpp"
 #include "made_up_study.hpp"
+#include "studies/calibrate/outputs.hpp"
 
 using namespace millscope;
 using namespace millscope::diagnose;
@@ -13,6 +14,7 @@ using Catch::WithinAbs;
 using Catch::WithinRel;
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
+using testing::Scratch;
 
 namespace {
 
@@ -50,6 +52,19 @@ TEST_CASE("hypotheses of plugins that the base lacks apply, others say why they 
   CHECK_THAT(why_not(l, "location_blur"), StartsWith("an effect of the camera; of these only nuisances camera.frame_error.* are tested"));
   CHECK_THAT(why_not(l, "speed_dependent_restitution"),
              StartsWith("needs pairs.glass~glass.reference_restitution; give it in the base case or under hypotheses."));
+}
+
+TEST_CASE("a case can be written with every candidate, and reads as the simulations of the bank do") {
+  const Scratch folder;
+  const std::string file = (folder / "case.yaml").string();
+  for (const Candidate& c : library().candidates) {
+    std::vector<std::string> settings{"pairs.glass~glass.static_friction=0.27", "fill.filling=31 %"};
+    for (const std::string& s : settings_of(c, 0.5)) settings.push_back(s);
+    std::ofstream(file) << calibrate::case_with("With an effect.", kMill, settings, folder.path);
+    INFO(c.name << "\n" << std::ifstream(file).rdbuf());
+    CHECK(config::difference(config::load_document(kMill, settings), config::load_document(file)).empty());
+    CHECK_NOTHROW(config::read_case(file));
+  }
 }
 
 TEST_CASE("a target that does not apply says what it needs") {

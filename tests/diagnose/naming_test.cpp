@@ -175,7 +175,7 @@ TEST_CASE("few chancy runs with an effect do not draw its strength towards nothi
   mill.runs = 48, mill.again = 8, mill.each = 16, mill.run_noise = 0.4, mill.chancier = 5, mill.weakest = 0.15;
   NamingOptions o = quick();
   constexpr int kMills = 60;
-  for (const double share : {0.3, 0.6}) {
+  for (const double share : {0.3, 0.6, 0.9}) {
     int inside = 0, rejected = 0;
     double mean = 0;
     for (std::uint64_t seed = 1; seed <= kMills; ++seed) {
@@ -189,9 +189,9 @@ TEST_CASE("few chancy runs with an effect do not draw its strength towards nothi
       rejected += beyond < 0.05 * o.rival_draws ? 1 : 0;
     }
     CAPTURE(share, mean, inside, rejected);
-    CHECK_THAT(mean, WithinRel(share, 0.08));
-    CHECK(inside >= 48);   // of 54 expected
-    CHECK(rejected <= 8);  // of 3 expected
+    CHECK_THAT(mean, WithinRel(share, share < 0.7 ? 0.08 : 0.15));  // 0.27, 0.54 and 0.74 without the correction
+    CHECK(inside >= 48);                                            // of 54 expected
+    CHECK(rejected <= 8);                                           // of 3 expected
   }
 }
 

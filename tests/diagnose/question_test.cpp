@@ -186,6 +186,8 @@ TEST_CASE("a nuisance apart has one value in the case, which its range holds, an
              StartsWith("study.yaml:10: 'pairs.glass~glass.rolling_friction' is not in ") && Contains("write there what it is"));
   CHECK_THAT(refused("nuisances:\n  mill.speed: {range: [4, 10], sigma: 1, apart: true}\n"),
              StartsWith("study.yaml:10: ") && Contains("in condition 'speed75'") && Contains("give it one value in all"));
+  CHECK_THAT(refused("nuisances:\n  mill.speed: {range: [70 %critical, 80 %critical], sigma: 1}\n"),
+             StartsWith("study.yaml:10: ") && Contains("is in %critical, which depends on the case; give rad/s or rpm"));
   CHECK_THAT(refused("nuisances:\n  camera.frame_error.scale: {range: [-2 %, 2 %], sigma: 0.5 %, apart: true}\n"),
              StartsWith("study.yaml:10: ") && Contains("costs no simulation"));
   CHECK_THAT(apart("[0.001, 0.01]", "hypotheses:\n  soft: {sentence: Softer., set: {stiffness_factor: 0.002}}\n"),
