@@ -21,6 +21,10 @@ void print_found(const diagnose::Diagnosis& d, const fs::path& output) {
   fmt::print("\n{:<28} {:>8} {:>10} {:>16}\n", "candidate", "delta Q", "p", "visible (sigma)");
   for (std::size_t j = 0; j < d.naming.judged.size(); ++j) {
     const diagnose::Judged& g = d.naming.judged[j];
+    if (!g.tested) {
+      fmt::print("{:<28} not tested, see the notes in diagnosis.md\n", d.problem.rivals[j].name);
+      continue;
+    }
     fmt::print("{:<28} {:>8.1f} {:>10.2g} {:>16.1f}\n", d.problem.rivals[j].name, g.delta_q, g.p_family, std::sqrt(g.lambda));
   }
   fmt::print("results in {}: diagnosis.md, diagnosis.json, pictures{}\n", output.string(), d.naming.best >= 0 ? ", corrected" : "");

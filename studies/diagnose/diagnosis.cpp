@@ -34,9 +34,15 @@ Bank filled(const Question& question, Workshop& workshop, const std::vector<Bank
   return bank;
 }
 
+struct Screened {
+  std::vector<BankPoint> points;
+  std::vector<bool> candidate;  ///< whether it cannot matter
+};
+
 /// The bank's first runs of each candidate tell which cannot matter; the others get all of theirs.
-std::vector<BankPoint> screened(const Question& question, Workshop& workshop, Diagnosis& d, double noise_units) {
-  std::vector<BankPoint> points = plan_screening(question);
+Screened screened(const Question& question, Workshop& workshop, Diagnosis& d, double noise_units) {
+  Screened out{plan_screening(question), std::vector<bool>(question.candidates.size(), false)};
+  const std::vector<BankPoint>& points = out.points;
   const Bank bank = filled(question, workshop, points, d.fit, d);
   note(workshop, unsettled(question, bank, d.fit), d);  // before the rest, all with an effect, is simulated in vain
   const Problem problem = problem_of(question, workshop, bank, d.fit);
@@ -55,10 +61,11 @@ std::vector<BankPoint> screened(const Question& question, Workshop& workshop, Di
         fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate, below {:.1f} with 95 %",
                     question.candidates[j].name, std::sqrt(seen.lambda()), most);
     say(workshop, what + (most < limit ? ": it cannot matter here" : ": looked at closely"));
+    out.candidate[j] = most < limit;
     if (most < limit) continue;
-    for (BankPoint& p : plan_rest(question, static_cast<int>(j))) points.push_back(std::move(p));
+    for (BankPoint& p : plan_rest(question, static_cast<int>(j))) out.points.push_back(std::move(p));
   }
-  return points;
+  return out;
 }
 
 /// What the recordings tell of a frame that the study doubts becomes part of what they show.
@@ -100,12 +107,13 @@ Diagnosis diagnose(const Question& question, Workshop& workshop, const NamingOpt
   Diagnosis d;
   d.fit = question.study.with_role(calibrate::Role::fit);
   d.held = question.study.with_role(calibrate::Role::held_out);
-  const std::vector<BankPoint> points = screened(question, workshop, d, options.noise_units);
+  const Screened screening = screened(question, workshop, d, options.noise_units);
   std::vector<std::size_t> all = d.fit;
   all.insert(all.end(), d.held.begin(), d.held.end());
-  d.bank = filled(question, workshop, points, all, d);
+  d.bank = filled(question, workshop, screening.points, all, d);
   note(workshop, unsettled(question, d.bank, d.held), d);
   d.problem = problem_of(question, workshop, d.bank, d.fit);
+  for (Rival& r : d.problem.rivals) r.screened_out = r.candidate >= 0 && screening.candidate[static_cast<std::size_t>(r.candidate)];
   d.naming = name_physics(d.problem, options);
   const HeldOutRequest request{question, workshop, d.bank, d.problem, d.naming, d.fit, kSeeds, options.seed};
   d.alone = fit_alone(request);

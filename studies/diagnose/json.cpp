@@ -77,6 +77,7 @@ Json hypotheses(const Told& t) {
                    {"lambda_found", g.lambda_found},
                    {"lambda_at", lambda_curve(t, j)},
                    {"undetectable", g.undetectable},
+                   {"tested", g.tested},
                    {"p_against_best", compared ? Json(g.against_best_p) : Json()},
                    {"p_goodness", g.goodness_p},
                    {"parameters", strength(t, j)},

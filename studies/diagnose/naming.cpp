@@ -63,6 +63,7 @@ class Namer {
  private:
   double p_of(const std::vector<double>& draws, double value) const { return tail(draws, value, pseudo_.laws()); }
   std::size_t count() const { return p_.rivals.size(); }
+  bool tested(std::size_t j) const { return out_.judged[j].tested; }
   void say(const std::string& line) const {
     if (o_.say) o_.say(line);
   }
@@ -85,9 +86,9 @@ class Namer {
       Judged judged;
       judged.fit = pseudo_.fit({static_cast<int>(j)});
       judged.delta_q = out_.base.q - judged.fit.q;
-      judged.p = p_of(delta[j], judged.delta_q);
       out_.judged.push_back(judged);
       visibility(static_cast<int>(j));
+      if (tested(j)) out_.judged[j].p = p_of(delta[j], judged.delta_q);
     }
     correct_family(delta);
     mismatch(drawn);
@@ -97,10 +98,14 @@ class Namer {
   /// observed are ranked together, so that neither has a finer scale.
   void correct_family(const std::vector<std::vector<double>>& delta) {
     const std::size_t laws = pseudo_.laws();
-    for (Judged& j : out_.judged) j.p_family = 0;
+    for (Judged& j : out_.judged) j.p_family = j.tested ? 0 : 1;
     for (std::size_t law = 0; law < laws; ++law) {
       std::vector<double> least, observed;
       for (std::size_t k = 0; k < delta.size(); ++k) {
+        if (!tested(k)) {
+          observed.push_back(1);
+          continue;
+        }
         std::vector<double> own;
         for (std::size_t b = law; b < delta[k].size(); b += laws) own.push_back(delta[k][b]);
         std::vector<double> pool = own;
@@ -129,9 +134,11 @@ class Namer {
     for (const BankRow& row : p_.data.rows) {
       for (const Effect& e : row.effects) judged.runs += e.candidate == p_.rivals[static_cast<std::size_t>(j)].candidate ? 1 : 0;
     }
+    const Rival& rival = p_.rivals[static_cast<std::size_t>(j)];
+    judged.tested = rival.candidate < 0 || (judged.runs > 0 && !rival.screened_out);
     judged.lambda = seen.lambda(), judged.kappa = seen.kappa(), judged.lambda_found = seen.at(found);
     judged.lambda_curve = seen.curve();
-    judged.undetectable = std::sqrt(judged.lambda) < o_.noise_units;
+    judged.undetectable = rival.screened_out || std::sqrt(judged.lambda) < o_.noise_units;
     judged.share = without_interval(found);
     for (Index i = 0; i < judged.fit.coded.size(); ++i) {
       judged.theta.push_back(without_interval(p_.data.theta[static_cast<std::size_t>(i)].natural(judged.fit.coded[i])));
@@ -155,7 +162,7 @@ class Namer {
   void choose_best() {
     for (std::size_t j = 0; j < count(); ++j) {
       const Judged& judged = out_.judged[j];
-      if (judged.p_family > o_.level || (judged.runs == 0 && p_.rivals[j].candidate >= 0)) continue;
+      if (judged.p_family > o_.level || !judged.tested) continue;
       if (out_.best < 0 || judged.fit.q < out_.judged[static_cast<std::size_t>(out_.best)].fit.q) out_.best = static_cast<int>(j);
     }
   }
@@ -177,13 +184,13 @@ class Namer {
     const int best = out_.best;
     out_.kept = {best};
     for (std::size_t k = 0; k < count(); ++k) {
-      if (static_cast<int>(k) == best) continue;
+      if (static_cast<int>(k) == best || !tested(k)) continue;
       Judged& judged = out_.judged[k];
       const double excess = judged.fit.q - out_.judged[static_cast<std::size_t>(best)].fit.q;
       const Choice own{static_cast<int>(k)};
       std::vector<Choice> choices{own};
       for (std::size_t j = 0; j < count(); ++j) {
-        if (j != k) choices.push_back({static_cast<int>(j)});
+        if (j != k && tested(j)) choices.push_back({static_cast<int>(j)});
       }
       const auto drawn = pseudo_.draw(pseudo_.truth(own, judged.fit), choices, {o_.rival_draws, 300 + k});
       const auto lead = collect(drawn, [](const auto& d) {
@@ -192,7 +199,7 @@ class Namer {
         return d.fit[0].q - least;
       });
       judged.against_best_p = p_of(lead, excess);
-      if (judged.runs > 0 || p_.rivals[k].candidate < 0) look_closer(static_cast<int>(k));
+      look_closer(static_cast<int>(k));
       if (judged.against_best_p > o_.level) out_.kept.push_back(static_cast<int>(k));
     }
   }
@@ -211,7 +218,7 @@ class Namer {
     std::vector<int> others;
     std::vector<Choice> choices{{first}};
     for (std::size_t k = 0; k < count(); ++k) {
-      if (!together(first, static_cast<int>(k))) continue;
+      if (!tested(k) || !together(first, static_cast<int>(k))) continue;
       others.push_back(static_cast<int>(k));
       choices.push_back({first, static_cast<int>(k)});
     }

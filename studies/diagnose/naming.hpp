@@ -29,6 +29,7 @@ struct Rival {
   Index freed = -1;    ///< else: the coordinate whose prior does not count
   ShareRange range;    ///< of the candidate's share
   std::vector<std::string> excludes;
+  bool screened_out = false;  ///< its first runs showed that it cannot matter: it is not tested
 };
 
 /// What a fit with this rival alone switches on; nothing for a nuisance.
@@ -77,7 +78,8 @@ struct Judged {
   double lambda_found = 0;  ///< at the fitted share
   std::vector<std::pair<double, double>> lambda_curve;  ///< (share, λ), shares rising; of candidates
   bool undetectable = false;
-  int runs = 0;                       ///< of the bank with this candidate; too few: it was not tested
+  int runs = 0;                       ///< of the bank with this candidate
+  bool tested = true;                 ///< else it has no runs, or its first ones showed that it cannot matter; its p are 1
   Interval share;                     ///< its interval is worked out when some candidate is significant
   std::vector<Interval> theta;        ///< natural units; the same
   double goodness_p = kNotWorkedOut;  ///< whether the data look like a draw of this model; the same

@@ -54,6 +54,10 @@ void what_was_tried(const Told& t, std::string& out) {
     const Judged& g = d.naming.judged[j];
     const bool best = static_cast<int>(j) == d.naming.best;
     if (g.runs == 0 && d.problem.rivals[j].candidate >= 0) continue;
+    if (!g.tested) {
+      add(out, "| {} | not tested | | | cannot be seen | | |\n", d.problem.rivals[j].name);
+      continue;
+    }
     const std::string against = best ? "the best" : d.naming.best < 0 ? "" : fmt::format("{:.2g}", g.against_best_p);
     add(out, "| {}{}{} | {} | {:.1f} | {:.2g} | {:.1f}{} | {:.0f} % | {} |\n", best ? "**" : "", d.problem.rivals[j].name, best ? "**" : "",
         strength(t, j), g.delta_q, g.p_family, std::sqrt(g.lambda), g.undetectable ? ", cannot be seen" : "", 100 * (1 - g.kappa), against);

@@ -114,9 +114,12 @@ void reservations(Diagnosis& d) {
     d.notes.push_back(
         fmt::format("the retuned {} lies at an end of its range: a wider range might conceal more; widen it and diagnose again", name));
   for (std::size_t j = 0; j < d.naming.judged.size(); ++j) {
-    if (d.problem.rivals[j].candidate >= 0 && d.naming.judged[j].runs == 0)
-      d.notes.push_back(
-          fmt::format("{} was not tested: none of its simulations came to its end, or it was screened out", d.problem.rivals[j].name));
+    const Rival& r = d.problem.rivals[j];
+    if (d.naming.judged[j].tested) continue;
+    d.notes.push_back(fmt::format("{} was not tested: {}", r.name,
+                                  r.screened_out
+                                      ? "even at its strongest its first simulations differ too little from what the parameters imitate"
+                                      : "none of its simulations came to its end"));
   }
   for (const HeldOut& h : d.held_out) {
     for (const std::string& f : h.failures) d.notes.push_back("held out, failed: " + f);

@@ -288,6 +288,21 @@ TEST_CASE("false alarms stay at the level where errors are correlated in the one
   CHECK(alarms <= 6);
 }
 
+TEST_CASE("what was screened out is neither named nor in a class, and the others do not pay for it") {
+  Problem p = made_up_problem({}, point(-0.3, 0.2, 0), {0.6, 0, 0}, 3);
+  const Naming all = name_physics(p, quick());
+  p.rivals[0].screened_out = true;
+  const Naming without = name_physics(p, quick());
+  CHECK(all.best == 0);
+  CHECK(without.best != 0);
+  CHECK(std::find(without.kept.begin(), without.kept.end(), 0) == without.kept.end());
+  CHECK_FALSE(without.judged[0].tested);
+  CHECK(without.judged[0].undetectable);
+  CHECK(without.judged[0].p_family == 1);
+  CHECK(all.judged[1].tested);
+  for (std::size_t j = 1; j < all.judged.size(); ++j) CHECK(without.judged[j].p_family <= all.judged[j].p_family);
+}
+
 TEST_CASE("many candidates pay for their number") {
   Problem p = made_up_problem({}, point(0, 0, 0), {0, 0, 0}, 8);
   const Naming n = name_physics(p, quick());
