@@ -42,6 +42,13 @@ bool is_named(const Told& t, const Nuisance& n) {
   return std::find(t.diagnosis.named.begin(), t.diagnosis.named.end(), n.name) != t.diagnosis.named.end();
 }
 
+/// Of a class the best alone.
+std::string what_is_on(const Told& t) {
+  const std::vector<std::string>& named = t.diagnosis.named;
+  const std::string all = fmt::format("{}", fmt::join(named, t.diagnosis.two_effects ? " and " : ", "));
+  return t.diagnosis.two_effects || named.size() == 1 ? all : fmt::format("{}, the best of {}", named.front(), all);
+}
+
 /// `theta`: as fitted. What the camera was found to do is the study's prior from here on: no case could hold it.
 std::string study_text(const Told& t, const VectorXd& theta, const fs::path& folder) {
   std::string out = fmt::format("# The study {} on the corrected case.\nschema_version: 1\nbase: case.yaml\n\nconditions:\n",
@@ -86,11 +93,10 @@ void write_corrected(const Told& t, const fs::path& folder) {
   const bool of_camera = std::any_of(t.question.nuisances.begin(), t.question.nuisances.end(),
                                      [&](const Nuisance& nuisance) { return nuisance.of_camera() && is_named(t, nuisance); });
   fs::create_directories(folder);
-  output::write_file(
-      folder / "case.yaml",
-      calibrate::case_with(fmt::format("{} {}, as 'millscope diagnose' found it: {}.", of_camera ? "The mill behind" : "With",
-                                       fmt::join(t.diagnosis.named, ", "), name_of(t.diagnosis.verdict)),
-                           t.question.study.base, settings, folder));
+  output::write_file(folder / "case.yaml",
+                     calibrate::case_with(fmt::format("{} {}, as 'millscope diagnose' found it: {}.",
+                                                      of_camera ? "The mill behind" : "With", what_is_on(t), name_of(t.diagnosis.verdict)),
+                                          t.question.study.base, settings, folder));
   output::write_file(folder / "study.yaml", study_text(t, theta, folder));
 }
 
