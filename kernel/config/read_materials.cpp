@@ -113,6 +113,7 @@ PairTable read_pairs(const Node& section, const std::optional<Node>& groups, con
     check_pair_key(section, key, known);
     section.at(key).keys();  // must be a map
   }
+  complete_pairs(section);
   return PairTable(section, std::move(group_of));
 }
 

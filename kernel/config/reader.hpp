@@ -18,6 +18,8 @@ double number_or(const Node& section, std::string_view key, std::string_view si_
 
 std::vector<MaterialCase> read_materials(const Node& section);
 std::map<std::string, std::string> read_groups(const std::optional<Node>& section, const std::vector<MaterialCase>& materials);
+/// Adds the values that `like` and `times` of each pair stand for.
+void complete_pairs(const Node& section);
 PairTable read_pairs(const Node& section, const std::optional<Node>& groups, const std::vector<MaterialCase>& materials);
 /// `shares_by_mass`: how `share` of the classes is counted.
 std::vector<BeadCase> read_beads(const Node& section, const std::vector<MaterialCase>& materials, bool shares_by_mass);

@@ -90,6 +90,8 @@ json plugin(std::span<const Descriptor* const> descriptors, Kind kind, const jso
 json pair_schema(std::span<const Descriptor* const> descriptors) {
   json properties = json::object();
   for (const Descriptor* d : descriptors) properties.update(parameters(*d, Scope::pair));
+  properties["like"] = text("another pair, whose values hold where this one gives none");
+  properties["times"] = map_of(quantity("factor on a value of that pair"));
   return map_of(object(std::move(properties)));
 }
 

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "kernel/config/units.hpp"
 #include "tests/config/helpers.hpp"
 
 using namespace millscope::config;
@@ -141,4 +142,43 @@ TEST_CASE("only beads like those of a tracer class may be followed") {
   CHECK_FALSE(plain.has_tracers());
   CHECK(plain.tracer_part(1, 1) == 0);
   CHECK(plain.may_be_followed(1, 1));
+}
+
+TEST_CASE("a pair may be like another, some of its values multiplied") {
+  const std::string pairs =
+      "  liner~glass: {restitution: 0.55, friction: 30 %}\n  glass~hdpe: {like: glass~liner, restitution: 0.4, times: {friction: 0.5}}\n";
+  const std::string like = case_with("  liner~glass", pairs.substr(0, pairs.size() - 1));
+  const auto value = [](const Case& c, const char* key) { return read_number(c.pairs.lookup("glass", "hdpe").at(key), "1"); };
+  const Case c = read_all(like);
+  CHECK(value(c, "restitution") == 0.4);
+  CHECK(value(c, "friction") == Approx(0.15));
+  CHECK(value(read_all(like, {"pairs.glass~liner.friction=0.2"}), "friction") == Approx(0.1));  // it follows the other
+  CHECK(value(read_all(like, {"pairs.glass~hdpe.times.friction=2"}), "friction") == Approx(0.6));
+  CHECK(value(read_all(like, {"pairs.glass~liner.friction=2e5 mm^2/m^2"}), "friction") == Approx(0.1));  // whatever the other is written in
+  CHECK(value(read_all(like, {"pairs.glass~liner={like: glass~glass}"}), "friction") == Approx(0.17));   // which may be like a third
+  CHECK_FALSE(read_all(case_with("  liner~glass",
+                                 "  liner~glass: {restitution: 0.55, friction: 30 %}\n  glass~hdpe: {like: glass~liner, friction: ~}"))
+                  .pairs.lookup("glass", "hdpe")
+                  .has("friction"));
+  const Case whole = read_all(like, {"pairs.glass~nylon={like: default}", "pairs.default.friction=0.7"});
+  CHECK(read_number(whole.pairs.lookup("glass", "nylon").at("friction"), "1") == 0.7);
+  const auto refused = [&](const std::vector<std::string>& overrides) { return testing::refusal(like, overrides); };
+  CHECK(refused({"pairs.glass~hdpe.like=glass~linen"}) ==
+        "--set pairs.glass~hdpe.like=glass~linen: 'pairs.glass~hdpe.like' names 'glass~linen', which 'pairs' does not have; did you mean "
+        "'glass~liner'?");
+  CHECK(
+      refused({"pairs.glass~liner={like: glass~hdpe}"}) ==
+      "case.yaml:13: 'pairs.glass~hdpe.like' names 'glass~liner', which is in the end like this pair; give one of them values of its own");
+  CHECK(refused({"pairs.glass~hdpe.friction=0.1"}) ==
+        "case.yaml:13: 'pairs.glass~hdpe.times.friction' multiplies a value that 'pairs.glass~hdpe' gives itself; keep one of the two");
+  CHECK(refused({"pairs.glass~hdpe.times={stickiness: 2}"}) ==
+        "--set pairs.glass~hdpe.times={stickiness: 2}: 'pairs.glass~hdpe.times.stickiness' multiplies a value that 'pairs.glass~liner' "
+        "does not give; known: "
+        "restitution, friction");
+  CHECK(refused({"pairs.glass~glass.times={friction: 2}"}) ==
+        "--set pairs.glass~glass.times={friction: 2}: 'pairs.glass~glass.times' multiplies values of no other pair; add 'like', e.g. like: "
+        "glass~liner");
+  CHECK(refused({"pairs.glass~hdpe.times.friction=1000"}) ==
+        "--set pairs.glass~hdpe.times.friction=1000: 'pairs.glass~hdpe.friction' is 300; it must be from 0 to 10; Coulomb's coefficient.");
+  CHECK(refused({"pairs.glass~hdpe.sticky=1"}) == "--set pairs.glass~hdpe.sticky=1: unknown key 'sticky' in 'pairs.glass~hdpe'; known: like, times, restitution, friction");
 }
