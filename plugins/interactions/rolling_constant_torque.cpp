@@ -29,7 +29,7 @@ constexpr Parameter kParameters[] = {
 
 constexpr Hypothesis kHypotheses[] = {
     {"rolling_friction", "Rolling is resisted: the beads are not perfect spheres, or the surfaces give way.", "T = -mu_r R* F_n w/|w|",
-     "Zhou et al. 1999, doi:10.1016/S0378-4371(99)00183-1", "rolling_friction", 0.0, 0.0, 0.2, 0, 0, "", "rolling_resistance"},
+     "Zhou et al. 1999, doi:10.1016/S0378-4371(99)00183-1", "rolling_friction", 0.0, 0.0, 0.2, 0, 0, "", "rolling_resistance|bead_shape"},
 };
 
 class RollingConstantTorque {

@@ -104,3 +104,32 @@ TEST_CASE("with rolling resistance a sphere rests on a slope below mu_r, and rol
     CHECK(std::abs(velocity(below, 0)[0]) < 0.02 * velocity(above, 0)[0]);
   }
 }
+
+TEST_CASE("a bead of another shape rolls until its energy is lost by tipping over, and rocks at rest") {
+  const double alpha = 1.1, a = std::pow(alpha, 2.0 / 3), b = std::pow(alpha, -1.0 / 3), v0 = 0.2;
+  const double stiffness = b * (alpha * alpha - 1), limit = (a - b) / M_PI;  // k_r and M_max over R F_n
+  Setup s;
+  s.interactions = "{rolling: {kind: bead_shape}}";
+  s.pairs = "restitution: 0.5, static_friction: 0.5, aspect_ratio: 1.1";
+  s.body_forces = "{gravity: {kind: gravity}}";
+  s.geometry = kFloor;
+  const auto resting = [&](double speed) {
+    Assembly assembly = assembled(s);
+    Bead bead;
+    bead.position = {0, kRadius - resting_overlap(s.stiffness_factor), 0};
+    bead.velocity = {speed, 0, 0};
+    bead.spin = {0, 0, -speed / kRadius};
+    start(assembly, {bead});
+    return assembly;
+  };
+  // 7/10 m v0^2 = M_max (s/R - M_max/(2 k_r)): the last part is kept by the spring.
+  Assembly rolling = resting(v0);
+  while (velocity(rolling, 0)[0] > 0) rolling.system->advance();
+  const double angle = 0.7 * v0 * v0 / (limit * kGravity * kRadius) + 0.5 * limit / stiffness;
+  CHECK(position(rolling, 0)[0] == Approx(angle * kRadius).epsilon(0.01));
+  // 7/5 m R^2 phi'' = -k_r phi.
+  Assembly rocking = resting(0.1 * limit / stiffness * std::sqrt(stiffness * kGravity * kRadius / 1.4));
+  const double quarter = 0.5 * M_PI / std::sqrt(stiffness * kGravity / (1.4 * kRadius));
+  while (velocity(rocking, 0)[0] > 0) rocking.system->advance();
+  CHECK(rocking.system->time() == Approx(quarter).epsilon(0.01));
+}

@@ -54,6 +54,8 @@ TEST_CASE("every interaction holds to the conformance suite with every option") 
       {"rolling_constant_torque", "rolling_friction=0.05 length=radius"},
       {"rolling_epsd", "rolling_friction=0.05"},
       {"rolling_epsd", "rolling_friction=0.05 damping_ratio=0.3 length=radius"},
+      {"bead_shape", "aspect_ratio=1.3"},
+      {"bead_shape", "aspect_ratio=1 damping_ratio=0.2"},
       {"cohesion_sjkr", "cohesion_energy_density=50000"},
       {"cohesion_sjkr", "cohesion_energy_density=50000 friction=net"},
       {"capillary_bridge", "surface_tension=0.07"},
