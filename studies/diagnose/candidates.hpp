@@ -42,8 +42,8 @@ struct Library {
 /// All that apply to the case: the plugins' hypotheses and the targets of targets.cpp.
 Library library_of(const config::Case& base, const host::Registry& registry);
 
-/// Adds the targets that apply, and what the others need: density of the tracer, spread of the sizes, stiffness of the contacts, height and
-/// face angle of lifters, end faces at rest, ripple of the speed. For the files of this room.
+/// Adds the targets that apply, and what the others need: density of the tracer, spread of the sizes, stiffness of the contacts, height,
+/// face angle and friction of lifters, end faces at rest, ripple of the speed. For the files of this room.
 void add_targets(const config::Case& base, Library& library);
 
 }  // namespace millscope::diagnose

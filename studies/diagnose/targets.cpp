@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <set>
 
 #include "kernel/config/units.hpp"
 #include "studies/diagnose/candidates.hpp"
@@ -17,6 +18,8 @@ constexpr double kWorn = 0.6;  // of the height that is left of a lifter at the 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kAngle = 15 * kDegree;  // by which a lifter's face may be off
 constexpr double kRipple = 0.1;          // of the speed
+constexpr double kSlippery = 0.2;        // friction of the lifters over that of the shell
+constexpr double kRough = 2;
 constexpr double kSteepest = 89 * kDegree;
 constexpr double kNarrowTop = 0.1;  // of a lifter's base: no face so shallow that the top would be narrower
 
@@ -68,6 +71,46 @@ void lifters(const config::GeometryCase& g, std::vector<Candidate>& out) {
                  far,
                  {std::min(0.0, ((far == steep ? shallow : steep) - angle) / (far - angle)), 1},
                  {}});
+}
+
+std::string free_name(const config::Case& base, std::string name) {
+  const auto taken = [&](const config::MaterialCase& m) { return m.name == name; };
+  const bool grouped = base.root.has("groups") && base.root.at("groups").has(name);
+  if (!grouped && std::none_of(base.materials.begin(), base.materials.end(), taken)) return name;
+  return free_name(base, name + "_");
+}
+
+/// Lifters of a material of their own, that is the shell's but for its friction, which follows the shell's.
+void lifter_friction(const config::Case& base, const config::GeometryCase& g, std::vector<Candidate>& out) {
+  const config::Node& node = g.plugin.node;
+  if (!node.has("lifters") || number(node.at("lifters")) < 1 || g.material_of("shell") != g.material_of("lifter")) return;
+  const config::MaterialCase& shell = base.material(g.material_of("shell"));
+  const std::string name = free_name(base, "lifters");
+  Candidate c{"lifter_friction",
+              "The lifters rub otherwise than the shell between them.",
+              "mu_lifter = r mu_shell",
+              "",
+              "friction_ratio",
+              "1",
+              {fmt::format("materials.{}={{density: {:.17g}, young_modulus: {:.17g}, poisson_ratio: {:.17g}}}", name, shell.density,
+                           shell.young, shell.poisson),
+               fmt::format(fmt::runtime(g.materials.empty() ? "geometry.{}.materials={{lifter: {}}}" : "geometry.{}.materials.lifter={}"),
+                           g.plugin.name, name)},
+              {},
+              1,
+              kSlippery,
+              {(kRough - 1) / (kSlippery - 1), 1},
+              {}};
+  std::set<std::string> of_beads;
+  for (const config::BeadCase& beads : base.beads) of_beads.insert(beads.material);
+  for (const std::string& bead : of_beads) {
+    const config::Node like = base.pairs.lookup(bead, shell.name);
+    if (!like.has("static_friction")) return;
+    const std::string pair = config::normal_pair(fmt::format("{}~{}", bead, name));
+    c.set.push_back(fmt::format("pairs.{}={{like: {}, times: {{static_friction: 1}}}}", pair, like.name()));
+    c.paths.push_back(fmt::format("pairs.{}.times.static_friction", pair));
+  }
+  out.push_back(std::move(c));
 }
 
 /// Faces that turn with the shell are exchanged for planes at rest.
@@ -186,10 +229,12 @@ void stiffness(const config::Case& base, std::vector<Candidate>& out) {
 }
 
 /// What each target needs of a case.
-constexpr std::array<std::array<const char*, 2>, 7> kNeeds{{
+constexpr std::array<std::array<const char*, 2>, 8> kNeeds{{
     {"contact_stiffness", "softened contacts: a stiffness_factor below 1"},
     {"end_faces_at_rest", "a geometry of kind mill whose end_faces turn"},
     {"lifter_face_angle", "a geometry of kind mill with lifters whose faces could be steeper or shallower"},
+    {"lifter_friction",
+     "a geometry of kind mill with lifters of the shell's material, and a static_friction of the pairs of bead and shell"},
     {"lifter_wear", "a geometry of kind mill with lifters"},
     {"size_spread", "one class of beads, given by its 'diameter', without tracers of its own"},
     {"speed_ripple", "a geometry of kind mill that follows the mill's speed, without a ripple or travel of its own"},
@@ -206,6 +251,7 @@ std::vector<Candidate> applying(const config::Case& base) {
   for (const config::GeometryCase& g : base.geometry) {
     if (g.plugin.kind != "mill") continue;
     lifters(g, out);
+    lifter_friction(base, g, out);
     resting_ends(g, out);
     ripple(base, g, out);
   }

@@ -1,9 +1,11 @@
 // What a base case may lack: which hypotheses apply, what switches them on, how far they reach.
 #include "studies/diagnose/candidates.hpp"
 
+#include <fmt/format.h>
 #include <catch2/catch.hpp>
 #include <fstream>
 
+#include "kernel/config/units.hpp"
 #include "kernel/config/writer.hpp"
 #include "made_up_study.hpp"
 #include "studies/calibrate/outputs.hpp"
@@ -43,8 +45,8 @@ std::string why_not(const Library& l, const std::string& name) {
 TEST_CASE("hypotheses of plugins that the base lacks apply, others say why they do not") {
   const Library l = library();
   for (const char* name : {"adhesion", "air_drag", "capillary_bridge", "cohesion", "fluid_pool", "lubrication", "rolling_friction",
-                           "rolling_resistance", "speed_dependent_friction", "lifter_wear", "lifter_face_angle", "end_faces_at_rest",
-                           "unlike_tracer", "size_spread", "contact_stiffness"}) {
+                           "rolling_resistance", "bead_shape", "speed_dependent_friction", "lifter_friction", "lifter_wear",
+                           "lifter_face_angle", "end_faces_at_rest", "unlike_tracer", "size_spread", "contact_stiffness"}) {
     INFO(name << ": " << why_not(l, name));
     CHECK(find(l, name) != nullptr);
   }
@@ -77,8 +79,8 @@ TEST_CASE("a target that does not apply says what it needs") {
   CHECK_THAT(why_not(library({shell + "end_faces=false"}), "end_faces_at_rest"),
              StartsWith("needs a geometry of kind mill whose end_faces"));
   const Library all = library();
-  for (const char* name :
-       {"contact_stiffness", "end_faces_at_rest", "lifter_face_angle", "lifter_wear", "size_spread", "speed_ripple", "unlike_tracer"})
+  for (const char* name : {"contact_stiffness", "end_faces_at_rest", "lifter_face_angle", "lifter_friction", "lifter_wear", "size_spread",
+                           "speed_ripple", "unlike_tracer"})
     CHECK((find(all, name) == nullptr) != why_not(all, name).empty());
 }
 
@@ -126,7 +128,7 @@ TEST_CASE("a parameter of pairs is set for every pair, one of the plugin once") 
   REQUIRE(find(l, "air_drag") != nullptr);
   CHECK(settings_of(*find(l, "air_drag"), 1) ==
         std::vector<std::string>{"body_forces.air_drag.kind=air_drag", "body_forces.air_drag.strength=3"});
-  CHECK(find(l, "rolling_resistance")->excludes == std::vector<std::string>{"rolling_friction"});
+  CHECK(find(l, "rolling_resistance")->excludes == std::vector<std::string>{"rolling_friction", "bead_shape"});
   CHECK(find(l, "capillary_bridge")->excludes == std::vector<std::string>{"cohesion", "adhesion"});
 }
 
@@ -167,6 +169,36 @@ TEST_CASE("lifters may be worn, and their faces stand otherwise, to both sides")
   const Library upright = library({"geometry.liner.lifter_face_angle=89 deg"});
   if (const Candidate* u = find(upright, "lifter_face_angle")) CHECK(std::isfinite(u->range.low));
   CHECK(find(library({"geometry.liner.lifters=0"}), "lifter_wear") == nullptr);
+}
+
+TEST_CASE("lifters rub by a part of what the shell does, whatever that is") {
+  const Library l = library();
+  const Candidate* c = find(l, "lifter_friction");
+  REQUIRE(c != nullptr);
+  CHECK_THAT(c->value(c->range.low), WithinRel(2, 1e-12));
+  const auto friction = [](const config::Case& with, const char* other) {
+    return config::read_number(with.pairs.lookup("glass", other).at("static_friction"), "1");
+  };
+  for (const double shell : {0.3, 0.5}) {
+    std::vector<std::string> settings = settings_of(*c, 0.5);
+    settings.push_back(fmt::format("pairs.glass~liner.static_friction={}", shell));
+    const config::Case with = config::read_case(kMill, settings);
+    CHECK(with.geometry[0].material_of("shell") == "liner");
+    CHECK(with.geometry[0].material_of("lifter") == "lifters");
+    CHECK(with.material("lifters").young == with.material("liner").young);
+    CHECK_THAT(friction(with, "lifters"), WithinRel(0.6 * shell, 1e-12));
+    CHECK(friction(with, "liner") == shell);
+  }
+  // What else a bead feels at the shell it feels at the lifters.
+  std::vector<std::string> both = settings_of(*c, 1);
+  for (const std::string& s : settings_of(*find(l, "rolling_resistance"), 0.5)) both.push_back(s);
+  const config::Node at_lifter = config::read_case(kMill, both).pairs.lookup("glass", "lifters");
+  CHECK(config::read_number(at_lifter.at("rolling_friction"), "1") == 0.1);
+  const Library other =
+      library({"materials.rubber={density: 1100, young_modulus: 1 GPa, poisson_ratio: 0.4}",
+               "pairs.glass~rubber={restitution: 0.5, static_friction: 0.6}", "geometry.liner.materials={lifter: rubber}"});
+  CHECK(find(other, "lifter_friction") == nullptr);
+  CHECK_THAT(why_not(other, "lifter_friction"), StartsWith("needs a geometry of kind mill with lifters of the shell's material"));
 }
 
 TEST_CASE("a tracer of another density is set apart from a charge that stays as it is") {
