@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 from pathlib import Path
 
 from verify_diagnose import text_of, verdict_rows
@@ -92,13 +93,22 @@ SPIKES = {
 }
 
 
+def kept_when_fast(found):
+    """% of the locations that a camera keeps at twice the shell's speed of those at rest, and the line that says so; 100: none does."""
+    for line in found["notes"]:
+        known = re.search(r"loses fast beads.* (\d+) % at twice", line)
+        if known:
+            return int(known.group(1)), line
+    return 100, "no loss of fast beads"
+
+
 def uct(bench):
     """A real recording of 92 s of one tracer in a mill of which little is known: as it is, and with errors that were put in"""
     if not TRACK.exists():
         return [row("the recording", "absent: not checked")]
     folder = bench.folder / "uct"
     folder.mkdir(exist_ok=True)
-    rows = []
+    rows, kept_as_is = [], 100
     for k, (name, (change, wanted)) in enumerate(SPIKES.items()):
         (folder / ("track%d.a" % k)).write_text(spiked(change))
         recording = folder / ("track%d.yaml" % k)
@@ -109,6 +119,11 @@ def uct(bench):
         # Of the file as it is one bead in a mill of guesses may at most ask for another frame.
         good = seen == [wanted] if wanted else all(s in FRAME for s in seen)
         rows.append(row("%s: significant" % name, ", ".join(seen) or "nothing", wanted or "nothing but the camera's frame", good))
+        kept, said = kept_when_fast(found)
+        if name == "as it is":
+            kept_as_is = kept
+        more = kept < kept_as_is - 10 if name.startswith("thinned") else None
+        rows.append(row("%s: of the camera" % name, said, "" if more is None else "that it loses more of them than as it is", more))
         rows.append(row("%s: in its words" % name, "%s: %s" % (found["verdict"], found["sentence"])))
         rows += [dict(r, what="%s: %s" % (name, r["what"])) for r in candidate_rows(found)]
     rows.append(stretched(bench, folder))

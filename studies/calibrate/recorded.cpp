@@ -51,14 +51,21 @@ std::string identity(const studies::Recording& recording, const Processing& how,
   return hash_of(parts);
 }
 
-std::string camera_of(const studies::Recording& recording, const Study& study) {
-  if (study.observing.camera == "exact") return kExactCamera;
-  if (study.observing.camera != "recording") return file_text(study.observing.camera);
+/// The camera's text, and what it is found to lose.
+struct RecordingCamera {
+  std::string text;
+  studies::CameraLosses loss;
+};
+
+RecordingCamera camera_of(const studies::Recording& recording, const Study& study) {
+  if (study.observing.camera == "exact") return {kExactCamera, {}};
+  if (study.observing.camera != "recording") return {file_text(study.observing.camera), {}};
   try {
-    std::string text = studies::camera_text(studies::estimate_camera(recording), recording.file.string());
+    const studies::CameraEstimate estimate = studies::estimate_camera(recording);
+    std::string text = studies::camera_text(estimate, recording.file.string());
     // No recording tells its location window; about one over the rate is usual, and nearer to the truth than none.
     if (const std::size_t blur = text.find("# blur: {"); blur != std::string::npos) text.erase(blur, 2);
-    return text;
+    return {text, estimate.loss};
   } catch (const UserError& e) {
     throw UserError(fmt::format("the camera cannot be estimated: {}; give one with 'observe: {{camera: FILE.yaml}}'", e.what()));
   }
@@ -170,7 +177,8 @@ studies::TrajectoryOptions options_of(const RecordedCondition& r, const Observin
 RecordedCondition look(const studies::Recording& recording, std::size_t condition, const Processing& how) {
   RecordedCondition r;
   const Observing& observing = how.study.observing;
-  r.camera = camera_of(recording, how.study);
+  const RecordingCamera camera = camera_of(recording, how.study);
+  r.camera = camera.text;
   const studies::NoiseEstimate noise = studies::estimate_noise_model(recording.runs, recording.gap_limit);
   r.noise = noise.standard_deviation;
   r.noise_correlation = noise.correlation;
@@ -188,6 +196,8 @@ RecordedCondition look(const studies::Recording& recording, std::size_t conditio
   r.observation.notes = notes;
   for (const studies::ResultBlock& block : results.meta.blocks) r.observation.bead_seconds += block.duration;
   set_power(recording, results, r);
+  const std::string losses = studies::losses_text(camera.loss, std::fabs(r.omega) * results.meta.context.mill_radius);
+  if (!losses.empty()) r.observation.notes.push_back(losses + "; simulated beads are seen with the same loss");
   add_axis_error(recording, r);
   return r;
 }

@@ -62,7 +62,19 @@ std::string gap_lines(const CameraGaps& g) {
       g.limit, text(g.rate), text(g.mean_length), g.rate.value, g.mean_length.value);
 }
 
+constexpr double kTellingErrors = 3;  // standard errors of a loss with speed that is said
+
 }  // namespace
+
+std::string losses_text(const CameraLosses& loss, double speed) {
+  if (!loss.found || loss.per_speed.value < kTellingErrors * loss.per_speed.error || !(speed > 0)) return "";
+  // How many are kept at rest is not told by every recording; what speed does to it is.
+  const auto of_rest = [&](double v) { return 100 * loss.kept(loss.typical_distance, v) / loss.kept(loss.typical_distance, 0); };
+  return fmt::format(
+      "its camera loses fast beads: of the locations that it keeps of a bead at rest it keeps {:.0f} % at the shell's {:.2g} m/s, {:.0f} % "
+      "at twice that",
+      of_rest(speed), speed, of_rest(2 * speed));
+}
 
 std::string camera_text(const CameraEstimate& e, const std::string& source) {
   std::string out = fmt::format(

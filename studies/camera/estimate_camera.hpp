@@ -79,6 +79,10 @@ CameraEstimate estimate_camera(const Recording& recording, const EstimateOptions
 /// The estimate with its standard errors; units are in the names of the keys, numbers that are not finite are null.
 nlohmann::ordered_json camera_json(const CameraEstimate& estimate);
 
+/// Fast beads that are under-represented, said where the recording shows it, for it is the camera and no physics; "" where it does not.
+/// `speed`: of the shell, m/s.
+std::string losses_text(const CameraLosses& loss, double speed);
+
 /// The camera as YAML to be edited by hand, every value with its standard error in a comment.
 std::string camera_text(const CameraEstimate& estimate, const std::string& source);
 

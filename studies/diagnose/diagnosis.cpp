@@ -85,6 +85,22 @@ void read_frames(const Question& question, const host::Registry& registry, Works
   }
 }
 
+/// What was noted of the recordings; what holds for several is said once.
+void note_recordings(const Question& question, const Workshop& workshop, Diagnosis& d) {
+  std::vector<std::pair<std::string, std::string>> lines;  // what; of which conditions
+  for (std::size_t c = 0; c < workshop.recorded.size(); ++c) {
+    for (const std::string& what : workshop.recorded[c].notes) {
+      const std::string name = "'" + question.study.conditions[c].name + "'";
+      const auto known = std::find_if(lines.begin(), lines.end(), [&](const auto& l) { return l.first == what; });
+      if (known == lines.end())
+        lines.emplace_back(what, name);
+      else
+        known->second += ", " + name;
+    }
+  }
+  for (const auto& [what, where] : lines) d.notes.push_back(fmt::format("recording of {}: {}", where, what));
+}
+
 }  // namespace
 
 const char* name_of(Verdict verdict) {
@@ -127,6 +143,7 @@ Diagnosis diagnose(const Question& question, Workshop& workshop, const NamingOpt
     d.terms = offer_terms(d.missing);
   }
   d.notes.insert(d.notes.end(), d.problem.data.left_out.begin(), d.problem.data.left_out.end());
+  note_recordings(question, workshop, d);
   for (std::size_t c = 0; c < workshop.readings.size(); ++c) {
     if (!workshop.readings[c].empty())
       d.notes.push_back(

@@ -193,6 +193,22 @@ TEST_CASE("losses that the tracker's spread does not decide are a cut that can b
   }
 }
 
+TEST_CASE("that a camera loses fast beads is said where the recording shows it, against beads at rest") {
+  CameraLosses loss;
+  loss.found = true, loss.typical_distance = 0.1;
+  loss.at_rest.value = 1, loss.per_speed = {2, 0.5};
+  // Phi(1) = 0.8413, Phi(1 - 2 0.5) = 0.5, Phi(1 - 2) = 0.1587
+  CHECK(losses_text(loss, 0.5) ==
+        "its camera loses fast beads: of the locations that it keeps of a bead at rest it keeps 59 % at the shell's 0.5 m/s, 19 % at twice "
+        "that");
+  loss.per_speed.error = 1;
+  CHECK(losses_text(loss, 0.5).empty());
+  loss.per_speed.error = 0.5;
+  CHECK(losses_text(loss, std::nan("")).empty());
+  loss.found = false;
+  CHECK(losses_text(loss, 0.5).empty());
+}
+
 TEST_CASE("a recording that is too short says so") {
   Recording recording = seen(kKnown, 1);
   Run& run = recording.runs[0];
