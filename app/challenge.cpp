@@ -96,26 +96,36 @@ int run_sets(const Arguments& arguments) {
 }
 
 int score_sets(const Arguments& arguments) {
-  Options options("challenge score SETS",
-                  "Opens the sealed answers and counts how often the diagnoses met them: misses as plainly as hits.",
+  Options options("challenge score SETS…",
+                  "Opens the sealed answers and counts how often the diagnoses met them: misses as plainly as hits. Several folders are "
+                  "counted together.",
                   "millscope challenge score sets -o docs/proof.md");
-  options.positional("SETS", "what 'challenge make' wrote and 'challenge run' diagnosed");
-  options.add()("output,o", po::value<std::string>()->value_name("FILE.md"), "page to write (default: SETS/score.md)");
+  options.positional("SETS", "what 'challenge make' wrote and 'challenge run' diagnosed", true);
+  options.add()("output,o", po::value<std::string>()->value_name("FILE.md"), "page to write (default: score.md in the first SETS)");
   options.add()("quiet,q", "print nothing but errors");
   if (!options.parse(arguments)) return kDone;
-  const fs::path sets = options.text("SETS");
-  const fs::path page = options.has("output") ? fs::path(options.text("output")) : sets / "score.md";
+  const std::vector<std::string> named = options.list("SETS");
+  if (named.empty())
+    throw UserError("SETS is missing: name the folder that 'challenge make' wrote; usage: millscope challenge score SETS…");
+  const std::vector<fs::path> folders(named.begin(), named.end());
+  const fs::path page = options.has("output") ? fs::path(options.text("output")) : folders.at(0) / "score.md";
   if (page.extension() != ".md") throw UserError(fmt::format("--output {}: name a page that ends in .md", page.string()));
-  const std::vector<challenge::Marked> marked = challenge::read_sets(sets);
+  const std::vector<challenge::Marked> marked = challenge::read_all_sets(folders);
   const challenge::Score score = challenge::score(marked);
-  const challenge::Page what{marked, score, command_text(), challenge::manifest_hash(sets)};
-  output::write_file(page, challenge::page_text(what));
-  output::write_json(sets / "score.json", challenge::score_json(what));
+  std::vector<std::pair<std::string, std::string>> manifests;
+  for (const fs::path& folder : folders) manifests.emplace_back(challenge::name_of_folder(folder), challenge::manifest_hash(folder));
+  output::write_file(page, challenge::page_text({marked, score, command_text(), manifests}));
+  for (std::size_t k = 0; k < folders.size(); ++k) {
+    const std::vector<challenge::Marked> own = challenge::read_sets(folders[k]);
+    const std::string command = "millscope challenge score " + folders[k].string();
+    output::write_json(folders[k] / "score.json", challenge::score_json({own, challenge::score(own), command, {manifests[k]}}));
+  }
   if (!options.has("quiet")) {
     fmt::print(
-        "{} of {} sets diagnosed\nfalse alarms             {}\nbest candidate is right  {}\namong those named        {}\nsee {} and {}\n",
+        "{} of {} sets diagnosed\nfalse alarms             {}\nbest candidate is right  {}\namong those named        {}\nsee {}, and "
+        "score.json in {}\n",
         score.diagnosed, score.sets, challenge::count_text(score.false_alarms), challenge::count_text(score.best_right),
-        challenge::count_text(score.in_class), page.string(), (sets / "score.json").string());
+        challenge::count_text(score.in_class), page.string(), folders.size() == 1 ? folders[0].string() : "each folder");
   }
   return kDone;
 }

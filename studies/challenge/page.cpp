@@ -42,6 +42,13 @@ void add_counts(const Score& s, std::string& out) {
     add(out, "\nWhere one effect is hidden and something is named, {:.2f} candidates are named in the mean.\n", s.mean_class);
 }
 
+std::string manifests_text(const Page& page) {
+  if (page.manifests.size() == 1) return fmt::format("the manifest's own is `{}`", page.manifests[0].second);
+  std::string list;
+  for (const auto& [folder, hash] : page.manifests) add(list, "{}`{}` ({})", list.empty() ? "" : ", ", hash, folder);
+  return "the manifests' own are " + list;
+}
+
 Json sets_json(const Page& page) {
   Json out = Json::array();
   for (const Marked& m : page.sets) {
@@ -66,9 +73,8 @@ std::string page_text(const Page& page) {
   std::string out = "# Score of a challenge\n\n";
   add(out, "    {}\n\n", page.command);
   add(out,
-      "{} sets, {} diagnosed, {} of which failed; {} still to be diagnosed. Every answer has the hash that the manifest gives it; the "
-      "manifest's own is `{}`.\n\n",
-      s.sets, s.diagnosed, s.failed, s.sets - s.diagnosed, page.manifest);
+      "{} sets, {} diagnosed, {} of which failed; {} still to be diagnosed. Every answer has the hash that its manifest gives it; {}.\n\n",
+      s.sets, s.diagnosed, s.failed, s.sets - s.diagnosed, manifests_text(page));
   if (s.false_alarms.of > 0)
     add(out, "**False alarms: {} of {}; with 95 % confidence the rate is below {:.1f} %.**\n\n", s.false_alarms.hits, s.false_alarms.of,
         100 * upper_bound(s.false_alarms, kSure));
@@ -92,7 +98,7 @@ Json score_json(const Page& page) {
     gains.push_back({{"against", g.model}, {"surely", count_json(g.surely)}, {"median_improvement", g.median}});
   return {{"schema_version", 1},
           {"command", page.command},
-          {"manifest_hash", page.manifest},
+          {"manifest_hash", page.manifests.at(0).second},
           {"sets", s.sets},
           {"diagnosed", s.diagnosed},
           {"failed", s.failed},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -13,12 +14,13 @@ namespace millscope::challenge {
 struct Page {
   const std::vector<Marked>& sets;
   const Score& score;
-  std::string command;   ///< that made it
-  std::string manifest;  ///< hash of the manifest
+  std::string command;                                         ///< that made it
+  std::vector<std::pair<std::string, std::string>> manifests;  ///< folder of sets and hash of its manifest
 };
 
 /// Markdown; every sentence is made from the figures.
 std::string page_text(const Page& page);
+/// Of one folder of sets.
 nlohmann::ordered_json score_json(const Page& page);
 
 /// "3 of 4 (75 %; 90 %: 25 … 99 %)"; "none tried".

@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include "studies/challenge/score.hpp"
 
@@ -84,6 +85,30 @@ std::vector<Marked> read_sets(const fs::path& sets) {
     out.push_back({std::move(a), std::move(found)});
   }
   return out;
+}
+
+std::string name_of_folder(const fs::path& folder) {
+  const fs::path whole = fs::absolute(folder).lexically_normal();
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
+std::vector<Marked> read_all_sets(const std::vector<fs::path>& folders) {
+  if (folders.size() == 1) return read_sets(folders[0]);
+  std::vector<Marked> all;
+  std::set<std::string> names, manifests;
+  for (const fs::path& folder : folders) {
+    const std::string name = name_of_folder(folder);
+    if (!manifests.insert(manifest_hash(folder)).second)
+      throw config::UserError(fmt::format("{}: holds the same sets as a folder before it; leave one out", folder.string()));
+    if (!names.insert(name).second)
+      throw config::UserError(
+          fmt::format("{}: two folders are called '{}', and their sets could not be told apart; rename one", folder.string(), name));
+    for (Marked& m : read_sets(folder)) {
+      m.answer.set = name + "/" + m.answer.set;
+      all.push_back(std::move(m));
+    }
+  }
+  return all;
 }
 
 }  // namespace millscope::challenge

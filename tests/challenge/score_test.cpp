@@ -148,19 +148,19 @@ TEST_CASE("every diagnosed set stands in the confusion matrix once") {
 TEST_CASE("the page says what was missed") {
   const std::vector<Marked> sets = ten_sets();
   const Score s = score(sets);
-  const std::string text = page_text({sets, s, "millscope challenge score sets", "cafe"});
+  const std::string text = page_text({sets, s, "millscope challenge score sets", {{"sets", "cafe"}}});
   for (const char* part :
        {"False alarms: 2 of 3", "`cafe`", "    millscope challenge score sets", "| s9 | rolling | 0.70 | failed: no camera |",
         "| s6 | bridge | 0.40 | no_mismatch |", "| s10 | none |  | not diagnosed yet |", "1 of 4 (25 %"}) {
     CAPTURE(part);
     CHECK(text.find(part) != std::string::npos);
   }
-  CHECK(score_json({sets, s, "", "cafe"}).at("top_1").at("hits") == 1);
+  CHECK(score_json({sets, s, "", {{"sets", "cafe"}}}).at("top_1").at("hits") == 1);
 }
 
 TEST_CASE("a score of nothing is said to be one") {
   const Score s = score({});
   CHECK(s.false_alarms.of == 0);
   CHECK(std::isnan(s.line.slope));
-  CHECK(page_text({{}, s, "", ""}).find("none tried") != std::string::npos);
+  CHECK(page_text({{}, s, "", {{"sets", ""}}}).find("none tried") != std::string::npos);
 }

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "studies/challenge/score.hpp"
+#include "studies/challenge/page.hpp"
 #include "tests/scratch.hpp"
 
 using namespace millscope::challenge;
@@ -91,4 +91,22 @@ TEST_CASE("diagnoses are read as they were written, failures with their reason")
 TEST_CASE("a folder without a manifest is none of sets") {
   const testing::Scratch folder;
   CHECK(testing::refusal([&] { read_sets(folder.path); }).find("has no manifest.json") != std::string::npos);
+}
+
+TEST_CASE("folders of sets are counted together, each set by the name of its folder") {
+  const testing::Scratch folder;
+  for (const char* name : {"first", "second"}) {
+    seal(folder / name, two_answers(), folder / "study.yaml");
+    write(folder / name / "set_002" / "diagnosis" / "diagnosis.json", kDiagnosis);
+  }
+  const std::vector<Marked> all = read_all_sets({folder / "first", folder / "second/"});
+  REQUIRE(all.size() == 4);
+  CHECK(all[3].answer.set == "second/set_002");
+  CHECK(score(all).named_alone.hits == 2);
+  CHECK(read_all_sets({folder / "first"})[1].answer.set == "set_002");
+  const std::string text = page_text({all, score(all), "", {{"first", "cafe"}, {"second", "beef"}}});
+  CHECK(text.find("the manifests' own are `cafe` (first), `beef` (second).") != std::string::npos);
+  CHECK_THROWS_WITH(read_all_sets({folder / "first", folder / "first"}), Catch::Matchers::Contains("the same sets as a folder before it"));
+  seal(folder / "other/first", two_answers(), folder / "study.yaml");
+  CHECK_THROWS_WITH(read_all_sets({folder / "first", folder / "other/first"}), Catch::Matchers::Contains("two folders are called 'first'"));
 }
