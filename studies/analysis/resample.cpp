@@ -69,8 +69,11 @@ double degrees_of_freedom(const Influence& influence, double n) {
   return std::clamp(std::min(freedom, 3 * (1 / concentration - 1)), 1.0, n - 1);
 }
 
-/// Student's t at 95 %, one-sided.
-double student(double freedom) { return boost::math::quantile(boost::math::students_t_distribution<double>(freedom), 0.95); }
+/// Student's t at 95 %, one-sided. Computed in double: it is asked for every value of every map.
+double student(double freedom) {
+  using Double = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+  return boost::math::quantile(boost::math::students_t_distribution<double, Double>(freedom), 0.95);
+}
 
 }  // namespace
 

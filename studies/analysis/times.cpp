@@ -1,6 +1,7 @@
 #include "studies/analysis/times.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -36,20 +37,59 @@ Moments moments_of(const EvenSeries& series) {
   return m;
 }
 
-/// Autocovariance at one lag over all pairs that exist; NaN: none.
-double covariance_at(const EvenSeries& series, double mean, std::size_t lag) {
-  double sum = 0;
-  std::size_t pairs = 0;
-  for (const auto& row : series.rows) {
-    for (std::size_t i = 0; i + lag < row.size(); ++i) {
-      const double product = (row[i] - mean) * (row[i + lag] - mean);
-      if (std::isnan(product)) continue;
-      sum += product;
-      ++pairs;
+/// Autocovariances over all pairs that exist, lag after lag; several lags at once, since each is a chain of sums.
+class Autocovariance {
+ public:
+  Autocovariance(const EvenSeries& series, double mean) {
+    for (const auto& row : series.rows) {
+      Row centred{std::vector<double>(row.size()), std::vector<double>(row.size())};
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        const bool there = !std::isnan(row[i]);
+        centred.value[i] = there ? row[i] - mean : 0;
+        centred.there[i] = there ? 1 : 0;
+      }
+      rows_.push_back(std::move(centred));
     }
   }
-  return pairs == 0 ? kNaN : sum / static_cast<double>(pairs);
-}
+
+  /// NaN: no pair exists.
+  double at(std::size_t lag) {
+    if (lag < first_ || lag >= first_ + kLags) fill(lag);
+    return values_[lag - first_];
+  }
+
+ private:
+  static constexpr std::size_t kLags = 8;
+  struct Row {
+    std::vector<double> value, there;
+  };
+
+  void fill(std::size_t lag) {
+    first_ = lag;
+    std::array<double, kLags> sums{}, pairs{};
+    for (const Row& row : rows_) {
+      const std::size_t size = row.value.size(), whole = size > lag + kLags ? size - lag - kLags : 0;
+      const double *value = row.value.data(), *there = row.there.data();
+      for (std::size_t i = 0; i < whole; ++i) {
+        for (std::size_t k = 0; k < kLags; ++k) {
+          sums[k] += value[i] * value[i + lag + k];
+          pairs[k] += there[i] * there[i + lag + k];
+        }
+      }
+      for (std::size_t i = whole; i < size; ++i) {
+        for (std::size_t k = 0; k < kLags && i + lag + k < size; ++k) {
+          sums[k] += value[i] * value[i + lag + k];
+          pairs[k] += there[i] * there[i + lag + k];
+        }
+      }
+    }
+    for (std::size_t k = 0; k < kLags; ++k) values_[k] = pairs[k] > 0 ? sums[k] / pairs[k] : kNaN;
+  }
+
+  std::vector<Row> rows_;
+  std::size_t first_ = std::numeric_limits<std::size_t>::max() - kLags;
+  std::array<double, kLags> values_{};
+};
 
 /// The usual distance of two frames, s.
 double usual_step(const std::vector<BasicSeries>& stretches) {
@@ -65,11 +105,11 @@ double usual_step(const std::vector<BasicSeries>& stretches) {
 std::vector<double> even_row(const BasicSeries& s, std::size_t basic, double step) {
   std::vector<double> row;
   if (s.size() == 0) return row;
-  const auto last = static_cast<std::size_t>((s.time.back() - s.time.front()) / step + 0.5);
+  const auto last = static_cast<std::size_t>(std::lround((s.time.back() - s.time.front()) / step));
   row.assign(last + 1, 0.0);
   std::vector<double> count(last + 1, 0.0);
   for (std::size_t i = 0; i < s.size(); ++i) {
-    const auto at = std::min(last, static_cast<std::size_t>((s.time[i] - s.time.front()) / step + 0.5));
+    const auto at = std::min(last, static_cast<std::size_t>(std::lround((s.time[i] - s.time.front()) / step)));
     row[at] += s.value[basic][i];
     count[at] += 1;
   }
@@ -82,8 +122,9 @@ double first_zero(const EvenSeries& series, const Moments& m) {
   std::size_t longest = 0;
   for (const auto& row : series.rows) longest = std::max(longest, row.size());
   if (!(m.variance > 0)) return 0;
+  Autocovariance covariance(series, m.mean);
   for (std::size_t lag = 1; lag < longest; ++lag) {
-    if (covariance_at(series, m.mean, lag) <= 0) return series.step * static_cast<double>(lag);
+    if (covariance.at(lag) <= 0) return series.step * static_cast<double>(lag);
   }
   return 0;
 }
@@ -139,10 +180,11 @@ double autocorrelation_time(const EvenSeries& series) {
   if (!(m.variance > 0)) return 0.5 * series.step;
   std::size_t longest = 0;
   for (const auto& row : series.rows) longest = std::max(longest, row.size());
+  Autocovariance autocovariance(series, m.mean);
   double tau = 0.5;
   std::size_t window = 1;
   for (; window < longest; ++window) {
-    const double covariance = covariance_at(series, m.mean, window);
+    const double covariance = autocovariance.at(window);
     if (!std::isnan(covariance)) tau += covariance / m.variance;
     if (static_cast<double>(window) >= 5 * tau) break;
   }
