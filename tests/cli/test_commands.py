@@ -68,6 +68,8 @@ class Mistyped(CliTest):
 
     def test_actions(self):
         self.assert_one_line(self.millscope("geometry", "exprot", "case.yaml"), "'export' and 'report'")
+        self.assert_one_line(self.millscope("challenge", "score", "-o", "page.md"), "SETS is missing", "usage: millscope challenge score")
+        self.assertFalse((self.folder / "page.md").exists())
         self.assert_one_line(self.millscope("plugin", "old", "contact_law", "x"), "the only action is 'new'")
 
     def test_threads(self):
