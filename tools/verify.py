@@ -23,7 +23,7 @@ from verify_calibrate import calibrate
 from verify_camera import bbosa, camera, roundtrip
 from verify_compare import differences
 from verify_diagnose import doubts, ends, wet
-from verify_real import drum, uct
+from verify_real import drum, uct, worked
 from verify_rows import row, show
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -273,7 +273,7 @@ def single_beads(bench, run):
     return {"single": single, "all": every, "spread": spread, "spread_error": spread / math.sqrt(2 * len(single))}
 
 
-ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, drum, uct)}
+ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, worked, drum, uct)}
 QUICK = ("crosscheck", "hashes", "memory")
 
 

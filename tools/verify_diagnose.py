@@ -55,14 +55,14 @@ def text_of(p):
     return "%.3f" % p["value"] if p["low90"] is None else "%.3f (%.3f … %.3f)" % (p["value"], p["low90"], p["high90"])
 
 
-def friction_rows(found):
-    """Friction retuned and unmasked against the truth, and fitted to each speed alone."""
+def friction_rows(found, truths=FRICTION, right="unmasked"):
+    """Friction retuned and unmasked against the truth, which the model that is right has to hold, and fitted to each speed alone."""
     rows = []
-    for name, truth in FRICTION.items():
+    for name, truth in truths.items():
         for kind, values in found["contact_parameters"].items():
             p = (values or {}).get(name)
             if p:
-                rows.append(row("%s, %s" % (name, kind), text_of(p), "%.2f" % truth, p["low90"] <= truth <= p["high90"] if kind == "unmasked" else None))
+                rows.append(row("%s, %s" % (name, kind), text_of(p), "%.2f" % truth, p["low90"] <= truth <= p["high90"] if kind == right else None))
         for kind in ("before", "after"):
             each = [c[kind][name]["value"] for c in found["per_speed_friction"] if c.get(kind)]
             if each:

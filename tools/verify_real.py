@@ -1,4 +1,4 @@
-"""The long checks of `diagnose` on recordings of real mills, for verify.py; what is not there is not checked."""
+"""The long checks of `diagnose` on recordings of real mills and of an independent code's, for verify.py; what is not there is not checked."""
 
 import json
 import math
@@ -6,7 +6,7 @@ import os
 import re
 from pathlib import Path
 
-from verify_diagnose import text_of, verdict_rows
+from verify_diagnose import friction_rows, held_rows, text_of, verdict_rows
 from verify_rows import row
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -16,10 +16,9 @@ PROFILE, TRACK = RECORDINGS / "alizadeh2013_depth_velocity.csv", RECORDINGS / "u
 AXIS, RPM, DIAMETER = (-3.14, 13.18), 35.9, 470.6
 
 
-def diagnosed(bench, folder, name, study, condition, recording, *settings):
+def diagnosed(bench, folder, name, study, settings):
     out = folder / name
-    bench.call("diagnose", study, "-o", os.path.relpath(out, ROOT), "--cache", os.path.relpath(folder / "cache", ROOT), "-q",
-               "--set", "conditions.%s.recording=%s" % (condition, os.path.relpath(recording, ROOT)), *(w for s in settings for w in ("--set", s)))
+    bench.call("diagnose", study, "-o", os.path.relpath(out, ROOT), "--cache", os.path.relpath(folder / "cache", ROOT), "-q", *(w for s in settings for w in ("--set", s)))
     return json.loads((out / "diagnosis.json").read_text())
 
 
@@ -40,7 +39,7 @@ def drum(bench):
     folder.mkdir(exist_ok=True)
     text = (ROOT / "configs/drum/profile.yaml").read_text().replace("points.csv", os.path.relpath(PROFILE, folder))
     (folder / "profile.yaml").write_text(text)
-    found = diagnosed(bench, folder, "diagnosis", "configs/drum/study.yaml", "drum", folder / "profile.yaml")
+    found = diagnosed(bench, folder, "diagnosis", "configs/drum/study.yaml", ["conditions.drum.recording=" + os.path.relpath(folder / "profile.yaml", ROOT)])
     best = min(found["hypotheses"], key=lambda h: h["p_value"])
     return [row("the candidate that helps most", "%s (p %.2g)" % (best["name"], best["p_value"]), "turning_ends", best["name"] == "turning_ends")] \
         + verdict_rows(found, "turning_ends")[1:] + candidate_rows(found)
@@ -114,7 +113,7 @@ def uct(bench):
         recording = folder / ("track%d.yaml" % k)
         recording.write_text("files: [track%d.a]\nformat: ctrack\ncondition: {speed: %g rpm, direction: clockwise, mill_diameter: %g mm}\n"
                              "frame: {axis: [%g mm, %g mm]}\n" % (k, RPM, DIAMETER, *AXIS))
-        found = diagnosed(bench, folder, "diagnosis%d" % k, "configs/mill470/study.yaml", "mill", recording)
+        found = diagnosed(bench, folder, "diagnosis%d" % k, "configs/mill470/study.yaml", ["conditions.mill.recording=" + os.path.relpath(recording, ROOT)])
         seen = [h["name"] for h in found["hypotheses"] if h["p_value"] <= 0.05]
         # Of the file as it is one bead in a mill of guesses may at most ask for another frame.
         good = seen == [wanted] if wanted else all(s in FRAME for s in seen)
@@ -128,6 +127,48 @@ def uct(bench):
         rows += [dict(r, what="%s: %s" % (name, r["what"])) for r in candidate_rows(found)]
     rows.append(stretched(bench, folder))
     return rows
+
+
+# The worked example's mills (an independent DEM code, ../shared/recordings/README.md): power at each speed of them, W; what is hidden; frictions.
+WORKED = {
+    "A": ("mill10_A_%d_*.a", {75: 7.335, 60: 5.801, 50: 4.664}, "", {"bead_friction": 0.34, "wall_friction": 0.3}),
+    "B": ("mill10_B_%d_*.a", {75: 7.323, 60: 5.986, 50: 4.860}, "rolling_resistance", {"bead_friction": 0.2, "wall_friction": 0.3}),
+    "B, six times as long": ("mill10_long/mill10_B_%d_*.a.gz", {75: 7.336, 60: 5.982, 50: 4.860}, "rolling_resistance", {"bead_friction": 0.2, "wall_friction": 0.3}),
+}
+ROLLING = 0.1  # rolling friction of B, elastic-plastic
+
+
+def worked(bench):
+    """An independent code's mill, as it is (A) and with rolling friction that the power at 75 % conceals (B)"""
+    if not list(RECORDINGS.glob("mill10_A_75_*.a")):
+        return [row("the recordings", "absent: not checked")]
+    rows = []
+    for name, (files, powers, hidden, friction) in WORKED.items():
+        found = diagnosed_mill10(bench, name, files, powers)
+        right = (hidden in found["named"] and len(found["named"]) <= 3) if hidden else found["verdict"] == "no_mismatch"
+        rows.append(row("%s: verdict" % name, "%s: %s" % (found["verdict"], ", ".join(found["named"]) or "nothing"), "%s in a class of at most three" % hidden if hidden else "no_mismatch", right))
+        more = [row("in its words", found["sentence"])] + candidate_rows(found) + friction_rows(found, friction, "unmasked" if hidden else "retuned")
+        if hidden:
+            p = next(h for h in found["hypotheses"] if h["name"] == hidden)["parameters"]["rolling_friction"]
+            more += held_rows(found) + [row("rolling friction", text_of(p), "%g" % ROLLING, p["low90"] is not None and p["low90"] <= ROLLING <= p["high90"])]
+        more += [row("where it differs most from the retuned base", m["sentence"]) for m in found["mismatch"][:2]]
+        rows += [dict(r, what="%s: %s" % (name, r["what"])) for r in more]
+    return rows
+
+
+def diagnosed_mill10(bench, name, files, powers):
+    """diagnosis.json of one of the mills; all share one bank."""
+    folder = bench.folder / "mill10"
+    key = re.sub(r"\W+", "_", name)
+    (folder / key).mkdir(parents=True, exist_ok=True)
+    settings = []
+    for speed, power in powers.items():
+        text = (ROOT / "configs/mill10/recording.yaml").read_text()
+        text = text.replace('"run*.a"', '"%s"' % os.path.relpath(RECORDINGS / (files % speed), folder / key))
+        text = text.replace("speed: 75 %critical", "speed: %d %%critical" % speed).replace("7.335 W", "%g W" % power)
+        (folder / key / ("r%d.yaml" % speed)).write_text(text)
+        settings.append("conditions.speed%d.recording=%s" % (speed, os.path.relpath(folder / key / ("r%d.yaml" % speed), ROOT)))
+    return diagnosed(bench, folder, key + "/diagnosis", "configs/mill10/diagnose.yaml", settings)
 
 
 def stretched(bench, folder):
