@@ -43,12 +43,17 @@ def recording(bench, folder, name, speed, *hidden, camera=(), frame=None, mill=S
     return recorded(bench, run, folder / name / ("r%d" % speed), power, *(["frame: {axis: %s}" % frame] if frame else []), camera=camera)
 
 
-def diagnosed(bench, folder, name, recordings, *settings, mill=STORY):
-    """diagnosis.json of the recordings; all mills of a study share one bank."""
-    out = folder / name / "diagnosis"
-    sets = ["conditions.speed%d.recording=%s" % (s, recordings[s]) for s in SPEEDS] + list(settings)
-    bench.call("diagnose", mill.study, "-o", os.path.relpath(out, ROOT), "--cache", os.path.relpath(folder / "cache", ROOT), "-q", *(w for s in sets for w in ("--set", s)))
+def diagnosis_of(bench, folder, name, study, recordings, *settings):
+    """diagnosis.json that a study makes of its recordings (condition: path from the root); all studies of a folder share one bank."""
+    out = folder / name
+    sets = ["conditions.%s.recording=%s" % r for r in recordings.items()] + list(settings)
+    bench.call("diagnose", study, "-o", os.path.relpath(out, ROOT), "--cache", os.path.relpath(folder / "cache", ROOT), "-q", *(w for s in sets for w in ("--set", s)))
     return json.loads((out / "diagnosis.json").read_text())
+
+
+def diagnosed(bench, folder, name, recordings, *settings, mill=STORY):
+    """diagnosis.json of a mill's recordings at every speed."""
+    return diagnosis_of(bench, folder, name + "/diagnosis", mill.study, {"speed%d" % s: recordings[s] for s in SPEEDS}, *settings)
 
 
 def text_of(p):

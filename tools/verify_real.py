@@ -6,7 +6,7 @@ import os
 import re
 from pathlib import Path
 
-from verify_diagnose import friction_rows, held_rows, text_of, verdict_rows
+from verify_diagnose import diagnosis_of, friction_rows, held_rows, text_of, verdict_rows
 from verify_rows import row
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -14,12 +14,6 @@ RECORDINGS = ROOT.parent / "shared" / "recordings"
 PROFILE, TRACK = RECORDINGS / "alizadeh2013_depth_velocity.csv", RECORDINGS / "uct_mill_part1.a"
 # What the track's own rides along the shell tell (millscope pept inspect): axis in mm, speed in rpm, diameter in mm with a bead of 10 mm.
 AXIS, RPM, DIAMETER = (-3.14, 13.18), 35.9, 470.6
-
-
-def diagnosed(bench, folder, name, study, settings):
-    out = folder / name
-    bench.call("diagnose", study, "-o", os.path.relpath(out, ROOT), "--cache", os.path.relpath(folder / "cache", ROOT), "-q", *(w for s in settings for w in ("--set", s)))
-    return json.loads((out / "diagnosis.json").read_text())
 
 
 def candidate_rows(found):
@@ -39,7 +33,7 @@ def drum(bench):
     folder.mkdir(exist_ok=True)
     text = (ROOT / "configs/drum/profile.yaml").read_text().replace("points.csv", os.path.relpath(PROFILE, folder))
     (folder / "profile.yaml").write_text(text)
-    found = diagnosed(bench, folder, "diagnosis", "configs/drum/study.yaml", ["conditions.drum.recording=" + os.path.relpath(folder / "profile.yaml", ROOT)])
+    found = diagnosis_of(bench, folder, "diagnosis", "configs/drum/study.yaml", {"drum": os.path.relpath(folder / "profile.yaml", ROOT)})
     best = min(found["hypotheses"], key=lambda h: h["p_value"])
     return [row("the candidate that helps most", "%s (p %.2g)" % (best["name"], best["p_value"]), "turning_ends", best["name"] == "turning_ends")] \
         + verdict_rows(found, "turning_ends")[1:] + candidate_rows(found)
@@ -113,7 +107,7 @@ def uct(bench):
         recording = folder / ("track%d.yaml" % k)
         recording.write_text("files: [track%d.a]\nformat: ctrack\ncondition: {speed: %g rpm, direction: clockwise, mill_diameter: %g mm}\n"
                              "frame: {axis: [%g mm, %g mm]}\n" % (k, RPM, DIAMETER, *AXIS))
-        found = diagnosed(bench, folder, "diagnosis%d" % k, "configs/mill470/study.yaml", ["conditions.mill.recording=" + os.path.relpath(recording, ROOT)])
+        found = diagnosis_of(bench, folder, "diagnosis%d" % k, "configs/mill470/study.yaml", {"mill": os.path.relpath(recording, ROOT)})
         seen = [h["name"] for h in found["hypotheses"] if h["p_value"] <= 0.05]
         # Of the file as it is one bead in a mill of guesses may at most ask for another frame.
         good = seen == [wanted] if wanted else all(s in FRAME for s in seen)
@@ -130,10 +124,11 @@ def uct(bench):
 
 
 # The worked example's mills (an independent DEM code, ../shared/recordings/README.md): power at each speed of them, W; what is hidden; frictions.
+FRICTION_B = {"bead_friction": 0.2, "wall_friction": 0.3}
 WORKED = {
     "A": ("mill10_A_%d_*.a", {75: 7.335, 60: 5.801, 50: 4.664}, "", {"bead_friction": 0.34, "wall_friction": 0.3}),
-    "B": ("mill10_B_%d_*.a", {75: 7.323, 60: 5.986, 50: 4.860}, "rolling_resistance", {"bead_friction": 0.2, "wall_friction": 0.3}),
-    "B, six times as long": ("mill10_long/mill10_B_%d_*.a.gz", {75: 7.336, 60: 5.982, 50: 4.860}, "rolling_resistance", {"bead_friction": 0.2, "wall_friction": 0.3}),
+    "B": ("mill10_B_%d_*.a", {75: 7.323, 60: 5.986, 50: 4.860}, "rolling_resistance", FRICTION_B),
+    "B, six times as long": ("mill10_long/mill10_B_%d_*.a.gz", {75: 7.336, 60: 5.982, 50: 4.860}, "rolling_resistance", FRICTION_B),
 }
 ROLLING = 0.1  # rolling friction of B, elastic-plastic
 
@@ -161,14 +156,15 @@ def diagnosed_mill10(bench, name, files, powers):
     folder = bench.folder / "mill10"
     key = re.sub(r"\W+", "_", name)
     (folder / key).mkdir(parents=True, exist_ok=True)
-    settings = []
+    recordings = {}
     for speed, power in powers.items():
         text = (ROOT / "configs/mill10/recording.yaml").read_text()
         text = text.replace('"run*.a"', '"%s"' % os.path.relpath(RECORDINGS / (files % speed), folder / key))
         text = text.replace("speed: 75 %critical", "speed: %d %%critical" % speed).replace("7.335 W", "%g W" % power)
-        (folder / key / ("r%d.yaml" % speed)).write_text(text)
-        settings.append("conditions.speed%d.recording=%s" % (speed, os.path.relpath(folder / key / ("r%d.yaml" % speed), ROOT)))
-    return diagnosed(bench, folder, key + "/diagnosis", "configs/mill10/diagnose.yaml", settings)
+        file = folder / key / ("r%d.yaml" % speed)
+        file.write_text(text)
+        recordings["speed%d" % speed] = os.path.relpath(file, ROOT)
+    return diagnosis_of(bench, folder, key + "/diagnosis", "configs/mill10/diagnose.yaml", recordings)
 
 
 def stretched(bench, folder):
