@@ -1,33 +1,17 @@
 #!/usr/bin/env python3
 """Holds the repository to its architecture: check_structure.py ROOT [--build BUILD]; exit code 1 and one line per violation.
 
-docs/architecture.md says what may use what, and why.
+docs/architecture.md says what may use what, and why; tools/include_graph.py reads its table and holds the includes to it.
 """
 
 import argparse
 import re
-import subprocess
 import sys
 from pathlib import Path
 
-KERNEL_LIBRARIES = ("config", "host", "dem", "output", "run")
-SYSTEM_HEADER = re.compile(r"(sys/|experimental/)?[a-z0-9_]+(\.h)?")  # <vector>, <unistd.h>, <sys/stat.h>
-NOT_SYSTEM = {"hdf5.h"}
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
+import include_graph  # noqa: E402
 
-# Folder → (beginnings of project headers it may include, libraries it may include beside the standard ones; None: any).
-MAY_INCLUDE = {
-    "sdk": (("millscope/",), ()),
-    "plugins": (("millscope/", "plugins/"), ()),
-    "analyzers": (("millscope/", "analyzers/"), ()),
-    "geometry": (("millscope/", "geometry/"), ("assimp/", "fcl/", "Eigen/")),
-    "kernel/config": (("millscope/", "kernel/config/"), ("fmt/", "nlohmann/", "yaml-cpp/")),
-    "kernel/host": (("millscope/", "kernel/config/", "kernel/host/"), ("fmt/", "nlohmann/", "boost/dll")),
-    "kernel/dem": (("millscope/", "kernel/config/", "kernel/dem/"), ("fmt/",)),
-    "kernel/output": (("millscope/", "kernel/config/", "kernel/output/"), ("fmt/", "nlohmann/", "hdf5.h", "hdf5/")),
-    "kernel/run": (("millscope/", "kernel/"), ("fmt/", "nlohmann/")),
-    "studies": (("millscope/", "kernel/", "studies/"), None),
-    "app": (("millscope/", "kernel/", "studies/", "app/"), None),
-}
 PLUGIN_FOLDERS = ("plugins", "geometry", "analyzers")
 
 LONGEST = 400
@@ -37,50 +21,19 @@ CODE = {".cpp", ".hpp", ".in", ".py", ".sh"}
 TEXT = CODE | {".md", ".yaml", ".yml", ".txt", ".cmake", ".json", ""}
 MACHINE_PATH = re.compile(r"(?<![\w.$}>)])/(home|root|work|Users|mnt)/\w")
 MARKER = re.compile(r"\b(" + "TO" + "DO|FIX" + r"ME|XX" + r"X)\b")
-INCLUDE = re.compile(r'^\s*#\s*include\s+(["<])([^">]+)[">]', re.M)
 TEST_CASE = re.compile(r'\bTEST_CASE\s*\(\s*((?:"(?:[^"\\\n]|\\.)*"\s*)+)')  # the name may be several literals
 LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 
 
-def files_of(root):
-    """What git tracks; in a tree without git, everything but builds."""
-    listed = subprocess.run(["git", "ls-files", "-z"], cwd=root, capture_output=True) if (root / ".git").exists() else None
-    if listed is not None and listed.returncode == 0:
-        paths = [root / p for p in listed.stdout.decode().split("\0") if p]
-    else:
-        paths = [p for p in root.rglob("*") if p.relative_to(root).parts[0] not in ("build", ".git")]
-    return sorted(p for p in paths if p.is_file() and p.suffix in TEXT)
+def kernel_libraries(root):
+    """A pattern for the libraries of the kernel's rooms."""
+    rooms = [folder.split("/")[1] for folder in include_graph.Table(root).rooms if folder.startswith("kernel/")]
+    return r"millscope_(?:%s)\b" % "|".join(rooms)
 
 
-def folder_of(relative):
-    return next((f for f in MAY_INCLUDE if relative.startswith(f + "/")), None)
-
-
-def is_standard(header):
-    return SYSTEM_HEADER.fullmatch(header) is not None and header not in NOT_SYSTEM
-
-
-def check_includes(root, relative, text):
-    folder, here = folder_of(relative), (root / relative).parent
-    if folder is None or not relative.endswith((".cpp", ".hpp", ".in")):
-        return
-    project, libraries = MAY_INCLUDE[folder]
-    for found in INCLUDE.finditer(text):
-        mark, header = found.groups()
-        if mark == "<":
-            allowed = is_standard(header) or libraries is None or any(header.startswith(library) for library in libraries)
-        else:
-            beside = (here / header).resolve()  # named relative to the including file
-            own = beside.exists() and beside.is_relative_to(root) and folder_of(beside.relative_to(root).as_posix()) == folder
-            allowed = own or header.startswith(project)
-        if not allowed:
-            line = text.count("\n", 0, found.start(1)) + 1
-            yield "%s:%d: %s may not include %s; it may use %s" % (relative, line, folder, header, ", ".join(project + (libraries or ())))
-
-
-def check_links(relative, text):
+def check_links(relative, text, libraries):
     if relative.split("/")[0] in PLUGIN_FOLDERS and relative.endswith("CMakeLists.txt"):
-        for library in re.findall(r"millscope_(?:%s)\b" % "|".join(KERNEL_LIBRARIES), text):
+        for library in re.findall(libraries, text):
             yield "%s: names %s; no plugin links the kernel" % (relative, library)
 
 
@@ -118,27 +71,32 @@ def check_names(relative, text):
 
 def check_tree(root):
     root = root.resolve()
-    for path in files_of(root):
+    yield from include_graph.faults_of(root)
+    libraries = kernel_libraries(root)
+    for path in include_graph.files_of(root):
+        if path.suffix not in TEXT:
+            continue
         relative = path.relative_to(root).as_posix()
         try:
             text = path.read_text(encoding="utf-8")
         except (UnicodeDecodeError, FileNotFoundError):
             continue
-        yield from check_includes(root, relative, text)
-        yield from check_links(relative, text)
+        yield from check_links(relative, text, libraries)
         yield from check_names(relative, text)
         yield from check_text(relative, path, text)
 
 
-def check_build(build):
+def check_build(root, build):
     """The link lines of the plugins as they are built."""
     ninja = build / "build.ninja"
-    if not ninja.exists():
-        return
-    for statement in re.findall(r"^build (lib/millscope/plugins/\S+\.so): (.*)$", ninja.read_text(), re.M):
-        found = re.search(r"libmillscope_(?:%s)\.a" % "|".join(KERNEL_LIBRARIES), statement[1])
+    statements = re.findall(r"^build (lib/millscope/plugins/\S+\.so): (.*)$", ninja.read_text(), re.M) if ninja.exists() else []
+    if not statements:
+        yield "%s: no statement that links a plugin; --build takes a build folder that Ninja was configured for" % ninja
+    libraries = kernel_libraries(root)
+    for plugin, statement in statements:
+        found = re.search(r"lib%s\.a" % libraries, statement)
         if found:
-            yield "%s links %s; no plugin links the kernel" % (statement[0], found.group(0))
+            yield "%s links %s; no plugin links the kernel" % (plugin, found.group(0))
 
 
 def main():
@@ -146,7 +104,7 @@ def main():
     parser.add_argument("root", type=Path)
     parser.add_argument("--build", type=Path)
     options = parser.parse_args()
-    violations = list(check_tree(options.root.resolve())) + (list(check_build(options.build)) if options.build else [])
+    violations = list(check_tree(options.root.resolve())) + (list(check_build(options.root, options.build)) if options.build else [])
     for violation in violations:
         print(violation)
     return 1 if violations else 0

@@ -8,19 +8,60 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(folder) for folder in Path(__file__).resolve().parents[:2]]
 import check_structure  # noqa: E402
+import include_graph  # noqa: E402
 from small_tree import SmallTreeTest  # noqa: E402
 
+PAGE = "docs/architecture.md"
+TABLE = """# Architecture
+
+## Rooms and arrows
+
+| room | holds | may use | libraries |
+|---|---|---|---|
+| `sdk/` | the boundary | | |
+| `plugins/` | laws | `sdk` | |
+| `geometry/` | walls | | `fcl` |
+| `kernel/config` | cases | | |
+| `kernel/dem` | the step | `sdk`, `config` | |
+| `kernel/run` | runs | `dem` | |
+| `studies/compare` | what differs | `run` | |
+| `studies/diagnose/naming` | a method | | `Eigen` |
+| `studies/diagnose` | what is missing | `naming`, `studies/compare` | |
+| `app/` | the command | `compare`, `diagnose` | `boost` |
+
+Not of the table: `kernel/run`.
+"""
+
 SOUND = {
+    PAGE: TABLE,
     "sdk/include/millscope/pack.hpp": "#include <cmath>\n#include \"millscope/abi.hpp\"\n",
     "plugins/laws/mine.cpp": "#include <array>\n#include \"options.hpp\"\n#include \"millscope/pack.hpp\"\n",
     "plugins/laws/options.hpp": "",
     "plugins/CMakeLists.txt": "millscope_add_plugin(mine SOURCES laws/mine.cpp)\n",
     "geometry/mesh.cpp": "#include <fcl/fcl.h>\n#include <unistd.h>\n#include \"geometry/soup.hpp\"\n",
     "kernel/dem/step.cpp": "#include <vector>\n#include \"kernel/config/error.hpp\"\n#include \"millscope/geometry.hpp\"\n",
-    "studies/compare.cpp": "#include \"kernel/run/simulation.hpp\"\n",
+    "kernel/config/error.hpp": "",
+    "kernel/run/simulation.hpp": "#include \"kernel/dem/step.hpp\"\n",
+    "kernel/run/CMakeLists.txt": "",
+    "kernel/CMakeLists.txt": "",
+    "studies/compare/compare.cpp": "#include \"../../kernel/run/simulation.hpp\"\n",
+    "studies/compare/study/study.cpp": "#include \"studies/compare/compare.hpp\"\n",
+    "studies/diagnose/diagnosis.cpp": "#include \"naming/naming.hpp\"\n#include \"studies/compare/compare.hpp\"\n",
+    "studies/diagnose/naming/naming.hpp": "#include <Eigen/Dense>\n",
     "tests/mine_test.cpp": 'TEST_CASE("one, a \\"two\\" (three: [4, 5]),") { f("a; b ["); }\nTEST_CASE("long: "\n          "two lines", "[.slow]") {}\n',
-    "app/main.cpp": "#include <boost/program_options.hpp>\n#include \"studies/compare.hpp\"\n",
+    "app/main.cpp": "#include <boost/program_options.hpp>\n#include \"studies/compare/compare.hpp\"\n"
+                    "#include \"studies/diagnose/outputs.hpp\"\n",
 }
+
+# (row as it is, row as it is not, part of the message)
+WRONG_ROWS = [
+    ("| `sdk`, `config` |", "| `config` |", "kernel/dem may not include millscope/geometry.hpp; it may use kernel/config"),
+    ("| `dem` |", "| `dem`, `config` |", "the row of kernel/run allows kernel/config, which nothing there includes"),
+    ("| | `fcl` |", "| | `fcl`, `assimp` |", "the row of geometry allows assimp, which nothing there includes"),
+    ("| `dem` |", "| `dem`, `report` |", "kernel/run may use report, which is no room of the table"),
+    ("| `app/` |", "| `studies/report` | pages | | |\n| `app/` |", "the row of studies/report matches no source"),
+    ("| `run` | |", "| `run` |", "a row is | `folder/` | holds | may use | libraries |"),
+]
 
 # (file, text, part of the message)
 WRONG = [
@@ -31,12 +72,22 @@ WRONG = [
     ("plugins/laws/c.cpp", "#include \"../../kernel/dem/lines.hpp\"\n", "plugins may not include"),
     ("plugins/laws/d.cpp", "#include <Eigen/Dense>\n", "plugins may not include"),
     ("geometry/a.cpp", "#include \"kernel/dem/lines.hpp\"\n", "geometry may not include"),
-    ("analyzers/a.cpp", "#include \"studies/compare.hpp\"\n", "analyzers may not include"),
     ("kernel/dem/a.cpp", "#include \"geometry/mesh/mesh.hpp\"\n", "kernel/dem may not include"),
     ("kernel/run/a.cpp", "#include \"plugins/laws/options.hpp\"\n", "kernel/run may not include"),
     ("kernel/config/a.cpp", "#include \"kernel/dem/system.hpp\"\n", "kernel/config may not include"),
-    ("studies/a.cpp", "#include \"app/commands.hpp\"\n", "studies may not include"),
-    ("plugins/deep/CMakeLists.txt", "target_link_libraries(mine_plugin PRIVATE millscope_dem)\n", "no plugin links the kernel"),
+    ("kernel/run/b.cpp", "#include \"nowhere.hpp\"\n", "kernel/run may not include nowhere.hpp; it may use kernel/dem"),
+    ("studies/compare/a.cpp", "#include \"app/commands.hpp\"\n", "studies/compare may not include"),
+    ("studies/compare/b.cpp", "#include \"studies/diagnose/outputs.hpp\"\n", "studies/compare may not include"),
+    ("studies/compare/c.cpp", "#include <zlib.h>\n", "studies/compare may not include zlib.h"),
+    ("studies/diagnose/naming/a.cpp", "#include \"studies/diagnose/diagnosis.hpp\"\n", "studies/diagnose/naming may not include"),
+    ("studies/diagnose/a.cpp", "#include <Eigen/Dense>\n", "studies/diagnose may not include"),
+    ("analyzers/a.cpp", "", "is a room (analyzers/a.cpp) without a row"),
+    ("studies/a.cpp", "#include \"app/commands.hpp\"\n", "is a room (studies/a.cpp) without a row"),
+    ("studies/new/a.cpp", "", "is a room (studies/new/a.cpp) without a row"),
+    ("studies/diagnose/bank/a.cpp", "", "is a room (studies/diagnose/bank/a.cpp) without a row"),
+    ("kernel/base/CMakeLists.txt", "", "is a room (kernel/base/CMakeLists.txt) without a row"),
+    ("studies/compare/deep/CMakeLists.txt", "", "is a room (studies/compare/deep/CMakeLists.txt) without a row"),
+    ("geometry/CMakeLists.txt", "target_link_libraries(mine_plugin PRIVATE millscope_dem)\n", "no plugin links the kernel"),
     ("docs/a.md", "Look at /" + "home/someone/mill.yaml\n", "a path of one machine"),
     ("tests/a_test.cpp", 'TEST_CASE("one; two") {}\n', "a ; splits it"),
     ("tests/b_test.cpp", 'TEST_CASE("one "\n          "more; two") {}\n', "'one more; two' would never run"),
@@ -65,12 +116,45 @@ class StructureCheck(SmallTreeTest):
                 self.assertIn(message, found[0])
                 self.assertIn(name, found[0])
 
+    def test_each_wrong_row_is_found(self):
+        for row, wrong, message in WRONG_ROWS:
+            with self.subTest(wrong):
+                self.assertEqual(TABLE.count(row), 1)
+                self.write(PAGE, TABLE.replace(row, wrong))
+                found = list(check_structure.check_tree(self.root))
+                self.assertTrue(any(message in line for line in found), found)
+
+    def test_a_page_without_table_is_a_violation(self):
+        for page in ("", TABLE.replace("## Rooms", "## Halls")):
+            self.write(PAGE, page)
+            self.assertIn("no table behind '## Rooms and arrows'", next(check_structure.check_tree(self.root)))
+
+    def test_two_rooms_that_need_each_other_fit_no_order_of_rows(self):
+        self.write("kernel/dem/back.cpp", "#include \"kernel/run/simulation.hpp\"\n")
+        self.write(PAGE, TABLE.replace("| `sdk`, `config` |", "| `sdk`, `config`, `run` |"))
+        found = list(check_structure.check_tree(self.root))
+        self.assertEqual(len(found), 1, found)
+        self.assertIn("kernel/dem may use run, whose row does not stand above its own", found[0])
+
+    def test_a_cycle_is_found(self):
+        graph = {"app": ["run"], "run": ["dem", "output"], "dem": ["config"], "output": ["config", "run"], "config": []}
+        self.assertEqual(include_graph.find_cycle(graph), ["run", "output", "run"])
+        graph["output"] = ["config"]
+        self.assertEqual(include_graph.find_cycle(graph), [])
+
     def test_link_lines_of_a_build(self):
-        self.write("build.ninja", "build lib/millscope/plugins/libgood.so: LINK a.o | lib/libmillscope_shapes.a\n"
-                                  "build lib/millscope/plugins/libbad.so: LINK a.o | lib/libmillscope_dem.a\n")
-        found = list(check_structure.check_build(self.root))
+        good = "build lib/millscope/plugins/libgood.so: LINK a.o | lib/libmillscope_shapes.a\n"
+        self.write("build.ninja", good + "build lib/millscope/plugins/libbad.so: LINK a.o | lib/libmillscope_dem.a\n")
+        found = list(check_structure.check_build(self.root, self.root))
         self.assertEqual(len(found), 1, found)
         self.assertIn("libbad.so", found[0])
+        self.write("build.ninja", good)
+        self.assertEqual(list(check_structure.check_build(self.root, self.root)), [])
+
+    def test_a_build_without_plugins_is_a_violation(self):
+        self.assertIn("no statement that links a plugin", next(check_structure.check_build(self.root, self.root)))
+        self.write("build.ninja", "build lib/libmillscope_dem.a: LINK a.o\n")
+        self.assertIn("no statement that links a plugin", next(check_structure.check_build(self.root, self.root)))
 
 
 if __name__ == "__main__":
