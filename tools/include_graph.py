@@ -22,8 +22,9 @@ TICKED = re.compile(r"`([^`]+)`")
 class Room:
     """A row of the table."""
 
-    def __init__(self, folder, line, uses, libraries):
-        self.folder, self.line, self.uses, self.libraries = folder, line, uses, libraries
+    def __init__(self, line, cells):
+        self.line, self.folder, self.holds = line, TICKED.search(cells[0]).group(1).rstrip("/"), cells[1].strip()
+        self.uses, self.libraries = (TICKED.findall(cell) for cell in cells[2:4])
 
 
 def files_of(root):
@@ -59,11 +60,11 @@ class Table:
         if not rows:
             self.faults.append("%s: no table behind '%s'; each room needs its row there" % (PAGE, HEADING))
         for number, cells in rows:
-            folder = TICKED.findall(cells[0])
-            if len(cells) != 4 or len(folder) != 1:
+            if len(cells) != 4 or not TICKED.fullmatch(cells[0]):
                 self.faults.append("%s:%d: a row is | `folder/` | holds | may use | libraries |" % (PAGE, number))
                 continue
-            self.rooms[folder[0].rstrip("/")] = Room(folder[0].rstrip("/"), number, TICKED.findall(cells[2]), TICKED.findall(cells[3]))
+            room = Room(number, cells)
+            self.rooms[room.folder] = room
         for room in self.rooms.values():
             room.uses = [used for used in (self.named(room, name) for name in room.uses) if used]
 
@@ -77,6 +78,11 @@ class Table:
         if self.rooms[found[0]].line >= room.line:
             self.faults.append("%s may use %s, whose row does not stand above its own" % (where, name))
         return found[0]
+
+    def short(self, folder):
+        """The last word of a folder, where no other room has it."""
+        word = folder.split("/")[-1]
+        return word if sum(other.split("/")[-1] == word for other in self.rooms) == 1 else folder
 
     def room_of(self, path):
         """The room that a path lies in: of two that hold it, the inner one."""
@@ -149,12 +155,14 @@ def folders_without_row(root, table):
 
 
 def find_cycle(graph):
-    """The rooms of one cycle, the first of them again at the end; [] where there is none. `graph`: room → rooms it uses."""
+    """The rooms of one cycle, from the first of the alphabet back to it; [] where there is none. `graph`: room → rooms it uses."""
     done, trail = set(), []
 
     def visit(room):
         if room in trail:
-            return trail[trail.index(room):] + [room]
+            cycle = trail[trail.index(room):]
+            first = cycle.index(min(cycle))
+            return cycle[first:] + cycle[:first + 1]
         if room in done:
             return []
         trail.append(room)
@@ -177,6 +185,17 @@ def graph_of(root, table):
             if arrow.origin and arrow.to:
                 graph[arrow.origin][arrow.to].append(arrow)
     return graph
+
+
+def libraries_of(root, table):
+    """What the sources say of libraries: room → names, those of its row as they stand there."""
+    found = {room: set() for room in table.rooms}
+    for path, text in sources_of(root):
+        for arrow in arrows_of(root, table, path, text):
+            if arrow.origin and arrow.library:
+                listed = next((name for name in table.rooms[arrow.origin].libraries if arrow.header.startswith(name)), None)
+                found[arrow.origin].add(listed or re.match(r"[\w-]+", arrow.header).group(0))
+    return {room: sorted(names, key=str.lower) for room, names in found.items()}
 
 
 def faults_of(root):

@@ -138,7 +138,7 @@ class StructureCheck(SmallTreeTest):
 
     def test_a_cycle_is_found(self):
         graph = {"app": ["run"], "run": ["dem", "output"], "dem": ["config"], "output": ["config", "run"], "config": []}
-        self.assertEqual(include_graph.find_cycle(graph), ["run", "output", "run"])
+        self.assertEqual(include_graph.find_cycle(graph), ["output", "run", "output"])
         graph["output"] = ["config"]
         self.assertEqual(include_graph.find_cycle(graph), [])
 
