@@ -11,11 +11,24 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 import include_graph  # noqa: E402
+from function_lengths import functions_of  # noqa: E402
 
 PLUGIN_FOLDERS = ("plugins", "geometry", "analyzers")
 
 LONGEST = 400
 LONG_FILES = {  # path → why it may be longer
+}
+LONGEST_FUNCTION = 60
+LONG_FUNCTIONS = {  # (path, name): to be cut; a name whose function has become short is a violation, so that the list empties
+    ("kernel/dem/checkpoint.cpp", "System::restore"),
+    ("kernel/dem/checkpoint.cpp", "System::save"),
+    ("kernel/dem/grid.cpp", "System::build_pairs"),
+    ("kernel/dem/grid.cpp", "System::sort_beads"),
+    ("kernel/dem/system.cpp", "System::prepare"),
+    ("kernel/dem/walls.cpp", "System::build_walls"),
+    ("kernel/run/assembly.cpp", "assemble"),
+    ("kernel/run/recorder.cpp", "Recorder::Recorder"),
+    ("tests/diagnose/bank_test.cpp", "TEST_CASE"),
 }
 CODE = {".cpp", ".hpp", ".in", ".py", ".sh"}
 TEXT = CODE | {".md", ".yaml", ".yml", ".txt", ".cmake", ".json", ""}
@@ -48,6 +61,21 @@ def check_text(relative, path, text):
         yield "%s: %d lines, more than %d: split it, or give the reason in LONG_FILES" % (relative, lines, LONGEST)
 
 
+def long_functions(relative, text):
+    """(path, name) → line and length of each function that does not fit a screen."""
+    if not relative.endswith((".cpp", ".hpp", ".in")):
+        return {}
+    return {(relative, name): (line, lines) for name, line, lines in functions_of(text) if lines > LONGEST_FUNCTION}
+
+
+def check_functions(found):
+    for (path, name), (line, lines) in sorted(found.items()):
+        if (path, name) not in LONG_FUNCTIONS:
+            yield "%s:%d: %s has %d lines, more than %d: cut it where its steps part" % (path, line, name, lines, LONGEST_FUNCTION)
+    for path, name in sorted(LONG_FUNCTIONS - set(found)):
+        yield "%s: %s has at most %d lines now: take it out of LONG_FUNCTIONS" % (path, name, LONGEST_FUNCTION)
+
+
 def check_names(relative, text):
     """Names that Catch2's discovery (CatchAddTests.cmake) hands to ctest broken. ctest then asks for a test that is not there, and Catch2
     reports that as passed. The names stand in one CMake list, where only ; [ ] and a backslash mean something; commas are safe."""
@@ -72,7 +100,7 @@ def check_names(relative, text):
 def check_tree(root):
     root = root.resolve()
     yield from include_graph.faults_of(root)
-    libraries = kernel_libraries(root)
+    libraries, long = kernel_libraries(root), {}
     for path in include_graph.files_of(root):
         if path.suffix not in TEXT:
             continue
@@ -84,6 +112,8 @@ def check_tree(root):
         yield from check_links(relative, text, libraries)
         yield from check_names(relative, text)
         yield from check_text(relative, path, text)
+        long.update(long_functions(relative, text))
+    yield from check_functions(long)
 
 
 def check_build(root, build):

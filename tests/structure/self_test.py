@@ -4,11 +4,13 @@
 import sys
 import unittest
 from pathlib import Path
+from unittest import mock
 
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(folder) for folder in Path(__file__).resolve().parents[:2]]
 import check_structure  # noqa: E402
 import include_graph  # noqa: E402
+from function_lengths import functions_of  # noqa: E402
 from small_tree import SmallTreeTest  # noqa: E402
 
 PAGE = "docs/architecture.md"
@@ -96,12 +98,64 @@ WRONG = [
     ("tests/e_test.cpp", 'TEST_CASE("a \\\\ b", "[.slow]") {}\n', "a backslash"),
     ("tests/f_test.cpp", 'TEST_CASE("~ about") {}\n', "~ means every other"),
     ("app/a.cpp", "// TO" + "DO later\n", "a marker"),
+    ("app/b.cpp", "int f(int x) {\n" + "  ++x;\n" * 59 + "}\n", "app/b.cpp:1: f has 61 lines"),
     ("app/long.cpp", "int x;\n" * 401, "401 lines"),
 ]
 
 
+# Each function of it and its number of lines.
+FUNCTIONS = [("f", 1), ("g", 2), ("Pool::Pool", 5), ("~Small", 1), ("operator()", 1), ("operator==", 1), ("h", 4), ("TEST_CASE", 3)]
+FUNCTIONS_TEXT = """
+#define OPEN(x) \\
+  { (
+namespace a::b {
+template <class T, class U = std::vector<T>>
+struct [[gnu::aligned(64)]] Pool final : public Base<T> {
+  int size = f(1), rows[2] = {1, g(2)};
+  int f() const { return size; }  // {
+  std::vector<int> g(const char* text = "({")
+  noexcept { return {'{', 1'000}; }
+};
+const std::map<int, F> kTable = {
+    {1, f(1)},
+};
+Pool::Pool(int n)
+    : size_{n},
+      each_(n, [](int x) { return x; }), other_(Point{1}.x) {
+  for (int i = 0; i < n; ++i) { f(i); }
+}
+struct Small { ~Small() { /* { */ } bool operator()(int x) { return x; } bool operator==(Small) const { return true; } };
+template <class T>
+auto h(T x) -> std::pair<int, int> requires(sizeof(T) > 1) {
+  auto raw = R"x({ ")x";
+  return {x, x};
+}
+int declared(int x);
+}  // namespace a::b
+TEST_CASE("one {", "[.slow]") {
+  CHECK(1);
+}
+"""
+
+
+class FunctionLengths(unittest.TestCase):
+    def test_functions_of_a_text(self):
+        self.assertEqual([(name, lines) for name, _, lines in functions_of(FUNCTIONS_TEXT)], FUNCTIONS)
+
+
 class StructureCheck(SmallTreeTest):
     sound = SOUND
+
+    def setUp(self):
+        super().setUp()
+        self.enterContext(mock.patch.object(check_structure, "LONG_FUNCTIONS", set()))
+
+    def test_an_exception_that_is_not_needed_is_a_violation(self):
+        self.write("app/b.cpp", "int f(int x) {\n" + "  ++x;\n" * 59 + "}\n")
+        with mock.patch.object(check_structure, "LONG_FUNCTIONS", {("app/b.cpp", "f")}):
+            self.assertEqual(list(check_structure.check_tree(self.root)), [])
+            self.write("app/b.cpp", "int f(int x) {}\n")
+            self.assertEqual(list(check_structure.check_tree(self.root)), ["app/b.cpp: f has at most 60 lines now: take it out of LONG_FUNCTIONS"])
 
     def test_sound_tree_passes(self):
         self.assertEqual(list(check_structure.check_tree(self.root)), [])
