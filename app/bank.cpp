@@ -9,7 +9,7 @@
 #include "app/commands.hpp"
 #include "app/study_options.hpp"
 #include "kernel/config/document.hpp"
-#include "studies/diagnose/bank_status.hpp"
+#include "studies/diagnose/bank/bank_status.hpp"
 
 namespace millscope::app {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "app/commands.hpp"
 #include "app/study_options.hpp"
-#include "studies/diagnose/outputs.hpp"
+#include "studies/diagnose/pages/outputs.hpp"
 
 namespace millscope::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "studies/challenge/plan.hpp"
-#include "studies/diagnose/bank.hpp"
+#include "studies/diagnose/bank/bank.hpp"
 #include "studies/emulate/random.hpp"
 
 namespace millscope::challenge {

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "kernel/host/registry.hpp"
-#include "studies/diagnose/question.hpp"
+#include "studies/diagnose/question/question.hpp"
 
 namespace millscope::challenge {
 

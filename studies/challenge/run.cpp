@@ -4,7 +4,7 @@
 
 #include "kernel/output/file.hpp"
 #include "studies/challenge/answer.hpp"
-#include "studies/diagnose/outputs.hpp"
+#include "studies/diagnose/pages/outputs.hpp"
 
 namespace millscope::challenge {
 namespace {

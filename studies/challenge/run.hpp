@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "studies/calibrate/session.hpp"
-#include "studies/diagnose/naming.hpp"
+#include "studies/diagnose/naming/naming.hpp"
 
 namespace millscope::challenge {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "studies/challenge/answer.hpp"
-#include "studies/diagnose/naming.hpp"
+#include "studies/diagnose/naming/naming.hpp"
 
 namespace millscope::challenge {
 

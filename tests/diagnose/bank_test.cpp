@@ -1,6 +1,6 @@
 // The bank: which simulations are planned, that it grows without losing one, what becomes of those that fail.
-#include "studies/diagnose/bank.hpp"
-#include "studies/diagnose/recorded_problem.hpp"
+#include "studies/diagnose/bank/bank.hpp"
+#include "studies/diagnose/verdict/recorded_problem.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // What a base case may lack: which hypotheses apply, what switches them on, how far they reach.
-#include "studies/diagnose/candidates.hpp"
+#include "studies/diagnose/question/candidates.hpp"
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>

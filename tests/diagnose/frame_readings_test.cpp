@@ -1,5 +1,5 @@
 // What a recording tells of its camera's frame by itself, and what that does for a diagnosis.
-#include "studies/diagnose/frame_readings.hpp"
+#include "studies/diagnose/bank/frame_readings.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "inspect/synthetic.hpp"
 #include "made_up_study.hpp"
-#include "studies/diagnose/diagnosis.hpp"
+#include "studies/diagnose/verdict/diagnosis.hpp"
 
 using namespace millscope;
 using namespace millscope::diagnose;

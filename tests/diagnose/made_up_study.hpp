@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scratch.hpp"
-#include "studies/diagnose/bank.hpp"
+#include "studies/diagnose/bank/bank.hpp"
 
 namespace millscope::diagnose {
 

@@ -1,5 +1,5 @@
 // What a diagnosis leaves: figures for programs, a page for people, a corrected case to go on with.
-#include "studies/diagnose/outputs.hpp"
+#include "studies/diagnose/pages/outputs.hpp"
 
 #include <fmt/format.h>
 

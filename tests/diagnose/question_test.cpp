@@ -1,5 +1,5 @@
 // study.yaml of a diagnosis: what is read, and what is refused with its place.
-#include "studies/diagnose/question.hpp"
+#include "studies/diagnose/question/question.hpp"
 
 #include <fmt/format.h>
 

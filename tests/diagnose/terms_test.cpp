@@ -1,5 +1,5 @@
 // Terms for the missing acceleration: the one that is there is offered with its strength, none where nothing or noise alone is missing.
-#include "studies/diagnose/terms.hpp"
+#include "studies/diagnose/verdict/terms.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include "kernel/host/scaffold.hpp"
 #include "scratch.hpp"
-#include "studies/diagnose/candidates.hpp"
+#include "studies/diagnose/question/candidates.hpp"
 
 using namespace millscope;
 using namespace millscope::diagnose;

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "made_up_study.hpp"
-#include "studies/diagnose/diagnosis.hpp"
+#include "studies/diagnose/verdict/diagnosis.hpp"
 
 using namespace millscope;
 using namespace millscope::diagnose;

@@ -1,0 +1,288 @@
+#include "studies/diagnose/bank/bank.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <iterator>
+
+#include "studies/analysis/parallel.hpp"
+#include "studies/calibrate/observe.hpp"
+#include "studies/doe/doe.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+constexpr double kLeastShare = 0.1;
+constexpr int kAgain = 8;               // parameter sets: eight degrees of freedom of each of about 70 observables
+constexpr std::size_t kSpareApart = 2;  // runs beyond the coefficients of a nuisance apart: linear, square, × every parameter
+constexpr std::uint64_t kOffsets = 16;  // blocks of Sobol's sequence among which groups are spread, of as many points
+
+std::uint64_t hash(const std::string& text) {
+  std::uint64_t h = 0xcbf29ce484222325ULL;
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  return h;
+}
+
+/// Sobol' points in the unit cube.
+MatrixXd unit_points(Index points, Index dimensions) {
+  std::vector<doe::Factor> factors;
+  for (Index i = 0; i < dimensions; ++i) factors.push_back({fmt::format("u{}", i), 0.5, 0.5, ""});
+  return 0.5 * (doe::sobol(std::move(factors), static_cast<int>(points)).coded.array() + 1);
+}
+
+std::string name_of(const Question& q, const Group& group) {
+  if (group.base()) return "base";
+  return group.candidate >= 0 ? q.candidates[static_cast<std::size_t>(group.candidate)].name
+                              : q.coordinates()[static_cast<std::size_t>(group.apart)].name;
+}
+
+/// Where a nuisance apart stands beside a candidate, coded. A case near the middle of the range: its two ends, in Thue's and Morse's order,
+/// in which no digit of a Sobol' point goes along with it; else three places of the other half.
+double far_from(double usual, int turn) {
+  if (std::fabs(usual) < 0.5) return std::popcount(static_cast<unsigned>(turn)) % 2 == 0 ? 1 : -1;
+  return std::copysign(std::array{1.0, 0.5, 0.0}[static_cast<std::size_t>(turn % 3)], -usual);
+}
+
+/// Coordinates of the case, then what is varied in this group alone (the share of an effect, a nuisance apart), then those of the camera.
+VectorXd theta_of(const Question& q, const VectorXd& unit, const Group& group) {
+  VectorXd theta(static_cast<Index>(q.dimensions()));
+  const std::vector<Coordinate> coordinates = q.coordinates();
+  const auto own = static_cast<Index>(q.case_dimensions());
+  Index next = own + (group.base() ? 0 : 1);
+  for (Index i = 0; i < theta.size(); ++i) {
+    const Coordinate& c = coordinates[static_cast<std::size_t>(i)];
+    if (i == group.apart)
+      theta[i] = rounded(c.natural(2 * unit[own] - 1));
+    else if (c.usual)
+      theta[i] = *c.usual;
+    else
+      theta[i] = rounded(c.low + unit[i < own ? i : next++] * (c.high - c.low));
+  }
+  return theta;
+}
+
+campaign::Simulation simulation(const Question& q, const VectorXd& theta, const std::vector<Effect>& effects, std::size_t condition) {
+  campaign::Simulation s;
+  s.case_file = q.study.base;
+  s.settings = q.study.conditions[condition].settings;
+  for (std::string& setting : q.settings(theta, effects)) s.settings.push_back(std::move(setting));
+  for (std::string& setting : calibrate::observed_outputs()) s.settings.push_back(std::move(setting));
+  return s;
+}
+
+void append(std::vector<BankPoint>& to, std::vector<BankPoint> more) {
+  to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+/// Runs of a candidate with a nuisance apart that are too few for their product, or stand beside too few without it, would be taken for
+/// what the candidate does. One sentence for each candidate that loses runs.
+std::vector<std::string> leave_out_too_few(const Question& q, std::vector<BankRow>& rows, std::vector<VectorXd>& values) {
+  std::vector<std::string> told;
+  for (const Group& group : groups_apart(q)) {
+    const double usual = *q.coordinates()[static_cast<std::size_t>(group.apart)].usual;
+    for (std::size_t j = 0; j < q.candidates.size(); ++j) {
+      const auto with = [&](const BankRow& row) { return !row.effects.empty() && row.effects[0].candidate == static_cast<int>(j); };
+      const auto together = [&](const BankRow& row) { return with(row) && row.theta[group.apart] != usual; };
+      const auto runs = std::count_if(rows.begin(), rows.end(), together), all = std::count_if(rows.begin(), rows.end(), with);
+      if (runs == 0 || static_cast<std::size_t>(std::min(runs, all - runs)) >= kLeastTogether) continue;
+      told.push_back(
+          fmt::format("{} with another {} was left out: {} and {} simulations with the usual one came to their end, {} of each are needed "
+                      "(bank.each; or see why others failed)",
+                      q.candidates[j].name, name_of(q, group), runs, all - runs, kLeastTogether));
+      for (std::size_t r = rows.size(); r-- > 0;) {
+        if (!together(rows[r])) continue;
+        rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(r));
+        values.erase(values.begin() + static_cast<std::ptrdiff_t>(r));
+      }
+    }
+  }
+  return told;
+}
+
+/// The surrogate has no other runs that tell what a nuisance apart does.
+void check_apart(const Question& q, const BankData& data) {
+  for (const Group& group : groups_apart(q)) {
+    const Coordinate& c = data.theta[static_cast<std::size_t>(group.apart)];
+    const auto varied = static_cast<std::size_t>(std::count_if(
+        data.rows.begin(), data.rows.end(), [&](const BankRow& row) { return row.effects.empty() && row.theta[group.apart] != *c.usual; }));
+    const std::size_t least = 2 + q.study.parameters.size() + kSpareApart;
+    if (varied < least)
+      throw config::UserError(fmt::format(
+          "{} finished simulations of the bank without a candidate vary the nuisance '{}', {} are needed; raise bank.base, or leave "
+          "the nuisance out",
+          varied, c.name, least));
+  }
+}
+
+}  // namespace
+
+std::vector<Group> groups_apart(const Question& q) {
+  std::vector<Group> out;
+  const std::vector<Coordinate> coordinates = q.coordinates();
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    if (coordinates[i].usual) out.push_back({-1, static_cast<Index>(i)});
+  }
+  return out;
+}
+
+std::vector<BankPoint> plan_group(const Question& q, const Group& of, int count) {
+  const bool effect = of.candidate >= 0;
+  const std::string group = name_of(q, of);
+  const auto offset = of.base() ? 0 : static_cast<Index>(kOffsets * (hash(group) % kOffsets));
+  const auto d = static_cast<Index>(q.dimensions() - groups_apart(q).size());
+  const MatrixXd unit = unit_points(offset + count, d + (of.base() ? 0 : 1));
+  std::vector<BankPoint> points;
+  for (int i = 0; i < count; ++i) {
+    const VectorXd u = unit.row(offset + i).transpose();
+    BankPoint point{group, i, theta_of(q, u, of), {}};
+    if (effect) {
+      const Candidate& c = q.candidates[static_cast<std::size_t>(of.candidate)];
+      const double unit_share = u[static_cast<Index>(q.case_dimensions())];
+      const double share = c.on_or_off()     ? 1
+                           : c.range.low < 0 ? c.range.low + (1 - c.range.low) * unit_share
+                                             : kLeastShare + (1 - kLeastShare) * unit_share;
+      point.effects = {{of.candidate, rounded_share(c, share)}};
+    }
+    if (q.study.allowed(point.theta.head(static_cast<Index>(q.study.parameters.size())))) points.push_back(std::move(point));
+  }
+  return points;
+}
+
+std::vector<BankPoint> plan_again(const Question& q) {
+  std::vector<BankPoint> points = plan_group(q, {}, std::min(kAgain, q.bank.base));
+  for (BankPoint& p : points) p.group = "again";
+  return points;
+}
+
+std::vector<BankPoint> plan_screening(const Question& q) {
+  std::vector<BankPoint> all = plan_group(q, {}, q.bank.base);
+  append(all, plan_again(q));
+  for (const Group& group : groups_apart(q)) append(all, plan_group(q, group, q.bank.base));
+  for (int j = 0; j < static_cast<int>(q.candidates.size()); ++j) append(all, plan_group(q, {j, -1}, std::min(q.bank.first, q.bank.each)));
+  return all;
+}
+
+std::vector<BankPoint> plan_together(const Question& q, int candidate, Index apart) {
+  const Coordinate c = q.coordinates()[static_cast<std::size_t>(apart)];
+  const int pairs = (q.bank.each + 1) / 2;
+  std::vector<BankPoint> all;
+  for (BankPoint& p : plan_group(q, {candidate, -1}, 2 * pairs)) {
+    const bool second = p.index % 2 != 0 && !all.empty() && all.back().index == p.index / 2;
+    p.index /= 2;
+    if (second) {
+      const double before = std::fabs(all.back().effects[0].share), now = std::fabs(p.effects[0].share);
+      if (now < before || (now == before && std::popcount(static_cast<unsigned>(p.index)) % 2 == 0)) continue;
+      all.pop_back();
+    }
+    p.group += "*" + c.name;
+    p.theta[apart] = rounded(c.natural(far_from(c.coded(*c.usual), p.index)));
+    all.push_back(std::move(p));
+  }
+  if (all.size() < kLeastTogether) all.clear();
+  return all;
+}
+
+std::vector<BankPoint> plan_rest(const Question& q, int candidate) {
+  std::vector<BankPoint> all = plan_group(q, {candidate, -1}, q.bank.each);
+  std::erase_if(all, [&](const BankPoint& p) { return p.index < q.bank.first; });
+  for (const Group& group : groups_apart(q)) append(all, plan_together(q, candidate, group.apart));
+  return all;
+}
+
+std::vector<BankPoint> plan_bank(const Question& q) {
+  std::vector<BankPoint> all = plan_screening(q);
+  for (int j = 0; j < static_cast<int>(q.candidates.size()); ++j) append(all, plan_rest(q, j));
+  return all;
+}
+
+campaign::Simulation simulation_of(const Question& q, const BankPoint& point, std::size_t condition) {
+  const std::string& name = q.study.conditions[condition].name;
+  campaign::Simulation s = simulation(q, point.theta, point.effects, condition);
+  s.settings.push_back(fmt::format("seed={}", 1 + hash(point.group + "/" + name) % 1000000 + static_cast<std::uint64_t>(point.index)));
+  s.label = fmt::format("{}_{}_{}", point.group, point.index, name);
+  return s;
+}
+
+campaign::Simulation simulation_at(const Question& q, const VectorXd& theta, const std::vector<Effect>& effects, std::size_t condition,
+                                   int replicate, const std::string& label) {
+  campaign::Simulation s = simulation(q, theta, effects, condition);
+  s.settings.push_back(fmt::format("seed={}", 7919 * replicate + 17));
+  s.label = fmt::format("{}, seed {}, {}", label, replicate, q.study.conditions[condition].name);
+  return s;
+}
+
+calibrate::Observation Workshop::look(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
+                                      const VectorXd& theta) const {
+  if (outcome.state == campaign::State::failed) throw config::UserError(outcome.message);
+  calibrate::Observation o = observe(condition, outcome, question.camera(theta));
+  if (!readings.empty()) add_readings(question, readings[condition], theta, o);
+  if (!without.empty()) calibrate::leave_out(o, without[condition]);
+  return o;
+}
+
+Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoint> points, std::vector<std::size_t> conditions) {
+  std::vector<campaign::Simulation> simulations;
+  for (const BankPoint& p : points) {
+    for (const std::size_t c : conditions) simulations.push_back(simulation_of(q, p, c));
+  }
+  const std::vector<campaign::Outcome> outcomes = workshop.run(simulations);
+  if (workshop.say) workshop.say(fmt::format("looking at {} simulations through the recordings' cameras", outcomes.size()));
+  Bank bank{std::move(points), std::move(conditions), {}, {}, {}};
+  const std::size_t per_point = bank.conditions.size();
+  bank.runs.resize(bank.points.size());
+  for (std::size_t i = 0; i < outcomes.size(); ++i) bank.runs[i / per_point].push_back(outcomes[i].folder);
+  bank.seen.assign(bank.points.size(), std::vector<std::optional<calibrate::Observation>>(per_point));
+  std::vector<std::string> failures(outcomes.size());
+  // Whole simulations side by side: looking at one is half of it a single thread's work.
+  studies::for_each_item(outcomes.size(), studies::worker_count(0, outcomes.size()), [&](std::size_t i, std::size_t) {
+    try {
+      bank.seen[i / per_point][i % per_point] =
+          workshop.look(q, bank.conditions[i % per_point], outcomes[i], bank.points[i / per_point].theta);
+    } catch (const config::UserError& e) {
+      failures[i] = fmt::format("{}: {}", simulations[i].label, e.what());
+    }
+  });
+  std::copy_if(failures.begin(), failures.end(), std::back_inserter(bank.failures), [](const std::string& f) { return !f.empty(); });
+  return bank;
+}
+
+BankData data_of(const Question& q, const Bank& bank, const std::vector<std::size_t>& conditions) {
+  BankData data;
+  data.theta = q.coordinates();
+  data.candidates = static_cast<Index>(q.candidates.size());
+  std::vector<VectorXd> values;
+  for (std::size_t p = 0; p < bank.points.size(); ++p) {
+    std::vector<double> row;
+    bool whole = true;
+    for (const std::size_t c : conditions) {
+      const auto k = static_cast<std::size_t>(std::find(bank.conditions.begin(), bank.conditions.end(), c) - bank.conditions.begin());
+      const auto& seen = bank.seen[p].at(k);
+      if (!seen) {
+        whole = false;
+        break;
+      }
+      row.insert(row.end(), seen->value.data(), seen->value.data() + seen->value.size());
+      if (values.empty() && data.condition.size() < row.size()) data.condition.resize(row.size(), static_cast<int>(c));
+    }
+    if (!whole) continue;
+    data.rows.push_back({bank.points[p].theta, bank.points[p].effects});
+    values.emplace_back(Eigen::Map<const VectorXd>(row.data(), static_cast<Index>(row.size())));
+  }
+  data.left_out = leave_out_too_few(q, data.rows, values);
+  if (!bank.failures.empty())
+    data.left_out.insert(data.left_out.begin(), fmt::format("{} simulations of the bank failed and are left out, the first: {}",
+                                                            bank.failures.size(), bank.failures.front()));
+  if (values.empty()) {
+    throw config::UserError(fmt::format("no simulation of the bank has come to its end{}{}; correct the base case or the ranges",
+                                        bank.failures.empty() ? "" : "; the first: ", bank.failures.empty() ? "" : bank.failures.front()));
+  }
+  data.value.resize(static_cast<Index>(values.size()), values.front().size());
+  for (std::size_t r = 0; r < values.size(); ++r) data.value.row(static_cast<Index>(r)) = values[r].transpose();
+  check_apart(q, data);
+  return data;
+}
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,99 @@
+// The bank: simulations of the mill over θ, without and with each candidate, in every condition; computed once, kept by content.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "studies/analysis/results.hpp"
+#include "studies/calibrate/observation.hpp"
+#include "studies/campaign/campaign.hpp"
+#include "studies/diagnose/bank/frame_readings.hpp"
+
+namespace millscope::diagnose {
+
+/// One parameter set of the bank.
+struct BankPoint {
+  std::string group;  ///< "base", "again", a candidate's or a nuisance's name, or "candidate*nuisance"
+  int index = 0;      ///< within the group
+  VectorXd theta;
+  std::vector<Effect> effects;
+};
+
+/// What is varied in some of the bank's simulations beside the parameters: nothing, a candidate's share, or a nuisance apart.
+struct Group {
+  int candidate = -1;
+  Index apart = -1;  ///< coordinate of θ
+  bool base() const { return candidate < 0 && apart < 0; }
+};
+/// One of every nuisance apart.
+std::vector<Group> groups_apart(const Question& question);
+
+/// Sobol' points over the ranges; what is simulated of a group does not depend on the other groups, on how many are asked for, nor on the
+/// camera's nuisances, so that a bank grows without losing a run. One-sided shares lie in 0.1 … 1.
+std::vector<BankPoint> plan_group(const Question& question, const Group& group, int count);
+/// The first without a candidate, each once more with another seed: what runs differ by alone, Surrogate::chance().
+std::vector<BankPoint> plan_again(const Question& question);
+/// What tells which candidates cannot matter: all without a candidate, the first with every candidate alone.
+std::vector<BankPoint> plan_screening(const Question& question);
+/// A candidate together with a nuisance apart, which tells whether it acts otherwise there (rolling friction does in stiffer contacts): of
+/// every two of its parameter sets the stronger, with the nuisance far from the case's value. None where they would be too few.
+std::vector<BankPoint> plan_together(const Question& question, int candidate, Index apart);
+/// What a candidate that may matter has besides: the rest of those with it alone, and those with it and each nuisance apart.
+std::vector<BankPoint> plan_rest(const Question& question, int candidate);
+/// Both, for all candidates.
+std::vector<BankPoint> plan_bank(const Question& question);
+
+campaign::Simulation simulation_of(const Question& question, const BankPoint& point, std::size_t condition);
+
+/// A simulation at a chosen parameter set; `replicate`: seed.
+campaign::Simulation simulation_at(const Question& question, const VectorXd& theta, const std::vector<Effect>& effects,
+                                   std::size_t condition, int replicate, const std::string& label);
+
+/// What runs and what looks; tests put their own in place. `observe` is called from several threads at once. `camera`: Question::camera.
+struct Workshop {
+  std::function<std::vector<campaign::Outcome>(std::span<const campaign::Simulation>)> run;
+  std::function<calibrate::Observation(std::size_t condition, const campaign::Outcome&, const std::string& camera)> observe;
+  std::vector<calibrate::Observation> recorded;  ///< of every condition, with the readings
+  std::function<void(const std::string&)> say;
+  /// Results of other analyzers, of the recording where `run` is empty; not set: nothing is looked at again.
+  std::function<studies::ResultSet(std::size_t condition, const std::filesystem::path& run, const std::string& analyzers,
+                                   const std::string& camera)>
+      results = {};
+  std::vector<std::vector<FrameReading>> readings = {};  ///< of every recording's frame; empty: nothing of it is doubted
+
+  std::vector<std::set<std::string>> without = {};  ///< [conditions] observables that are compared nowhere; empty: all are
+
+  /// What a simulation at θ shows, readings of the frame included; NaN for what is undefined: the speed where no bead was seen. Throws
+  /// config::UserError where it failed.
+  calibrate::Observation look(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
+                              const VectorXd& theta) const;
+};
+
+/// The points with what was seen of them in some conditions.
+struct Bank {
+  std::vector<BankPoint> points;
+  std::vector<std::size_t> conditions;
+  std::vector<std::vector<std::optional<calibrate::Observation>>> seen;  ///< [points][conditions]; nothing: it failed
+  std::vector<std::string> failures;                                     ///< one line each
+  std::vector<std::vector<std::filesystem::path>> runs = {};             ///< [points][conditions] where each simulation is
+};
+
+/// Runs what is not in the cache. What is undefined is NaN.
+Bank fill_bank(const Question& question, const Workshop& workshop, std::vector<BankPoint> points, std::vector<std::size_t> conditions);
+
+/// Takes what any of the bank's simulations leaves undefined (the speed in a region into which they throw no bead) from the recordings, the
+/// bank and what is looked at later. One sentence for each observable.
+std::vector<std::string> leave_out_undefined(const Question& question, Workshop& workshop, Bank& bank);
+
+/// Which of some conditions' simulations are not steady yet when they begin to be looked at, by all of them together: one run's chance
+/// hides what they share, and what they share is wrong in all of the surrogate. One sentence for each.
+std::vector<std::string> unsettled(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions);
+
+/// The numbers of some of the bank's conditions; points of which one failed are left out.
+BankData data_of(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions);
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,84 @@
+// Where a fitted parameter may lie: wherever holding it there costs no more of Q than holding it at its truth does in nine of ten draws.
+//
+//   {v : min Q(t | t_i = v) − min Q(t) ≤ r_i},  r_i: 90 % quantile of min Q*(t | t_i = truth_i) − min Q*(t) over pseudo-recordings
+//
+// Profile likelihood with the bootstrap's quantile in place of that of chi-squared (Davison & Hinkley 1997, ch. 5): where a parameter
+// does less and less, as friction at a wall to which beads stick already, the interval reaches as far as the data allow.
+#include <algorithm>
+#include <cmath>
+
+#include "studies/analysis/parallel.hpp"
+#include "studies/diagnose/naming/pseudo_data.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+constexpr double kInside = 0.9;
+constexpr int kGrid = 32;
+constexpr int kHalvings = 20;
+constexpr std::size_t kFree = 20;  // draws for a quantile of their own
+
+/// Where `inside` begins on the way from a limit to what was found, which is inside.
+template <class Inside>
+double edge(double limit, double found, Inside inside) {
+  const double step = (found - limit) / kGrid;
+  int n = 0;
+  while (n < kGrid && !inside(limit + n * step)) ++n;
+  if (n == 0) return limit;
+  double in = limit + n * step, out = in - step;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (out + in);
+    (inside(middle) ? in : out) = middle;
+  }
+  return in;
+}
+
+/// The value below which 90 % of the numbers are; 0 of none.
+double ninety_percent(std::vector<double> of) {
+  if (of.empty()) return 0;
+  const auto rank = static_cast<std::size_t>(std::ceil(kInside * static_cast<double>(of.size() + 1)));
+  const auto at = of.begin() + static_cast<std::ptrdiff_t>(std::min(rank, of.size()) - 1);
+  std::nth_element(of.begin(), at, of.end());
+  return *at;
+}
+
+}  // namespace
+
+VectorXd coordinates_of(const VectorXd& coded, const std::vector<double>& shares) {
+  VectorXd t(coded.size() + static_cast<Index>(shares.size()));
+  t << coded, Eigen::Map<const VectorXd>(shares.data(), static_cast<Index>(shares.size()));
+  return t;
+}
+
+/// r_i. Where the fit stands at a limit half of the draws end there as well and rise by nothing, so that a truth a little inside would be
+/// missed: the quantile of the draws that end elsewhere counts where it is larger, and over the laws of noise the largest.
+double PseudoData::allowed(const std::vector<Drawn>& drawn, const Model& fitted, Index i) const {
+  double out = 0;
+  for (std::size_t law = 0; law < laws(); ++law) {
+    std::vector<double> all, free;
+    for (std::size_t b = law; b < drawn.size(); b += laws()) {
+      const double found = coordinates_of(drawn[b].fit[0].coded, drawn[b].fit[0].shares)[i], rise = drawn[b].rise[i];
+      all.push_back(rise);
+      if (found > fitted.low(i) && found < fitted.high(i)) free.push_back(rise);
+    }
+    out = std::max(out, ninety_percent(std::move(all)));
+    if (free.size() >= kFree) out = std::max(out, ninety_percent(std::move(free)));
+  }
+  return out;
+}
+
+std::vector<Interval> PseudoData::intervals(const Choice& choice, const FitResult& fit, int draws, std::uint64_t stream) const {
+  const auto drawn = draw(truth(choice, fit), {choice}, {draws, stream, true});
+  const Model fitted = model(*surrogate_, choice);
+  const VectorXd found = coordinates_of(fit.coded, fit.shares);
+  std::vector<Interval> out(static_cast<std::size_t>(found.size()));
+  studies::for_each_item(out.size(), studies::worker_count(options_.threads, out.size()), [&](std::size_t k, std::size_t) {
+    const auto i = static_cast<Index>(k);
+    const double most = fit.q + allowed(drawn, fitted, i);
+    const auto inside = [&](double v) { return fitted.fit_holding(i, v, problem_.observed).q <= most; };
+    out[k] = {found[i], edge(fitted.low(i), found[i], inside), edge(fitted.high(i), found[i], inside)};
+  });
+  return out;
+}
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,260 @@
+#include "studies/diagnose/naming/naming.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "studies/diagnose/naming/pseudo_data.hpp"
+#include "studies/diagnose/naming/visibility.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+constexpr double kAtLimit = 0.999;  // of the coded range
+
+/// Share of draws that are at least `value`, the value itself counted among them; the largest over the laws of noise, whose draws follow
+/// each other in turn.
+double tail(const std::vector<double>& draws, double value, std::size_t laws) {
+  double largest = 0;
+  for (std::size_t law = 0; law < laws; ++law) {
+    std::size_t above = 0, count = 0;
+    for (std::size_t b = law; b < draws.size(); b += laws, ++count) above += draws[b] >= value ? 1 : 0;
+    largest = std::max(largest, static_cast<double>(1 + above) / static_cast<double>(1 + count));
+  }
+  return largest;
+}
+
+template <class Of>
+std::vector<double> collect(const std::vector<PseudoData::Drawn>& drawn, Of of) {
+  std::vector<double> out;
+  for (const PseudoData::Drawn& d : drawn) out.push_back(of(d));
+  return out;
+}
+
+/// The intervals of θ among those of all coordinates, in natural units.
+std::vector<Interval> of_theta(const BankData& data, const std::vector<Interval>& coded) {
+  std::vector<Interval> out;
+  for (std::size_t i = 0; i < data.theta.size(); ++i) {
+    const Coordinate& c = data.theta[i];
+    out.push_back({c.natural(coded[i].value), c.natural(coded[i].low90), c.natural(coded[i].high90)});
+  }
+  return out;
+}
+
+class Namer {
+ public:
+  Namer(const Problem& problem, const NamingOptions& options) : p_(problem), o_(options), pseudo_(problem, options) {}
+
+  Naming run() {
+    out_.covariance = pseudo_.weighting().covariance;
+    out_.chance = pseudo_.chance();
+    against_base();
+    choose_best();
+    if (out_.best >= 0) {
+      look_closer(out_.best);
+      compare_rivals();
+      look_for_second();
+    }
+    return std::move(out_);
+  }
+
+ private:
+  double p_of(const std::vector<double>& draws, double value) const { return tail(draws, value, pseudo_.laws()); }
+  std::size_t count() const { return p_.rivals.size(); }
+  bool tested(std::size_t j) const { return out_.judged[j].tested; }
+  void say(const std::string& line) const {
+    if (o_.say) o_.say(line);
+  }
+
+  void against_base() {
+    say(fmt::format("null distribution: {} pseudo-recordings, {} candidates", o_.draws, count()));
+    out_.base = pseudo_.fit({});
+    std::vector<Choice> choices{{}};
+    for (std::size_t j = 0; j < count(); ++j) choices.push_back({static_cast<int>(j)});
+    const auto drawn = pseudo_.draw(pseudo_.truth({}, out_.base), choices, {o_.draws, 1});
+    out_.base_p = p_of(collect(drawn, [](const auto& d) { return d.fit[0].q; }), out_.base.q);
+    out_.base_theta = of_theta(p_.data, pseudo_.intervals({}, out_.base, o_.rival_draws, 2));
+    for (Index i = 0; i < out_.base.coded.size(); ++i) {
+      const Coordinate& c = p_.data.theta[static_cast<std::size_t>(i)];
+      if (std::fabs(out_.base.coded[i]) > kAtLimit) out_.at_limit.push_back(c.name);
+    }
+    std::vector<std::vector<double>> delta(count());
+    for (std::size_t j = 0; j < count(); ++j) {
+      delta[j] = collect(drawn, [j](const auto& d) { return d.fit[0].q - d.fit[j + 1].q; });
+      Judged judged;
+      judged.fit = pseudo_.fit({static_cast<int>(j)});
+      judged.delta_q = out_.base.q - judged.fit.q;
+      out_.judged.push_back(judged);
+      visibility(static_cast<int>(j));
+      if (tested(j)) out_.judged[j].p = p_of(delta[j], judged.delta_q);
+    }
+    correct_family(delta);
+    mismatch(drawn);
+  }
+
+  /// min-p (Westfall and Young 1993): how often the smallest p of a draw is as small, within each law of noise. Draws and what was
+  /// observed are ranked together, so that neither has a finer scale.
+  void correct_family(const std::vector<std::vector<double>>& delta) {
+    const std::size_t laws = pseudo_.laws();
+    for (Judged& j : out_.judged) j.p_family = j.tested ? 0 : 1;
+    for (std::size_t law = 0; law < laws; ++law) {
+      std::vector<double> least, observed;
+      for (std::size_t k = 0; k < delta.size(); ++k) {
+        if (!tested(k)) {
+          observed.push_back(1);
+          continue;
+        }
+        std::vector<double> own;
+        for (std::size_t b = law; b < delta[k].size(); b += laws) own.push_back(delta[k][b]);
+        std::vector<double> pool = own;
+        pool.push_back(out_.judged[k].delta_q);
+        std::sort(pool.begin(), pool.end());
+        const auto p = [&](double value) {
+          return static_cast<double>(pool.end() - std::lower_bound(pool.begin(), pool.end(), value)) / static_cast<double>(pool.size());
+        };
+        least.resize(own.size(), 1);
+        for (std::size_t b = 0; b < own.size(); ++b) least[b] = std::min(least[b], p(own[b]));
+        observed.push_back(p(out_.judged[k].delta_q));
+      }
+      for (std::size_t k = 0; k < delta.size(); ++k) {
+        const auto smaller = std::count_if(least.begin(), least.end(), [&](double p) { return p <= observed[k]; });
+        out_.judged[k].p_family =
+            std::max(out_.judged[k].p_family, static_cast<double>(1 + smaller) / static_cast<double>(1 + least.size()));
+      }
+    }
+  }
+
+  void visibility(int j) {
+    Judged& judged = out_.judged[static_cast<std::size_t>(j)];
+    const Visibility seen(p_, pseudo_.surrogate(), pseudo_.weighting(), judged.fit.coded, j);
+    const double found =
+        judged.fit.shares.empty() ? judged.fit.coded[p_.rivals[static_cast<std::size_t>(j)].freed] : judged.fit.shares.front();
+    for (const BankRow& row : p_.data.rows) {
+      for (const Effect& e : row.effects) judged.runs += e.candidate == p_.rivals[static_cast<std::size_t>(j)].candidate ? 1 : 0;
+    }
+    const Rival& rival = p_.rivals[static_cast<std::size_t>(j)];
+    judged.tested = rival.candidate < 0 || (judged.runs > 0 && !rival.screened_out);
+    judged.lambda = seen.lambda(), judged.kappa = seen.kappa(), judged.lambda_found = seen.at(found);
+    judged.lambda_curve = seen.curve();
+    judged.undetectable = rival.screened_out || std::sqrt(judged.lambda) < o_.noise_units;
+    judged.share = without_interval(found);
+    for (Index i = 0; i < judged.fit.coded.size(); ++i) {
+      judged.theta.push_back(without_interval(p_.data.theta[static_cast<std::size_t>(i)].natural(judged.fit.coded[i])));
+    }
+  }
+
+  /// Residuals of the retuned base, the largest of a draw as the measure (Westfall and Young's max-T).
+  void mismatch(const std::vector<PseudoData::Drawn>& drawn) {
+    const Index n = p_.observed.size();
+    VectorXd mean = VectorXd::Zero(n), square = VectorXd::Zero(n);
+    for (const auto& d : drawn) mean += d.residual, square += d.residual.cwiseAbs2();
+    const auto draws = static_cast<double>(drawn.size());
+    const VectorXd sd = (square / draws - (mean / draws).cwiseAbs2()).cwiseMax(1e-300).cwiseSqrt();
+    const auto largest = collect(drawn, [&](const auto& d) { return d.residual.cwiseQuotient(sd).cwiseAbs().maxCoeff(); });
+    const VectorXd base = pseudo_.surrogate().at(out_.base.coded), z = (p_.observed - base).cwiseQuotient(sd);
+    for (Index i = 0; i < n; ++i) out_.mismatch.push_back({i, base[i], z[i], p_of(largest, std::fabs(z[i]))});
+    std::stable_sort(out_.mismatch.begin(), out_.mismatch.end(),
+                     [](const Mismatch& a, const Mismatch& b) { return std::fabs(a.z) > std::fabs(b.z); });
+  }
+
+  void choose_best() {
+    for (std::size_t j = 0; j < count(); ++j) {
+      const Judged& judged = out_.judged[j];
+      if (judged.p_family > o_.level || !judged.tested) continue;
+      if (out_.best < 0 || judged.fit.q < out_.judged[static_cast<std::size_t>(out_.best)].fit.q) out_.best = static_cast<int>(j);
+    }
+  }
+
+  /// Intervals and goodness from draws under candidate j.
+  void look_closer(int j) {
+    Judged& judged = out_.judged[static_cast<std::size_t>(j)];
+    const Truth truth = pseudo_.truth({j}, judged.fit);
+    const auto stream = static_cast<std::uint64_t>(j);
+    const auto strict = pseudo_.draw(truth, {{j}}, {o_.rival_draws, 100 + stream});
+    judged.goodness_p = p_of(collect(strict, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
+    const std::vector<Interval> found = pseudo_.intervals({j}, judged.fit, o_.rival_draws, 200 + stream);
+    judged.theta = of_theta(p_.data, found);
+    if (!judged.fit.shares.empty()) judged.share = found[p_.data.theta.size()];
+  }
+
+  /// Under every other candidate: how often the best of all, whichever that is in the draw, would seem better by so much.
+  void compare_rivals() {
+    const int best = out_.best;
+    out_.kept = {best};
+    for (std::size_t k = 0; k < count(); ++k) {
+      if (static_cast<int>(k) == best || !tested(k)) continue;
+      Judged& judged = out_.judged[k];
+      const double excess = judged.fit.q - out_.judged[static_cast<std::size_t>(best)].fit.q;
+      const Choice own{static_cast<int>(k)};
+      std::vector<Choice> choices{own};
+      for (std::size_t j = 0; j < count(); ++j) {
+        if (j != k && tested(j)) choices.push_back({static_cast<int>(j)});
+      }
+      const auto drawn = pseudo_.draw(pseudo_.truth(own, judged.fit), choices, {o_.rival_draws, 300 + k});
+      const auto lead = collect(drawn, [](const auto& d) {
+        double least = d.fit[0].q;
+        for (const FitResult& fit : d.fit) least = std::min(least, fit.q);
+        return d.fit[0].q - least;
+      });
+      judged.against_best_p = p_of(lead, excess);
+      look_closer(static_cast<int>(k));
+      if (judged.against_best_p > o_.level) out_.kept.push_back(static_cast<int>(k));
+    }
+  }
+
+  bool together(int a, int b) const {
+    const Rival &one = p_.rivals[static_cast<std::size_t>(a)], &other = p_.rivals[static_cast<std::size_t>(b)];
+    const auto has = [](const std::vector<std::string>& list, const std::string& name) {
+      return std::find(list.begin(), list.end(), name) != list.end();
+    };
+    return a != b && !has(one.excludes, other.name) && !has(other.excludes, one.name) && !(one.freed >= 0 && other.freed >= 0);
+  }
+
+  /// Forward selection: a second candidate beside the best, and the best tested again beside it.
+  void look_for_second() {
+    const int first = out_.best;
+    std::vector<int> others;
+    std::vector<Choice> choices{{first}};
+    for (std::size_t k = 0; k < count(); ++k) {
+      if (!tested(k) || !together(first, static_cast<int>(k))) continue;
+      others.push_back(static_cast<int>(k));
+      choices.push_back({first, static_cast<int>(k)});
+    }
+    if (others.empty()) return;
+    const FitResult& alone = out_.judged[static_cast<std::size_t>(first)].fit;
+    const auto drawn = pseudo_.draw(pseudo_.truth({first}, alone), choices, {o_.rival_draws, 500});
+    const auto gain = collect(drawn, [](const auto& d) {
+      double most = 0;
+      for (std::size_t k = 1; k < d.fit.size(); ++k) most = std::max(most, d.fit[0].q - d.fit[k].q);
+      return most;
+    });
+    Pair pair;
+    pair.first = first;
+    double most = -1;
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      const FitResult fit = pseudo_.fit(choices[k + 1]);
+      if (alone.q - fit.q > most) most = alone.q - fit.q, pair.second = others[k], pair.fit = fit;
+    }
+    pair.p = p_of(gain, most);
+    const FitResult& second = out_.judged[static_cast<std::size_t>(pair.second)].fit;
+    const Choice own{pair.second}, both{first, pair.second};
+    const auto reverse = pseudo_.draw(pseudo_.truth(own, second), {own, both}, {o_.rival_draws, 600});
+    pair.p_first = p_of(collect(reverse, [](const auto& d) { return d.fit[0].q - d.fit[1].q; }), second.q - pair.fit.q);
+    const auto under = pseudo_.draw(pseudo_.truth(both, pair.fit), {both}, {o_.rival_draws, 700});
+    pair.goodness_p = p_of(collect(under, [](const auto& d) { return d.fit[0].q; }), pair.fit.q);
+    out_.pairs.push_back(pair);
+  }
+
+  const Problem& p_;
+  const NamingOptions& o_;
+  PseudoData pseudo_;
+  Naming out_;
+};
+
+}  // namespace
+
+Naming name_physics(const Problem& problem, const NamingOptions& options) { return Namer(problem, options).run(); }
+
+}  // namespace millscope::diagnose

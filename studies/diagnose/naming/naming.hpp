@@ -1,0 +1,121 @@
+// Which physics the observations ask for: every candidate against the base, all refitted together with θ, judged by pseudo-data that are
+// made of left-out runs of the bank. shared terms: Q and the surrogate of fit.hpp and surrogate.hpp.
+//
+// A pseudo-recording under a fitted model is what a surrogate makes of it, the deviation of the run of the bank that was left out of that
+// surrogate, scaled to what a recording would have of it, and the recording's noise; nuisances are drawn from their priors, and where the
+// model has an effect the bank's slopes are drawn again (pseudo_data.hpp has the equations). Everything is refitted to it with the left-out
+// run's surrogate, so that the emulator's error is part of every p-value. Tests leave out ρ, the part of a run's deviation that is chance
+// of its own, for the recording has its own. Intervals keep it, and come from runs with the model's effect alone where they are enough:
+// what makes a model wrong in a recording is not all in the bank (docs/challenge.md has the coverage).
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "studies/diagnose/naming/fit.hpp"
+#include "studies/inspect/estimate.hpp"
+
+namespace millscope::diagnose {
+
+/// What may be named: a candidate of the bank, or a nuisance that leaves its prior.
+struct Rival {
+  std::string name;
+  int candidate = -1;  ///< of the bank
+  Index freed = -1;    ///< else: the coordinate whose prior does not count
+  ShareRange range;    ///< of the candidate's share
+  std::vector<std::string> excludes;
+  bool screened_out = false;  ///< its first runs showed that it cannot matter: it is not tested
+};
+
+/// What a fit with this rival alone switches on; nothing for a nuisance.
+inline std::vector<Effect> effects_of(const Rival& rival, const FitResult& fit) {
+  return rival.candidate < 0 ? std::vector<Effect>{} : std::vector<Effect>{{rival.candidate, fit.shares.front()}};
+}
+
+struct Problem {
+  BankData data;
+  std::vector<Rival> rivals;
+  VectorXd observed;
+  MatrixXd covariance;          ///< of the recording, block by condition: the weight of the observables
+  std::vector<MatrixXd> noise;  ///< laws that the recording's noise may have; every p is the largest over them. Empty: `covariance`
+};
+
+struct NamingOptions {
+  int draws = 2016;        ///< behind the null
+  int rival_draws = 500;   ///< behind every comparison of two candidates
+  double level = 0.05;     ///< for all candidates together
+  double noise_units = 3;  ///< an effect below them, orthogonal to θ, cannot be seen
+  std::uint64_t seed = 1;
+  int threads = 0;
+  std::function<void(const std::string&)> say;
+};
+
+struct Interval {
+  double value = 0, low90 = 0, high90 = 0;
+  bool known() const { return std::isfinite(low90) && std::isfinite(high90); }  ///< it was worked out; diagnosis.json has null ends else
+  bool holds(double truth) const { return truth >= low90 && truth <= high90; }
+};
+
+inline constexpr double kNotWorkedOut = std::numeric_limits<double>::quiet_NaN();
+
+inline Interval without_interval(double value) { return {value, kNotWorkedOut, kNotWorkedOut}; }
+
+using studies::kNormal90;
+
+inline Interval interval_about(double value, double sem) { return {value, value - kNormal90 * sem, value + kNormal90 * sem}; }
+
+/// One candidate against the base.
+struct Judged {
+  FitResult fit;
+  double delta_q = 0, p = 1, p_family = 1;
+  double kappa = 0;         ///< part of the effect that θ cannot imitate, at full strength: 0 is fully concealed
+  double lambda = 0;        ///< visibility.hpp, about what was fitted with the candidate: at full strength
+  double lambda_found = 0;  ///< at the fitted share
+  std::vector<std::pair<double, double>> lambda_curve;  ///< (share, λ), shares rising; of candidates
+  bool undetectable = false;
+  int runs = 0;                       ///< of the bank with this candidate
+  bool tested = true;                 ///< else it has no runs, or its first ones showed that it cannot matter; its p are 1
+  Interval share;                     ///< its interval is worked out when some candidate is significant
+  std::vector<Interval> theta;        ///< natural units; the same
+  double goodness_p = kNotWorkedOut;  ///< whether the data look like a draw of this model; the same
+  double against_best_p = 1;          ///< under this candidate: how often the best would be better by so much
+};
+
+/// One observable beside what the retuned base makes of it.
+struct Mismatch {
+  Index observable = 0;
+  double base = 0;  ///< what the retuned base makes of it
+  double z = 0;     ///< in standard deviations of the fitted base's residual
+  double p = 1;     ///< for all observables together
+};
+
+struct Pair {
+  int first = -1, second = -1;
+  FitResult fit;
+  double p = 1;        ///< of the second beside the first
+  double p_first = 1;  ///< of the first beside the second
+  double goodness_p = 1;
+};
+
+struct Naming {
+  FitResult base;
+  double base_p = 1;                  ///< whether the data look like a draw of the base
+  std::vector<Interval> base_theta;   ///< the retuned parameters
+  std::vector<Judged> judged;         ///< one for each rival of the problem
+  std::vector<std::string> at_limit;  ///< parameters whose retuned value lies at an end of the bank's range
+  int best = -1;                      ///< −1: none is significant
+  std::vector<int> kept;              ///< the best and all that are not rejected against it
+  std::vector<Pair> pairs;            ///< at most one: two effects together
+  std::vector<Mismatch> mismatch;     ///< the largest |z| first
+  MatrixXd covariance;                ///< Σ: recording and surrogate
+  double chance = 0;                  ///< ρ, Surrogate::chance()
+};
+
+Naming name_physics(const Problem& problem, const NamingOptions& options);
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,199 @@
+#include "studies/diagnose/naming/pseudo_data.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "kernel/config/error.hpp"
+#include "studies/analysis/parallel.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+constexpr std::size_t kLeastBase = 8;
+constexpr std::size_t kEnoughWith = 12;  // runs with an effect, for intervals from them alone
+constexpr double kFaint = 0.1;           // of a share: the bank has no runs with less
+constexpr double kSingular = 1e-12;
+
+std::vector<ShareRange> ranges_of(const Problem& problem) {
+  std::vector<ShareRange> ranges(static_cast<std::size_t>(problem.data.candidates));
+  for (const Rival& r : problem.rivals) {
+    if (r.candidate >= 0) ranges[static_cast<std::size_t>(r.candidate)] = r.range;
+  }
+  return ranges;
+}
+
+/// Of a symmetric matrix A without negative eigenvalues, which may be singular: F with F Fᵀ = A, and G with Gᵀ F F ᵀ G = 1 where A is not
+/// 0.
+struct Root {
+  MatrixXd factor, inverse;
+};
+
+Root root_of(const MatrixXd& a) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(a);
+  const VectorXd& values = solver.eigenvalues();
+  const double least = kSingular * values.cwiseAbs().maxCoeff();
+  const VectorXd root = (values.array() > least).select(values.cwiseMax(0).cwiseSqrt(), 0);
+  const VectorXd inverse = (values.array() > least).select(root.cwiseInverse(), 0);
+  return {solver.eigenvectors() * root.asDiagonal(), solver.eigenvectors() * inverse.asDiagonal()};
+}
+
+}  // namespace
+
+PseudoData::PseudoData(const Problem& problem, const NamingOptions& options)
+    : problem_(problem), options_(options), features_(std::make_unique<Features>(problem.data)), ranges_(ranges_of(problem)) {
+  const BankData& data = problem.data;
+  const std::vector<bool> all(data.rows.size(), true);
+  surrogate_ = std::make_unique<Surrogate>(data, *features_, all);
+  chance_ = surrogate_->chance(problem.covariance);
+  weighting_ = std::make_unique<Weighting>(problem.covariance, *surrogate_);
+  run_factor_ = root_of(weighting_->run).factor;
+  for (const MatrixXd& law : problem.noise) noise_factors_.push_back(factor(law));
+  if (noise_factors_.empty()) noise_factors_.push_back(factor(problem.covariance));
+  std::size_t base = 0;
+  for (std::size_t r = 0; r < data.rows.size(); ++r) {
+    LeftOut left;
+    std::vector<bool> used = all;
+    for (std::size_t other = 0; other < used.size(); ++other) used[other] = !repeats(data.rows[other], data.rows[r]);
+    left.surrogate = std::make_unique<Surrogate>(data, *features_, used);
+    const VectorXd u = data.coded(data.rows[r].theta);
+    const std::vector<Effect>& effects = data.rows[r].effects;
+    left.deviation = data.value.row(static_cast<Index>(r)).transpose() - left.surrogate->at(u, effects);
+    left.leverage = left.surrogate->leverage(u, effects);
+    left.effects = effects;
+    left.candidate = effects.empty() ? -1 : effects.front().candidate;
+    base += effects.empty() && data.usual(data.rows[r]) ? 1 : 0;
+    left_out_.push_back(std::move(left));
+  }
+  if (base < kLeastBase)
+    throw config::UserError(
+        fmt::format("the bank has {} finished runs without an effect, the null needs {}; raise bank.base", base, kLeastBase));
+}
+
+double PseudoData::scatter_of(const std::vector<Effect>& effects) const {
+  double out = 1;
+  for (const Effect& e : effects) out += std::fabs(e.share) < kFaint ? 0 : surrogate_->scatter_with(e.candidate) - 1;
+  return out;
+}
+
+std::vector<const PseudoData::LeftOut*> PseudoData::runs_for(const Truth& truth, bool for_intervals) const {
+  std::vector<const LeftOut*> out, with;
+  for (const LeftOut& left : left_out_) {
+    const auto has = [&](const Effect& e) { return e.candidate == left.candidate && std::fabs(e.share) >= kFaint; };
+    const bool shares = std::any_of(truth.effects.begin(), truth.effects.end(), has);
+    if (shares) with.push_back(&left);
+    if (shares || left.candidate < 0) out.push_back(&left);
+  }
+  return for_intervals && with.size() >= kEnoughWith ? with : out;
+}
+
+Model PseudoData::model(const Surrogate& surrogate, const Choice& choice) const {
+  Switched switched{{}, ranges_, -1};
+  for (const int r : choice) {
+    const Rival& rival = problem_.rivals[static_cast<std::size_t>(r)];
+    if (rival.candidate >= 0) switched.on.push_back(rival.candidate);
+    if (rival.freed >= 0) switched.freed = rival.freed;
+  }
+  return {problem_.data, surrogate, *weighting_, switched};
+}
+
+VectorXd Truth::coordinates() const {
+  std::vector<double> shares;
+  for (const Effect& e : effects) shares.push_back(e.share);
+  return coordinates_of(coded, shares);
+}
+
+FitResult PseudoData::fit(const Choice& choice) const { return model(*surrogate_, choice).fit(problem_.observed); }
+
+Truth PseudoData::truth(const Choice& choice, const FitResult& fit) const {
+  Truth truth{fit.coded, model(*surrogate_, choice).effects(fit), -1};
+  for (const int r : choice) truth.freed = std::max(truth.freed, problem_.rivals[static_cast<std::size_t>(r)].freed);
+  return truth;
+}
+
+VectorXd PseudoData::drawn_theta(const Truth& truth, emulate::Random& random) const {
+  VectorXd u = truth.coded;
+  for (Index i = 0; i < u.size(); ++i) {
+    const Coordinate& c = problem_.data.theta[static_cast<std::size_t>(i)];
+    if (!c.nuisance() || i == truth.freed) continue;
+    const double centre = c.coded(c.prior_mean), sigma = 1 / c.prior_weight();
+    do u[i] = centre + sigma * random.normal();
+    while (std::fabs(u[i]) > 1);  // the prior's mean lies within the range
+  }
+  return u;
+}
+
+double PseudoData::part_of(const LeftOut& left, const Truth& truth, double chance) const {
+  const double wanted =
+      truth.effects.empty() ? 1 - chance + left.surrogate->leverage(truth.coded) : (1 - chance) * scatter_of(truth.effects);
+  return std::sqrt(wanted / (scatter_of(left.effects) + left.leverage));
+}
+
+double PseudoData::reliability(const Truth& truth, const Effect& effect) const {
+  const std::vector<Effect> some{{effect.candidate, std::copysign(std::max(kFaint, std::fabs(effect.share)), effect.share)}};
+  const double square = (weighting_->whitener * (surrogate_->at(truth.coded, some) - surrogate_->at(truth.coded))).squaredNorm();
+  const double chance = weighting_->run_noise * surrogate_->leverage_of(truth.coded, some);
+  return square > 0 ? std::max(0.0, 1 - chance / square) : 1;
+}
+
+VectorXd PseudoData::rise(const Model& model, const Truth& truth, double least, const VectorXd& y) {
+  const VectorXd t = truth.coordinates();
+  VectorXd out(t.size());
+  for (Index i = 0; i < t.size(); ++i) out[i] = model.fit_holding(i, t[i], y).q - least;
+  return out;
+}
+
+PseudoData::Refit PseudoData::refit(const LeftOut& left, const Truth& truth, const std::vector<Choice>& choices) const {
+  Refit out{&left, left.surrogate->coefficients(), {}, {}};
+  for (const Choice& choice : choices) out.models.push_back(model(*left.surrogate, choice));
+  if (truth.effects.empty()) return out;
+  std::vector<int> on;
+  for (const Effect& e : truth.effects) {
+    on.push_back(e.candidate);
+    out.coefficients.middleRows(features_->first(e.candidate), features_->count(e.candidate)) *= std::sqrt(reliability(truth, e));
+  }
+  // Base and effects of the truth are drawn again; the other candidates' coefficients move as they do with those on average.
+  const std::vector<Index> columns = features_->columns(on);
+  const MatrixXd& error = left.surrogate->coefficient_error();
+  out.again = error(Eigen::all, columns) * root_of(error(columns, columns)).inverse;
+  return out;
+}
+
+PseudoData::Drawn PseudoData::drawn(const Refit& refit, const Truth& truth, const Draws& how, std::size_t b) const {
+  emulate::Random random(options_.seed + how.stream, b);
+  const Truth at{drawn_theta(truth, random), truth.effects, truth.freed};
+  const LeftOut& left = *refit.left;
+  const Index n = left.deviation.size();
+  const VectorXd y = refit.coefficients.transpose() * features_->all(at.coded, at.effects) +
+                     part_of(left, at, how.for_intervals ? 0 : chance_) * left.deviation + noise_factors_[b % laws()] * random.normals(n);
+  MatrixXd coefficients = refit.coefficients;
+  if (refit.again.size() > 0) {
+    const Index k = refit.again.cols();
+    coefficients += refit.again * random.normals(k * n).reshaped(k, n) * run_factor_.transpose();
+  }
+  Drawn out;
+  std::optional<Model> first;
+  for (const Model& fixed : refit.models) {
+    const Model again = refit.again.size() > 0 ? fixed.with(coefficients) : fixed;
+    out.fit.push_back(again.fit(y));
+    if (!first) first = again;
+  }
+  const FitResult& found = out.fit.front();
+  out.residual = y - coefficients.transpose() * features_->all(found.coded, first->effects(found));
+  if (how.for_intervals) out.rise = rise(*first, at, found.q, y);
+  return out;
+}
+
+std::vector<PseudoData::Drawn> PseudoData::draw(const Truth& truth, const std::vector<Choice>& choices, const Draws& how) const {
+  std::vector<Refit> refits;
+  for (const LeftOut* left : runs_for(truth, how.for_intervals)) refits.push_back(refit(*left, truth, choices));
+  std::vector<Drawn> out(static_cast<std::size_t>(how.count));
+  studies::for_each_item(out.size(), studies::worker_count(options_.threads, out.size()),
+                         [&](std::size_t b, std::size_t) { out[b] = drawn(refits[b / laws() % refits.size()], truth, how, b); });
+  return out;
+}
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,89 @@
+// One emulator for the whole bank: quadratic in θ; for each candidate linear and square in its share, and its product with the fitted
+// parameters and with the nuisances apart. All observables share the runs, so that one factorisation serves them all.
+//
+//   m(u, s) = b₀ + Σ b_i u_i + Σ b_ij u_i u_j + Σ_j (c_j s_j + d_j s_j² + Σ_i e_ji s_j u_i),  u: coded θ, s: shares
+#pragma once
+
+#include <utility>
+
+#include "studies/diagnose/naming/bank_data.hpp"
+
+namespace millscope::diagnose {
+
+/// Which columns the model has.
+class Features {
+ public:
+  explicit Features(const BankData& data);
+
+  Index size() const { return size_; }
+  Index coordinates() const { return coordinates_; }
+  int candidates() const { return static_cast<int>(first_.size()); }
+  Index base_size() const { return base_size_; }
+  VectorXd base(const VectorXd& coded) const;
+  /// First column of a candidate's block and its length; 0: the bank has no run with it.
+  Index first(int candidate) const { return first_[static_cast<std::size_t>(candidate)]; }
+  Index count(int candidate) const { return count_[static_cast<std::size_t>(candidate)]; }
+  VectorXd block(int candidate, const VectorXd& coded, double share) const;
+  VectorXd all(const VectorXd& coded, const std::vector<Effect>& effects) const;
+  /// Of all columns those of the base and of some candidates, one after the other.
+  std::vector<Index> columns(const std::vector<int>& candidates) const;
+
+ private:
+  void add_candidate(const BankData& data, int candidate);
+
+  Index size_ = 0, base_size_ = 0, coordinates_ = 0;
+  std::vector<std::pair<Index, Index>> products_;  ///< of coordinates, squares among them
+  std::vector<Index> first_, count_;
+  std::vector<bool> square_;                  ///< of candidates: enough different shares
+  std::vector<std::vector<Index>> multiply_;  ///< of candidates: coordinates that multiply the share, as far as there are runs enough
+};
+
+class Surrogate {
+ public:
+  /// Least squares on the rows where `used` is true. Throws config::UserError when they are fewer than the coefficients.
+  Surrogate(const BankData& data, Features features, const std::vector<bool>& used);
+  /// On all rows, with all features that they support.
+  explicit Surrogate(const BankData& data);
+
+  VectorXd at(const VectorXd& coded, const std::vector<Effect>& effects = {}) const;
+  /// Covariance of the coefficients' errors over S: runs that scatter more tell less. Features × features.
+  const MatrixXd& coefficient_error() const { return coefficient_error_; }
+  /// By how much larger than S the covariance of runs with a candidate is, at least 1.
+  double scatter_with(int candidate) const { return scatter_with_[static_cast<std::size_t>(candidate)]; }
+  /// Variance of the prediction over that of one run's residual without a candidate.
+  double leverage(const VectorXd& coded, const std::vector<Effect>& effects = {}) const;
+  /// The same of the difference that effects make.
+  double leverage_of(const VectorXd& coded, const std::vector<Effect>& effects) const;
+  const MatrixXd& coefficients() const { return coefficients_; }  ///< features × observables
+  const Features& features() const { return features_; }
+  Index degrees() const { return degrees_; }  ///< points − coefficients
+  /// Row residuals, each from a fit without that row: (y − m)/(1 − h).
+  const MatrixXd& left_out() const { return left_out_; }
+  /// S, covariance of one run without a candidate about the surface: the runs' chance and what a quadratic surface cannot follow; that of
+  /// runs with one is `scatter_with` times as large. Correlations are shrunk in coordinates in which the recording's noise has none.
+  MatrixXd residual_covariance(const MatrixXd& recording) const;
+  /// ρ, the part of S that is chance, of which a recording has its own instead: by what runs of equal parameters and other seeds differ
+  /// (pure error; Montgomery 2013, ch. 10). The low end of its 90 % interval, over all observables or in the span of what coordinates
+  /// and candidates do, whichever is lower: what a surface cannot follow there would pass for an effect. 0: no run is repeated.
+  double chance(const MatrixXd& recording) const;
+  /// Covariance of the surrogate's error, (1 − ρ + h̄) S with the mean leverage h̄ of the runs without a candidate.
+  MatrixXd error_covariance(const MatrixXd& recording) const;
+
+ private:
+  Features features_;
+  void keep_scatter(const std::vector<std::vector<Index>>& points, const MatrixXd& y, const VectorXd& scatter);
+  MatrixXd first_order() const;
+
+  MatrixXd coefficients_, coefficient_error_, residual_, left_out_;
+  std::vector<double> scatter_with_;
+  MatrixXd scatter_;   ///< [points, observables], as of runs without a candidate
+  MatrixXd repeated_;  ///< runs about the mean of those at their point
+  double mean_leverage_ = 0;
+  Index degrees_ = 0, degrees_repeated_ = 0;
+};
+
+/// Chooses for every positive coordinate with a range of a factor of 2 or more whether its logarithm serves better: the smaller sum of
+/// squared left-out residuals over their spread.
+void choose_scales(BankData& data);
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,100 @@
+// How wrong the surrogate is: the runs' scatter about it, less what is chance of single runs.
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "studies/calibrate/observation.hpp"
+#include "studies/diagnose/naming/fit.hpp"
+#include "studies/diagnose/naming/surrogate.hpp"
+#include "studies/inspect/estimate.hpp"
+
+namespace millscope::diagnose {
+
+bool repeats(const BankRow& a, const BankRow& b) {
+  return a.theta == b.theta &&
+         std::equal(a.effects.begin(), a.effects.end(), b.effects.begin(), b.effects.end(),
+                    [](const Effect& e, const Effect& f) { return e.candidate == f.candidate && e.share == f.share; });
+}
+
+std::vector<std::vector<Index>> points_of(const BankData& data, const std::vector<bool>& used) {
+  std::vector<std::vector<Index>> points;
+  std::vector<std::size_t> first;
+  Index k = 0;
+  for (std::size_t r = 0; r < data.rows.size(); ++r) {
+    if (!used[r]) continue;
+    const auto same = std::find_if(first.begin(), first.end(), [&](std::size_t f) { return repeats(data.rows[f], data.rows[r]); });
+    if (same == first.end())
+      first.push_back(r), points.push_back({k});
+    else
+      points[static_cast<std::size_t>(same - first.begin())].push_back(k);
+    ++k;
+  }
+  return points;
+}
+
+/// Of k runs at one point: √k times their mean residual, whose variance is that of one run where nothing is left unfollowed, and more than
+/// that where something is; and what they differ by. `more`: how much more each row scatters than rows without a candidate.
+void Surrogate::keep_scatter(const std::vector<std::vector<Index>>& points, const MatrixXd& y, const VectorXd& more) {
+  scatter_ = MatrixXd::Zero(static_cast<Index>(points.size()), y.cols());
+  degrees_repeated_ = y.rows() - scatter_.rows();
+  repeated_ = MatrixXd::Zero(y.rows(), y.cols());
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const auto runs = static_cast<double>(points[p].size());
+    Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(y.cols());
+    for (const Index r : points[p])
+      mean += y.row(r) / runs, scatter_.row(static_cast<Index>(p)) += residual_.row(r) / std::sqrt(runs * more[r]);
+    for (const Index r : points[p]) repeated_.row(r) = (y.row(r) - mean) / std::sqrt(more[r]);
+  }
+}
+
+/// Correlations are shrunk in coordinates in which the recording's noise has none: a run's chance is correlated much as that is, so that
+/// there is less to lose than between the observables themselves.
+MatrixXd Surrogate::residual_covariance(const MatrixXd& recording) const {
+  const auto degrees = static_cast<double>(std::max<Index>(1, degrees_));
+  const MatrixXd l = factor(recording);
+  // Rows scaled so that their mean square is the unbiased variance of one run.
+  const MatrixXd scaled = scatter_ * std::sqrt(static_cast<double>(scatter_.rows()) / degrees);
+  const MatrixXd apart = l.triangularView<Eigen::Lower>().solve(scaled.transpose()).transpose();
+  MatrixXd out = l * calibrate::shrunk_covariance(apart, degrees) * l.transpose();
+  for (Index i = 0; i < out.rows(); ++i) {  // what has no scatter gets none of its neighbours'
+    if (scatter_.col(i).isZero(0)) out.row(i).setZero(), out.col(i).setZero();
+  }
+  return out;
+}
+
+/// ρ̂ = tr P/tr S in noise units, with the covariance P of repeated runs. Its relative error is √(2/ν*), ν* = ν (tr S)²/tr S²: ν degrees of
+/// freedom of each observable, and as many observables as their correlations leave independent.
+double Surrogate::chance(const MatrixXd& recording) const {
+  if (degrees_repeated_ == 0) return 0;
+  const MatrixXd s = residual_covariance(recording), w = whitener(recording + s), white = w * s * w.transpose(),
+                 chance = repeated_ * w.transpose();
+  const auto low_end = [&](const MatrixXd& basis) {
+    const MatrixXd all = basis.transpose() * white * basis;
+    const double p = (chance * basis).squaredNorm() / static_cast<double>(degrees_repeated_), trace = all.trace();
+    if (!(trace > 0)) return 0.0;
+    const double degrees = static_cast<double>(degrees_repeated_) * trace * trace / all.squaredNorm();
+    return p / trace / (1 + studies::kNormal90 * std::sqrt(2 / degrees));
+  };
+  const Index n = s.rows();
+  Eigen::ColPivHouseholderQR<MatrixXd> effects(w * first_order().transpose());
+  const MatrixXd span = effects.householderQ() * MatrixXd::Identity(n, effects.rank());
+  return std::min({1.0, low_end(MatrixXd::Identity(n, n)), low_end(span)});
+}
+
+/// What every coordinate and every candidate does to the observables.
+MatrixXd Surrogate::first_order() const {
+  std::vector<Index> rows;
+  for (Index i = 0; i < features_.coordinates(); ++i) rows.push_back(1 + i);
+  for (int j = 0; j < features_.candidates(); ++j) {
+    if (features_.count(j) > 0) rows.push_back(features_.first(j));
+  }
+  MatrixXd out(static_cast<Index>(rows.size()), coefficients_.cols());
+  for (std::size_t k = 0; k < rows.size(); ++k) out.row(static_cast<Index>(k)) = coefficients_.row(rows[k]);
+  return out;
+}
+
+MatrixXd Surrogate::error_covariance(const MatrixXd& recording) const {
+  return (1 - chance(recording) + mean_leverage_) * residual_covariance(recording);
+}
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,112 @@
+// corrected/: the case with the physics that was found, and a study to go on with.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "kernel/output/file.hpp"
+#include "kernel/output/summary.hpp"
+#include "studies/calibrate/outputs.hpp"
+#include "studies/diagnose/pages/outputs.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the study chose besides.
+std::string choices_text(const Question& q) {
+  const calibrate::Observing& o = q.study.observing;
+  std::string out = fmt::format("\nobserve: {{camera: {}, beads: {}, draws: {}", nlohmann::json(o.camera).dump(), o.beads, o.draws);
+  if (o.z_low && o.z_high) fmt::format_to(std::back_inserter(out), ", z: [{:.6g}, {:.6g}]", *o.z_low, *o.z_high);
+  fmt::format_to(std::back_inserter(out), "}}\nbank: {{base: {}, each: {}, first: {}}}\npower_error: {:.6g}\n", q.bank.base, q.bank.each,
+                 q.bank.first, q.study.power_error);
+  if (!q.study.objective.without.empty())
+    fmt::format_to(std::back_inserter(out), "objective: {{without: [{}]}}\n", fmt::join(q.study.objective.without, ", "));
+  if (!q.study.constraints.empty()) out += "constraints:\n";
+  for (const calibrate::Constraint& c : q.study.constraints)
+    fmt::format_to(std::back_inserter(out), "  - {}\n", nlohmann::json(c.text).dump());
+  return out;
+}
+
+/// A base that is no case without a condition's settings has none to settle.
+std::vector<std::string> base_speeds(const fs::path& base) {
+  try {
+    return speeds_settled(config::read_case(base.string()));
+  } catch (const config::UserError&) {
+    return {};
+  }
+}
+
+bool is_named(const Told& t, const Nuisance& n) {
+  return std::find(t.diagnosis.named.begin(), t.diagnosis.named.end(), n.name) != t.diagnosis.named.end();
+}
+
+/// Of a class the best alone.
+std::string what_is_on(const Told& t) {
+  const std::vector<std::string>& named = t.diagnosis.named;
+  const std::string all = fmt::format("{}", fmt::join(named, t.diagnosis.two_effects ? " and " : ", "));
+  return t.diagnosis.two_effects || named.size() == 1 ? all : fmt::format("{}, the best of {}", named.front(), all);
+}
+
+/// `theta`: as fitted. What the camera was found to do is the study's prior from here on: no case could hold it.
+std::string study_text(const Told& t, const VectorXd& theta, const fs::path& folder) {
+  std::string out = fmt::format("# The study {} on the corrected case.\nschema_version: 1\nbase: case.yaml\n\nconditions:\n",
+                                t.question.study.file.filename().string());
+  for (const calibrate::Condition& c : t.question.study.conditions) {
+    fmt::format_to(std::back_inserter(out), "  {}:\n    recording: {}\n    role: {}\n{}", c.name,
+                   nlohmann::json(fs::absolute(c.recording).lexically_proximate(fs::absolute(folder)).string()).dump(),
+                   c.role == calibrate::Role::fit ? "fit" : "held_out", c.settings.empty() ? "" : "    set:\n");
+    for (const std::string& s : c.settings)
+      fmt::format_to(std::back_inserter(out), "      {}: {}\n", s.substr(0, s.find('=')), s.substr(s.find('=') + 1));
+  }
+  out += "\nparameters:\n";
+  for (const calibrate::Parameter& p : t.question.study.parameters)
+    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], tied: [{}]}}\n", p.path, p.name, p.low, p.high,
+                   fmt::join(p.tied, ", "));
+  if (!t.question.nuisances.empty()) out += "\nnuisances:\n";
+  const double* fitted = theta.data() + t.question.study.parameters.size();
+  for (const Nuisance& n : t.question.nuisances) {
+    const double value = *fitted++;
+    const bool moved = n.of_camera() && is_named(t, n) && value > n.low && value < n.high;
+    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], mean: {:.6g}, sigma: {:.6g}{}}}\n", n.path, n.name,
+                   n.low, n.high, moved ? rounded(value) : n.mean, n.sigma, n.usual ? ", apart: true" : "");
+  }
+  return out + choices_text(t.question);
+}
+
+}  // namespace
+
+void write_corrected(const Told& t, const fs::path& folder) {
+  const Naming& n = t.diagnosis.naming;
+  if (n.best < 0 || t.diagnosis.verdict == Verdict::outside_library) return;
+  const bool two = t.diagnosis.two_effects;
+  const FitResult& fit = two ? n.pairs.front().fit : n.judged[static_cast<std::size_t>(n.best)].fit;
+  std::vector<Effect> effects;
+  for (const int r : two ? std::vector<int>{n.best, n.pairs.front().second} : std::vector<int>{n.best}) {
+    const int candidate = t.diagnosis.problem.rivals[static_cast<std::size_t>(r)].candidate;
+    if (candidate >= 0) effects.push_back({candidate, fit.shares.at(effects.size())});
+  }
+  const VectorXd theta = t.diagnosis.problem.data.natural(fit.coded);
+  std::vector<std::string> settings = base_speeds(t.question.study.base);
+  for (const std::string& s : t.question.settings(theta, effects)) settings.push_back(s);
+  const bool of_camera = std::any_of(t.question.nuisances.begin(), t.question.nuisances.end(),
+                                     [&](const Nuisance& nuisance) { return nuisance.of_camera() && is_named(t, nuisance); });
+  fs::create_directories(folder);
+  output::write_file(folder / "case.yaml",
+                     calibrate::case_with(fmt::format("{} {}, as 'millscope diagnose' found it: {}.",
+                                                      of_camera ? "The mill behind" : "With", what_is_on(t), name_of(t.diagnosis.verdict)),
+                                          t.question.study.base, settings, folder));
+  output::write_file(folder / "study.yaml", study_text(t, theta, folder));
+}
+
+void write_outputs(const Told& told, const fs::path& folder) {
+  fs::create_directories(folder);
+  fs::remove_all(folder / "corrected");
+  const std::vector<fs::path> pictures = draw(told, folder / "pictures");
+  write_corrected(told, folder / "corrected");
+  output::write_file(folder / "diagnosis.md", diagnosis_text(told, pictures));
+  output::write_json(folder / "diagnosis.json", diagnosis_json(told));
+}
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,209 @@
+// diagnosis.json.
+#include <cmath>
+
+#include "studies/diagnose/pages/outputs.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json interval(const Interval& i) { return {{"value", i.value}, {"low90", i.low90}, {"high90", i.high90}}; }
+
+Json parameters(const Told& t, const std::vector<Interval>& theta) {
+  Json out = Json::object();
+  for (std::size_t i = 0; i < theta.size(); ++i) out[t.diagnosis.problem.data.theta[i].name] = interval(theta[i]);
+  return out;
+}
+
+/// The fitted value of the candidate's own parameter.
+Json strength(const Told& t, std::size_t j) {
+  const Rival& rival = t.diagnosis.problem.rivals[j];
+  const Judged& judged = t.diagnosis.naming.judged[j];
+  if (rival.freed >= 0) {
+    const Coordinate& c = t.diagnosis.problem.data.theta[static_cast<std::size_t>(rival.freed)];
+    return {{c.name, interval(judged.theta[static_cast<std::size_t>(rival.freed)])}};
+  }
+  const Candidate& c = t.question.candidates[static_cast<std::size_t>(rival.candidate)];
+  if (c.on_or_off()) return {{"share", interval(without_interval(judged.share.value))}};  // there is nothing between
+  Json out = interval(strength_of(c, judged.share));
+  out["unit"] = c.unit;
+  out["vanishes_at"] = c.null_value;
+  return {{c.parameter, out}};
+}
+
+std::string class_of(const Diagnosis& d, std::size_t j) {
+  const int rival = static_cast<int>(j);
+  if (rival == d.naming.best) return "best";
+  for (const int k : d.naming.kept) {
+    if (k == rival) return "not rejected";
+  }
+  return d.naming.judged[j].undetectable ? "undetectable" : d.naming.best >= 0 ? "rejected" : "not needed";
+}
+
+/// Part of the mill that an observable of a fitted condition looks at: names of regional ones are "speed toe".
+std::string region_of(const Told& t, std::size_t condition, Index observable) {
+  Index first = 0;
+  for (const std::size_t c : t.diagnosis.fit) {
+    if (c == condition) break;
+    first += t.workshop.recorded[c].value.size();
+  }
+  const calibrate::Observable& o = t.workshop.recorded[condition].observables[static_cast<std::size_t>(observable - first)];
+  const bool regional = o.group == "occupancy" || o.group == "region_speed";
+  return regional ? o.name.substr(o.name.find(' ') + 1) : "whole mill";
+}
+
+/// λ of a candidate against its share; nothing for a nuisance.
+Json lambda_curve(const Told& t, std::size_t rival) {
+  Json out = Json::array();
+  for (const auto& [share, lambda] : t.diagnosis.naming.judged[rival].lambda_curve) out.push_back({{"share", share}, {"lambda", lambda}});
+  return out;
+}
+
+Json hypotheses(const Told& t) {
+  Json out = Json::array();
+  const Diagnosis& d = t.diagnosis;
+  for (std::size_t j = 0; j < d.naming.judged.size(); ++j) {
+    const Judged& g = d.naming.judged[j];
+    const bool compared = d.naming.best >= 0 && static_cast<int>(j) != d.naming.best;
+    out.push_back({{"name", d.problem.rivals[j].name},
+                   {"kind", d.problem.rivals[j].freed >= 0 ? "nuisance" : "physics"},
+                   {"class", class_of(d, j)},
+                   {"p_value", g.p_family},
+                   {"p_value_alone", g.p},
+                   {"delta_q", g.delta_q},
+                   {"kappa", g.kappa},
+                   {"lambda", g.lambda},
+                   {"lambda_found", g.lambda_found},
+                   {"lambda_at", lambda_curve(t, j)},
+                   {"undetectable", g.undetectable},
+                   {"tested", g.tested},
+                   {"p_against_best", compared ? Json(g.against_best_p) : Json()},
+                   {"p_goodness", g.goodness_p},
+                   {"parameters", strength(t, j)},
+                   {"contact_parameters", parameters(t, g.theta)}});
+  }
+  return out;
+}
+
+Json held_out(const Told& t) {
+  Json out = Json::array();
+  for (const HeldOut& h : t.diagnosis.held_out) {
+    Json scores = Json::array();
+    for (const Score& s : h.scores) {
+      Json one = {{"model", s.prediction.name}, {"is", s.prediction.sentence},   {"simulated", s.prediction.simulated},
+                  {"misfit", s.misfit},         {"power_W", s.prediction.power}, {"power_percent", s.power_percent}};
+      if (t.diagnosis.naming.best >= 0 && s.prediction.name != "corrected")
+        one["improvement_of_corrected"] = {{"value", s.improvement}, {"low90", s.low90}, {"high90", s.high90}};
+      scores.push_back(std::move(one));
+    }
+    Json names = Json::array();
+    const calibrate::Observation& recorded = t.workshop.recorded[h.condition];
+    for (std::size_t i = 0; i < recorded.observables.size(); ++i) {
+      Json row = {{"observable", recorded.observables[i].name},
+                  {"unit", recorded.observables[i].unit},
+                  {"recorded", recorded.value[static_cast<Index>(i)]}};
+      for (const Score& s : h.scores) row[s.prediction.name] = s.prediction.value[static_cast<Index>(i)];
+      names.push_back(std::move(row));
+    }
+    out.push_back({{"condition", t.question.study.conditions[h.condition].name},
+                   {"recorded_power_W", recorded.power.value},
+                   {"p_base", h.base_p},
+                   {"improves_on_every_rival", h.improves},
+                   {"models", scores},
+                   {"observables", names}});
+  }
+  return out;
+}
+
+Json per_speed(const Told& t) {
+  Json out = Json::array();
+  for (const Alone& a : t.diagnosis.alone) {
+    out.push_back({{"condition", t.question.study.conditions[a.condition].name},
+                   {"speed_rad_per_s", t.question.speed[a.condition]},
+                   {"before", parameters(t, a.before)},
+                   {"after", parameters(t, a.after)}});
+  }
+  return out;
+}
+
+Json missing(const Told& t) {
+  Json out = Json::array();
+  for (const MissingForce& m : t.diagnosis.missing) {
+    Json cells = Json::array(), speeds = Json::array();
+    for (const ForceCell& c : m.cells) {
+      cells.push_back({{"r_m", {c.r_low, c.r_high}},
+                       {"angle_deg", {c.angle_low, c.angle_high}},
+                       {"x_m_per_s2", interval(c.x)},
+                       {"y_m_per_s2", interval(c.y)},
+                       {"p_value", c.p}});
+    }
+    for (const ForceBySpeed& s : m.by_speed)
+      speeds.push_back({{"speed_over_shell", {s.low, s.high}}, {"along_motion_m_per_s2", interval(s.along)}});
+    out.push_back({{"condition", t.question.study.conditions[m.condition].name}, {"cells", cells}, {"by_speed", speeds}});
+  }
+  return out;
+}
+
+Json offered(const TermOffer& offer) {
+  Json terms = Json::array();
+  for (const OfferedTerm& t : offer.terms) {
+    terms.push_back({{"name", t.name},
+                     {"equation", t.equation},
+                     {"unit", t.unit},
+                     {"coefficient", interval(t.coefficient)},
+                     {"share_of_halves", t.share}});
+  }
+  return {{"sentence", sentence_of(offer)}, {"cells", offer.cells}, {"explained", offer.explained}, {"terms", terms}};
+}
+
+}  // namespace
+
+Json diagnosis_json(const Told& t) {
+  const Diagnosis& d = t.diagnosis;
+  Json mismatch = Json::array();
+  for (const Mismatch& m : d.naming.mismatch) {
+    const auto c = static_cast<std::size_t>(d.problem.data.condition[static_cast<std::size_t>(m.observable)]);
+    mismatch.push_back({{"observable", observable_name(t, m.observable)},
+                        {"region", region_of(t, c, m.observable)},
+                        {"number", m.observable + 1},
+                        {"condition", t.question.study.conditions[c].name},
+                        {"z", m.z},
+                        {"p_value", m.p},
+                        {"sentence", mismatch_sentence(t, m)}});
+  }
+  Json contact = {{"retuned", parameters(t, d.naming.base_theta)}};
+  if (d.naming.best >= 0) contact["unmasked"] = parameters(t, d.naming.judged[static_cast<std::size_t>(d.naming.best)].theta);
+  Json pairs = Json::array();
+  for (const Pair& p : d.naming.pairs) {
+    pairs.push_back({{"first", d.problem.rivals[static_cast<std::size_t>(p.first)].name},
+                     {"second", d.problem.rivals[static_cast<std::size_t>(p.second)].name},
+                     {"p_second", p.p},
+                     {"p_first", p.p_first},
+                     {"p_goodness", p.goodness_p}});
+  }
+  return {{"schema_version", 1},
+          {"verdict", name_of(d.verdict)},
+          {"sentence", d.sentence},
+          {"named", d.named},
+          {"named_together", d.two_effects},
+          {"next_experiment", d.next_experiment},
+          {"base", {{"p_value", d.naming.base_p}, {"q", d.naming.base.q}, {"observables", d.problem.observed.size()}}},
+          {"hypotheses", hypotheses(t)},
+          {"two_effects", pairs},
+          {"mismatch", mismatch},
+          {"contact_parameters", contact},
+          {"per_speed_friction", per_speed(t)},
+          {"held_out", held_out(t)},
+          {"missing_acceleration", missing(t)},
+          {"offered_terms", d.missing.empty() ? Json() : offered(d.terms)},
+          {"bank",
+           {{"parameter_sets", d.bank.points.size()},
+            {"used", d.problem.data.rows.size()},
+            {"chance", d.naming.chance},
+            {"failures", d.bank.failures}}},
+          {"notes", d.notes},
+          {"study", t.question.study.file.string()}};
+}
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,39 @@
+// What `diagnose` leaves: diagnosis.json, diagnosis.md with pictures, corrected/ with a runnable study.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "studies/diagnose/verdict/diagnosis.hpp"
+
+namespace millscope::diagnose {
+
+/// A diagnosis with what it was made from.
+struct Told {
+  const Question& question;
+  const Workshop& workshop;
+  const Diagnosis& diagnosis;
+};
+
+nlohmann::ordered_json diagnosis_json(const Told& told);
+/// Markdown that names the pictures in `pictures`.
+std::string diagnosis_text(const Told& told, const std::vector<std::filesystem::path>& pictures);
+/// Candidates, mismatch before and after, power and friction over the conditions. SVG and PNG below `folder`; returns the SVG files.
+std::vector<std::filesystem::path> draw(const Told& told, const std::filesystem::path& folder);
+/// corrected/case.yaml and corrected/study.yaml: the base with the best candidate's physics and parameters; nothing where none was found.
+void write_corrected(const Told& told, const std::filesystem::path& folder);
+
+/// The candidate's own parameter over the interval of its share, low end first.
+Interval strength_of(const Candidate& candidate, const Interval& share);
+/// An observable's name with its condition: "speed75: speed in region 3 (m/s)".
+std::string observable_name(const Told& told, Index observable);
+/// "recording 0.30, retuned base 0.27 (z = 3.1 …)" of one row of the mismatch.
+std::string mismatch_sentence(const Told& told, const Mismatch& m);
+
+/// All of the above into `folder`.
+void write_outputs(const Told& told, const std::filesystem::path& folder);
+
+}  // namespace millscope::diagnose

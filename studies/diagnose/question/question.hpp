@@ -1,0 +1,71 @@
+// study.yaml of a diagnosis: a study of `calibrate` with what may be other than it is said to be.
+//
+//   nuisances:                                   # beside the parameters; with a prior
+//     fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %, name: filling}
+//     stiffness_factor: {range: [0.001, 0.01], mean: 0.003, sigma: 0.003, apart: true} # varied in simulations of its own only
+//     camera.frame_error.offset_x: {range: [-5 mm, 5 mm], sigma: 1 mm, name: axis_x}   # of the camera: no simulation more
+//   hypotheses:                                  # without this map: all that are loaded and apply
+//     rolling_resistance: {}
+//     speed_dependent_restitution: {set: {pairs.glass~glass.reference_restitution: 0.8}}
+//     lining: {sentence: The liner is rubber., path: pairs.glass~liner.restitution, without: 0.55, range: [0.2, 0.55]}
+//     ends: {sentence: The mill has end faces., set: {geometry.liner.end_faces: true}}
+//   bank: {base: 24, each: 10}
+//   power_error: 0.5 %                           # of speed and meter together
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studies/calibrate/study.hpp"
+#include "studies/diagnose/question/candidates.hpp"
+
+namespace millscope::diagnose {
+
+/// A value of the case, or of the recording's camera, that is known with an error only.
+struct Nuisance {
+  std::string path, name;    ///< of the camera: camera.frame_error.PARAMETER
+  double low = 0, high = 0;  ///< what the bank covers
+  double mean = 0, sigma = 0;
+  std::optional<double> usual;  ///< varied apart: the case's own value, which all other simulations have
+  config::Location where;
+
+  bool of_camera() const { return path.starts_with("camera."); }
+};
+
+/// How many simulations of each kind the bank has in every condition.
+struct BankSize {
+  int base = 24;  ///< without an effect
+  int each = 10;  ///< with each candidate; half as many with it and each nuisance apart
+  int first = 4;  ///< of them before the candidate is screened
+};
+
+struct Question {
+  calibrate::Study study;
+  std::vector<Nuisance> nuisances;  ///< those of the case, those of the case that are varied apart, those of the camera
+  std::vector<Candidate> candidates;
+  std::vector<std::string> left_out;  ///< hypotheses that do not apply, and why
+  BankSize bank;
+  std::vector<double> speed;  ///< |Ω| of every condition, rad/s
+
+  std::size_t dimensions() const { return study.parameters.size() + nuisances.size(); }
+  /// Of θ, that vary in every simulation.
+  std::size_t case_dimensions() const;
+  std::vector<Coordinate> coordinates() const;
+  /// "path=value" of a parameter set, rounded as the bank rounds.
+  std::vector<std::string> settings(const VectorXd& theta, const std::vector<Effect>& effects) const;
+  /// A camera file with what the recording's camera does besides at θ, before all else; "" where the study has no such nuisance.
+  std::string camera(const VectorXd& theta) const;
+};
+
+/// A number of the case at a path. Throws config::UserError at `where` when the case does not say it.
+double value_in(const config::Case& c, const std::string& path, const config::Location& where);
+
+/// "path=… rad/s" for every speed that a case gives in % of critical: of the mill and of parts that turn by themselves. The critical speed
+/// depends on the largest bead, which a candidate may change; a recorded mill turned as it did.
+std::vector<std::string> speeds_settled(const config::Case& c);
+
+/// Throws config::UserError with file:line: unknown keys, hypotheses that no loaded plugin has, a prior outside the range.
+Question read_question(const std::filesystem::path& file, const std::vector<std::string>& overrides, const host::Registry& registry);
+
+}  // namespace millscope::diagnose

@@ -1,0 +1,83 @@
+#include "studies/diagnose/verdict/recorded_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "studies/diagnose/naming/surrogate.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+/// Mean correlation of the simulated observations of a condition; the identity where the bank has none.
+MatrixXd correlation_of(const Bank& bank, std::size_t condition, Index size) {
+  const auto k = static_cast<std::size_t>(std::find(bank.conditions.begin(), bank.conditions.end(), condition) - bank.conditions.begin());
+  MatrixXd sum = MatrixXd::Zero(size, size);
+  int runs = 0;
+  for (const auto& seen : bank.seen) {
+    if (k >= seen.size() || !seen[k]) continue;
+    const VectorXd scale = seen[k]->covariance.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    sum += scale.asDiagonal() * seen[k]->covariance * scale.asDiagonal();
+    ++runs;
+  }
+  return runs == 0 ? MatrixXd(MatrixXd::Identity(size, size)) : MatrixXd(sum / runs);
+}
+
+}  // namespace
+
+void add_recorded(const Question& question, const Workshop& workshop, const Bank& bank, const std::vector<std::size_t>& conditions,
+                  Problem& problem) {
+  Index n = 0;
+  for (const std::size_t c : conditions) n += workshop.recorded[c].value.size();
+  problem.observed.resize(n);
+  problem.covariance = MatrixXd::Zero(n, n);
+  problem.noise.assign(2, problem.covariance);
+  Index at = 0;
+  for (const std::size_t c : conditions) {
+    const calibrate::Observation& o = workshop.recorded[c];
+    const Index size = o.value.size();
+    const VectorXd deviation = o.covariance.diagonal().cwiseSqrt();
+    problem.observed.segment(at, size) = o.value;
+    MatrixXd own = o.covariance, simulated = own;  // a profile's errors are stated, its correlations too
+    if (o.of_tracks()) simulated = deviation.asDiagonal() * correlation_of(bank, c, size) * deviation.asDiagonal();
+    for (Index i = 0; i < size; ++i) {
+      if (o.observables[static_cast<std::size_t>(i)].group != "power") continue;
+      const double variance = std::pow(question.study.power_error * o.value[i], 2);
+      own(i, i) += variance, simulated(i, i) += variance;
+    }
+    problem.noise[0].block(at, at, size, size) = own;
+    problem.noise[1].block(at, at, size, size) = simulated;
+    problem.covariance.block(at, at, size, size) = 0.5 * (own + simulated);
+    at += size;
+  }
+}
+
+Problem problem_of(const Question& question, const Workshop& workshop, const Bank& bank, const std::vector<std::size_t>& conditions) {
+  Problem p;
+  p.data = data_of(question, bank, conditions);
+  p.rivals = rivals_of(question);
+  add_recorded(question, workshop, bank, conditions, p);
+  choose_scales(p.data);
+  return p;
+}
+
+Problem problem_alone(const Question& question, const Workshop& workshop, const Bank& bank, std::size_t condition, const BankData& like) {
+  Problem p;
+  p.data = data_of(question, bank, {condition});
+  for (std::size_t i = 0; i < p.data.theta.size(); ++i) p.data.theta[i].logarithmic = like.theta[i].logarithmic;
+  add_recorded(question, workshop, bank, {condition}, p);
+  return p;
+}
+
+std::vector<Rival> rivals_of(const Question& question) {
+  std::vector<Rival> rivals;
+  for (std::size_t j = 0; j < question.candidates.size(); ++j) {
+    const Candidate& c = question.candidates[j];
+    rivals.push_back({c.name, static_cast<int>(j), -1, c.on_or_off() ? ShareRange{1, 1} : c.range, c.excludes});
+  }
+  for (std::size_t i = 0; i < question.nuisances.size(); ++i) {
+    rivals.push_back({question.nuisances[i].name, -1, static_cast<Index>(question.study.parameters.size() + i), {}, {}});
+  }
+  return rivals;
+}
+
+}  // namespace millscope::diagnose

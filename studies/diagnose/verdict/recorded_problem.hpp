@@ -1,0 +1,27 @@
+// Recordings as the numbers that a diagnosis has to explain.
+#pragma once
+
+#include <vector>
+
+#include "studies/diagnose/bank/bank.hpp"
+#include "studies/diagnose/naming/naming.hpp"
+
+namespace millscope::diagnose {
+
+/// Recordings of some conditions side by side. The sizes of their errors are the recordings' own, the power's widened by that of speed
+/// and meter. What is not known well is how the errors of 35 numbers are correlated: a recording has ten or twenty independent blocks and
+/// its correlations are shrunk towards none; those of simulated beads, the mean over the bank, know nothing of the camera's own wander.
+/// Observables are weighed by the mean of both, and p-values hold under either as the law of noise.
+void add_recorded(const Question& question, const Workshop& workshop, const Bank& bank, const std::vector<std::size_t>& conditions,
+                  Problem& problem);
+
+/// Bank and recordings of some conditions, with the rivals of the question.
+Problem problem_of(const Question& question, const Workshop& workshop, const Bank& bank, const std::vector<std::size_t>& conditions);
+
+/// Bank and recording of one condition, each coordinate on the scale that `like` has chosen; without rivals.
+Problem problem_alone(const Question& question, const Workshop& workshop, const Bank& bank, std::size_t condition, const BankData& like);
+
+/// Candidates of the question and nuisances that may leave their prior.
+std::vector<Rival> rivals_of(const Question& question);
+
+}  // namespace millscope::diagnose

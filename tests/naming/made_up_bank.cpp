@@ -1,0 +1,69 @@
+#include "made_up_bank.hpp"
+
+#include <boost/random/sobol.hpp>
+#include <cmath>
+
+#include "studies/emulate/random.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+/// A fixed direction in the space of observables.
+VectorXd direction(const MadeUp& mill, std::uint64_t number) {
+  emulate::Random random(4711, number);
+  return random.normals(mill.conditions * mill.observables);
+}
+
+/// The first points of Sobol' in -1 … 1.
+MatrixXd spread(int runs, int dimensions) {
+  boost::random::sobol engine(static_cast<std::size_t>(dimensions));
+  MatrixXd coded(runs, dimensions);
+  for (Index run = 0; run < runs; ++run) {
+    for (Index i = 0; i < dimensions; ++i) coded(run, i) = 2 * (static_cast<double>(engine() >> 11) * 0x1p-53) - 1;
+  }
+  return coded;
+}
+
+}  // namespace
+
+VectorXd truth_of(const MadeUp& mill, const VectorXd& u, const std::vector<double>& s) {
+  VectorXd y =
+      3 * direction(mill, 1) * (u[0] - 0.5 * mill.flattens * u[0] * u[0]) + 2 * direction(mill, 2) * u[1] + 1.5 * direction(mill, 3) * u[2];
+  y += 0.8 * direction(mill, 4) * u[0] * u[0] + 0.5 * direction(mill, 5) * u[0] * u[1];
+  y += s[0] * (2.5 * direction(mill, 6) + 2 * direction(mill, 1)) + 0.5 * s[0] * u[0] * direction(mill, 7);
+  y += s[1] * direction(mill, 1);
+  y += s[2] * 0.02 * direction(mill, 8);
+  y += mill.cubic * (direction(mill, 9) * u[0] * u[0] * u[0] + direction(mill, 10) * u[0] * u[1] * u[1]);
+  return y;
+}
+
+Problem made_up_problem(const MadeUp& mill, const VectorXd& coded, const std::vector<double>& shares, std::uint64_t seed) {
+  Problem p;
+  p.data.theta = {{"bead_friction", -1, 1, 0, 0, false}, {"wall_friction", -1, 1, 0, 0, false}, {"filling", -1, 1, 0, 0.35, false}};
+  p.data.candidates = 3;
+  const char* names[] = {"visible", "concealed", "faint"};
+  for (int j = 0; j < 3; ++j) p.rivals.push_back({names[j], j, -1, {}, {}});
+  p.rivals.push_back({"filling", -1, 2, {}, {}});
+  const MatrixXd base = spread(mill.runs, 3), with = spread(3 * mill.each, 4);
+  emulate::Random random(seed, 0);
+  const Index n = mill.conditions * mill.observables;
+  std::vector<VectorXd> values;
+  const auto add = [&](const VectorXd& u, int candidate, double share) {
+    std::vector<double> s(3, 0.0);
+    if (candidate >= 0) s[static_cast<std::size_t>(candidate)] = share;
+    p.data.rows.push_back({u, candidate < 0 ? std::vector<Effect>{} : std::vector<Effect>{{candidate, share}}});
+    values.push_back(truth_of(mill, u, s) + (candidate < 0 ? 1 : mill.chancier) * mill.run_noise * random.normals(n));
+  };
+  for (Index r = 0; r < base.rows(); ++r) add(base.row(r).transpose(), -1, 0);
+  for (Index r = 0; r < mill.again; ++r) add(base.row(r).transpose(), -1, 0);
+  for (Index r = 0; r < with.rows(); ++r)
+    add(with.row(r).head(3).transpose(), static_cast<int>(r) % 3, mill.weakest + (1 - mill.weakest) * with(r, 3));
+  p.data.value.resize(static_cast<Index>(values.size()), n);
+  for (std::size_t r = 0; r < values.size(); ++r) p.data.value.row(static_cast<Index>(r)) = values[r].transpose();
+  for (Index i = 0; i < n; ++i) p.data.condition.push_back(static_cast<int>(i) / mill.observables);
+  p.observed = truth_of(mill, coded, shares) + mill.recording_noise * random.normals(n);
+  p.covariance = MatrixXd::Identity(n, n) * mill.recording_noise * mill.recording_noise;
+  return p;
+}
+
+}  // namespace millscope::diagnose

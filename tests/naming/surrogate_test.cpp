@@ -1,0 +1,120 @@
+// The surrogate of the bank and fits with it, on a mill that is a formula.
+#include "studies/diagnose/naming/surrogate.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "made_up_bank.hpp"
+#include "studies/diagnose/naming/fit.hpp"
+
+using namespace millscope;
+using namespace millscope::diagnose;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+
+namespace {
+
+VectorXd point(double a, double b, double c) { return (VectorXd(3) << a, b, c).finished(); }
+
+}  // namespace
+
+TEST_CASE("the surrogate follows a quadratic mill, and its left-out residuals have the runs' noise") {
+  const MadeUp mill;
+  const Problem p = made_up_problem(mill, point(0.2, -0.3, 0), {0, 0, 0}, 1);
+  const Features features(p.data);
+  const Surrogate s(p.data, features, std::vector<bool>(p.data.rows.size(), true));
+  const VectorXd error = s.at(point(0.3, 0.1, 0.2), {{0, 0.5}}) - truth_of(mill, point(0.3, 0.1, 0.2), {0.5, 0, 0});
+  CHECK(std::sqrt(error.squaredNorm() / static_cast<double>(error.size())) < mill.run_noise);
+  CHECK_THAT(std::sqrt(s.residual_covariance(p.covariance).diagonal().mean()), WithinRel(mill.run_noise, 0.15));
+}
+
+TEST_CASE("how much more runs with an effect scatter is told without bias, and so is one run's covariance") {
+  constexpr int kBanks = 40;
+  for (const double chancier : {1.0, 2.0, 5.0}) {
+    for (const bool small : {true, false}) {
+      MadeUp mill;
+      mill.runs = small ? 24 : 48, mill.each = small ? 8 : 16, mill.again = 8, mill.chancier = chancier, mill.run_noise = 0.6;
+      double ratio = 0, covariance = 0;
+      for (std::uint64_t seed = 1; seed <= kBanks; ++seed) {
+        const Problem p = made_up_problem(mill, point(0, 0, 0), {0, 0, 0}, 40 + seed);
+        const Surrogate s(p.data);
+        ratio += s.scatter_with(0) / kBanks;
+        covariance += s.residual_covariance(p.covariance).diagonal().mean() / kBanks;
+      }
+      CAPTURE(chancier, small, ratio, covariance);
+      CHECK_THAT(ratio, WithinRel(chancier * chancier, 0.15));
+      CHECK_THAT(covariance, WithinRel(mill.run_noise * mill.run_noise, 0.06));
+    }
+  }
+}
+
+TEST_CASE("the surrogate's error is the same whether the noise of the observables is independent or correlated") {
+  const auto difference = [](Problem p) {
+    const MatrixXd independent = Surrogate(p.data).residual_covariance(p.covariance);
+    const Index n = independent.rows();
+    MatrixXd mixed = MatrixXd::Zero(n, n);  // every observable shares nine tenths with the one before
+    for (Index i = 0; i < n; ++i) {
+      for (Index j = 0; j <= i; ++j) mixed(i, j) = std::pow(0.9, static_cast<double>(i - j));
+    }
+    p.data.value *= mixed.transpose();
+    const MatrixXd correlated = Surrogate(p.data).residual_covariance(mixed * p.covariance * mixed.transpose());
+    return (correlated - mixed * independent * mixed.transpose()).norm() / correlated.norm();
+  };
+  Problem p = made_up_problem({}, point(0, 0, 0), {0, 0, 0}, 1);
+  CHECK(difference(p) < 0.1);  // the weights of runs with an effect go by the observables as they are
+  std::erase_if(p.data.rows, [](const BankRow& row) { return !row.effects.empty(); });
+  p.data.value.conservativeResize(static_cast<Index>(p.data.rows.size()), Eigen::NoChange);  // those without come first
+  CHECK(difference(p) < 1e-9);
+}
+
+TEST_CASE("runs that are repeated tell the chance of runs from what the surface cannot follow") {
+  const auto chance = [](double run_noise, double cubic, std::uint64_t seed) {
+    MadeUp mill;
+    mill.run_noise = run_noise, mill.cubic = cubic, mill.again = 8;
+    const Problem p = made_up_problem(mill, point(0, 0, 0), {0, 0, 0}, seed);
+    return Surrogate(p.data).chance(p.covariance);
+  };
+  double all = 0, exact = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) all += chance(0.3, 0, seed) / 40, exact += chance(0.03, 1, seed) / 40;
+  CHECK(all > 0.65);  // 1 less what eight degrees of freedom leave open
+  CHECK(all < 0.95);
+  CHECK(exact < 0.1);
+  const Problem alone = made_up_problem({}, point(0, 0, 0), {0, 0, 0}, 1);
+  const Surrogate s(alone.data);
+  CHECK(s.chance(alone.covariance) == 0);
+  CHECK(s.error_covariance(alone.covariance)(3, 3) > 1.1 * s.residual_covariance(alone.covariance)(3, 3));
+  CHECK(s.error_covariance(alone.covariance)(3, 3) < 1.6 * s.residual_covariance(alone.covariance)(3, 3));
+}
+
+TEST_CASE("a fit finds its truth without noise, at limits too") {
+  MadeUp mill;
+  mill.run_noise = 1e-6;
+  const Problem p = made_up_problem(mill, point(0, 0, 0), {0, 0, 0}, 2);
+  const Features features(p.data);
+  const Surrogate s(p.data, features, std::vector<bool>(p.data.rows.size(), true));
+  const Weighting weighting(p.covariance, s);
+  const Model model(p.data, s, weighting, {{0}, std::vector<ShareRange>(3)});
+  for (const double share : {0.0, 0.4, 1.0}) {
+    const FitResult f = model.fit(truth_of(mill, point(0.4, -0.6, 0), {share, 0, 0}));
+    CHECK_THAT(f.coded[0], WithinAbs(0.4, 1e-3));
+    CHECK_THAT(f.coded[1], WithinAbs(-0.6, 1e-3));
+    CHECK_THAT(f.shares[0], WithinAbs(share, 1e-3));
+    CHECK(f.q < 1e-3);
+  }
+}
+
+TEST_CASE("with an effect at nothing a model is the base, however little the bank tells of it") {
+  MadeUp mill;
+  mill.each = 8, mill.run_noise = 2, mill.chancier = 2;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Problem p = made_up_problem(mill, point(0.2, -0.3, 0), {0, 0, 0}, seed);
+    const Surrogate s(p.data);
+    const Weighting w(p.covariance, s);
+    const Model base(p.data, s, w, {});
+    const FitResult none = base.fit(p.observed);
+    for (const int j : {0, 1, 2}) {
+      const Model with(p.data, s, w, {{j}, std::vector<ShareRange>(3)});
+      CHECK_THAT(with.fit_holding(3, 0, p.observed).q, WithinRel(none.q, 1e-6));
+    }
+  }
+}
