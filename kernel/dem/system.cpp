@@ -205,9 +205,7 @@ std::array<double, 3> System::centre_of_mass() const {
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
     const double m = 1.0 / particles.motion[i].inverse_mass;
     const PositionLine& x = particles.position[i];
-    sum[0] += m * x.x;
-    sum[1] += m * x.y;
-    sum[2] += m * x.z;
+    for (std::size_t a = 0; a < 3; ++a) sum[a] += m * x.centre[a];
     mass += m;
   }
   for (double& s : sum) s /= mass;
@@ -268,8 +266,7 @@ std::uint64_t System::state_hash() const {
     hash.add(&particles.id[i], sizeof particles.id[i]);
     const PositionLine& x = particles.position[i];
     // Periodic coordinates are wrapped at rebuilds only: hash them wrapped.
-    const double* c = &x.x;
-    for (int a = 0; a < 3; ++a) hash.add(wrapped(settings_, a, c[a]));
+    for (int a = 0; a < 3; ++a) hash.add(wrapped(settings_, a, x.centre[a]));
     for (int a = 0; a < 3; ++a) hash.add(particles.half[i].v[a]);
     for (int a = 0; a < 3; ++a) hash.add(particles.half[i].w[a]);
   }
