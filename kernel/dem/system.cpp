@@ -314,22 +314,4 @@ std::uint64_t System::state_hash() const {
   return hash.value();
 }
 
-std::size_t System::memory_bytes() const {
-  const std::size_t n = particles.position.size();
-  std::size_t bytes = n * (2 * sizeof(PositionLine) + 3 * sizeof(MotionLine) + sizeof(AccelerationLine) + sizeof(ReferenceLine) + 13);
-  for (const auto& slab : slabs_) {
-    for (const PairList& list : slab->lists) {
-      bytes += list.owner.capacity() * 9;
-      for (const auto& h : list.history) bytes += 8 * h.capacity();
-      for (const auto& h : list.next) bytes += 8 * h.capacity();
-    }
-    bytes += slab->halo.capacity() * sizeof(ForceLine);
-    for (const WallSlab& wall : slab->walls) {
-      bytes += wall.bead.capacity() * 12 + wall.candidates.capacity() * 4 +
-               wall.active.bead.capacity() * (32 + 8 * wall.active.history.size()) * 2;
-    }
-  }
-  return bytes;
-}
-
 }  // namespace millscope::dem

@@ -157,6 +157,16 @@ class System {
   std::size_t memory_bytes() const;  ///< of beads, lists and walls
 
  private:
+  /// Time and shape of the state: step, rebuilds, whether one is due; partitions, histories per contact, pairs of materials.
+  std::array<std::int64_t, 6> counters() const;
+  template <class Self, class Visit>
+  static void each_bead_array(Self& self, Visit& visit);
+  template <class Self, class Visit>
+  static void each_list_array(Self& self, Visit& visit);
+  template <class Self, class Visit>
+  static void each_pair_array(Self& self, Visit& visit);
+  template <class Self, class Visit>
+  static void each_wall_array(Self& self, Visit& visit);
   void prepare();
   void rebuild();
   template <class Values>
