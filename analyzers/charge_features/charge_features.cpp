@@ -11,6 +11,7 @@
 //   free surface, regions   regions.hpp
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <optional>
 
 #include "analyzers/charge_features/regions.hpp"
@@ -49,7 +50,7 @@ FieldShape shape_of(const Parameters& p, const AnalyzerContext& context) {
           sense,
           std::fabs(context.omega),
           Bins(-half, half, cells + 4),
-          Bins(-kPi, kPi, kAngleBins),
+          Bins(-std::numbers::pi, std::numbers::pi, kAngleBins),
           Bins(0, kSlack * radius, static_cast<std::int64_t>(std::lround(kSlack * kRings))),
           Bins(-kSlack * radius, kSlack * radius, kHeightBins),
           lifters,

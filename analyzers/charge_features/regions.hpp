@@ -11,6 +11,7 @@
 // A cell has the first label that fits of 3, 4, 1, 2. On the map cells show 5 where beads lay between the lifters.
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -92,7 +93,8 @@ inline double surface_angle(const ChargeFields& fields, const std::vector<Region
   for (std::int64_t iy = 0; iy < cells.count; ++iy) {
     for (std::int64_t ix = 0; ix < cells.count; ++ix) {
       if (labels[static_cast<std::size_t>(iy * cells.count + ix)] != kCascading) continue;
-      if (std::fabs(std::remainder(shape.angle(cells.centre(ix), cells.centre(iy)) - middle, 2 * kPi)) > kPi / 6) continue;
+      if (std::fabs(std::remainder(shape.angle(cells.centre(ix), cells.centre(iy)) - middle, 2 * std::numbers::pi)) > std::numbers::pi / 6)
+        continue;
       vx += fields.cell(ix, iy)[kCellVx];
       vy += fields.cell(ix, iy)[kCellVy];
     }

@@ -11,6 +11,7 @@
 // of the centre of circulation. Departure median and last: the same for the net inward flow after it.
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include "analyzers/charge_features/fields.hpp"
@@ -162,7 +163,8 @@ inline double flow_quantile(const std::vector<double>& flow, const Bins& angles,
 
 inline ShellFeatures find_shell_features(const ChargeFields& fields, const Centre& centre) {
   const Bins& angles = fields.shape().angles;
-  const std::int64_t turn = angles.at(fields.shape().angle(centre.x, centre.y)), top = angles.count - 1, bottom = angles.at(-2 * kPi / 3);
+  const std::int64_t turn = angles.at(fields.shape().angle(centre.x, centre.y)), top = angles.count - 1,
+                     bottom = angles.at(-2 * std::numbers::pi / 3);
   std::vector<double> flow = detail::shell_flow(fields);
   ShellFeatures found;
   if (detail::exchange(fields, flow, bottom, turn) < detail::kLeastExchange) return found;

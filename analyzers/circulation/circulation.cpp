@@ -9,6 +9,7 @@
 // The centre is the option's, or that of the mean flow in the block itself; blocks without one are left out of the circulations, and their
 // time is told. Gaps and the ends of blocks cut circulations: those count as unfinished in S(t), which corrects for them as long as the
 // blocks are longer than a circulation.
+#include <numbers>
 #include <optional>
 
 #include "analyzers/circulation/statistics.hpp"
@@ -127,9 +128,9 @@ class Circulation {
 
   void add_rates(Results& results, const double* const* sums) const {
     const double* totals = sums[kTotals];
-    const double rate = ratio(totals[kAngle] / (2 * kPi), totals[kFollowed]);
+    const double rate = ratio(totals[kAngle] / (2 * std::numbers::pi), totals[kFollowed]);
     results.add("circulation_rate", "1/s", rate, "Turns about the centre of circulation per second.");
-    results.add("circulations_per_turn", "1", rate * 2 * kPi / omega_, "Circulations per turn of the mill.");
+    results.add("circulations_per_turn", "1", rate * 2 * std::numbers::pi / omega_, "Circulations per turn of the mill.");
     results.add("mean_circulation_time", "s", rate > 0 ? 1 / rate : kNaN, "One over the rate; unbiased by gaps and the length of blocks.");
     results.add("circulation_centre_x", "m", ratio(totals[kCentreX], totals[kFollowed]),
                 "Mean over the blocks of the centre that was used.", kOdd);
@@ -170,7 +171,7 @@ class Circulation {
                 "D of msd = 2 D lag + offset; NaN where blocks are shorter than the lags. End faces that are near make it too small.");
     results.add("axial_offset", "m^2", spread.offset, "Offset of that line: twice the variance of the measurement, and fast motion.");
     if (length_ > 0) {
-      results.add("axial_mixing_time", "s", length_ * length_ / (kPi * kPi * spread.dispersion),
+      results.add("axial_mixing_time", "s", length_ * length_ / (std::numbers::pi * std::numbers::pi * spread.dispersion),
                   "Time in which a bead forgets where along the axis it was: L^2/(pi^2 D).");
     }
   }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "analyzers/common/angle.hpp"
@@ -117,14 +118,14 @@ inline Circulations follow(const FrameBlock& block, const Track& track, double s
     const std::int64_t s = track.points[i].sample;
     const double now = angle_of(block.position[1][s] - centre_y, sense * (block.position[0][s] - centre_x)) - line;
     if (i == 0) {
-      angle = now - 2 * kPi * std::floor(now / (2 * kPi));  // 0 … 2π: the first passage is at 2π
+      angle = now - 2 * std::numbers::pi * std::floor(now / (2 * std::numbers::pi));  // 0 … 2π: the first passage is at 2π
       found.angle = -angle;
       highest = angle;
       before = now;
       continue;
     }
-    const double next = angle + std::remainder(now - before, 2 * kPi);
-    const double turn = 2 * kPi * (std::floor(highest / (2 * kPi)) + 1);
+    const double next = angle + std::remainder(now - before, 2 * std::numbers::pi);
+    const double turn = 2 * std::numbers::pi * (std::floor(highest / (2 * std::numbers::pi)) + 1);
     if (next >= turn) {
       const double t = track.time(i - 1) + (track.time(i) - track.time(i - 1)) * (turn - angle) / (next - angle);
       if (last >= 0) found.completed.push_back(t - last);

@@ -4,14 +4,14 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "millscope/analyzer_adapter.hpp"
 
 namespace millscope::analyzers {
 
-inline constexpr double kPi = 3.14159265358979323846;
-inline constexpr double kDegrees = 180 / kPi;  ///< degrees in one radian
+inline constexpr double kDegrees = 180 / std::numbers::pi;  ///< degrees in one radian
 
 /// +1: counter-clockwise about z, −1: clockwise, 0: unknown.
 inline double turning_sense(const AnalyzerContext& context) { return context.omega > 0 ? 1.0 : context.omega < 0 ? -1.0 : 0.0; }

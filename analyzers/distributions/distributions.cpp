@@ -6,6 +6,7 @@
 //
 // What lies outside the bins is not moved into them: it stands in `…_outside_percent`.
 #include <array>
+#include <numbers>
 #include <vector>
 
 #include "analyzers/common/grid.hpp"
@@ -131,7 +132,7 @@ class Distributions {
     std::vector<double> density(static_cast<std::size_t>(rings.count));
     for (std::int64_t i = 0; i < rings.count; ++i) {
       const double inner = rings.edge(i), outer = rings.edge(i + 1);
-      density[static_cast<std::size_t>(i)] = ratio(slots[i + 1], all) / (kPi * (outer * outer - inner * inner));
+      density[static_cast<std::size_t>(i)] = ratio(slots[i + 1], all) / (std::numbers::pi * (outer * outer - inner * inner));
     }
     results.add("radial_density", "1/m^2", density.data(), {density.size()}, "Fraction of the beads' time per area of the ring.",
                 {"r_edges"});

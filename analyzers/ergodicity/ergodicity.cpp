@@ -8,6 +8,7 @@
 // `inflation` is how much more the occupancy of coarse cells (a tenth of the mill's diameter) differs between beads than chance visits
 // would make it: a bead that stays on its streamline for a while visits the same cells again.
 #include <array>
+#include <numbers>
 
 #include "analyzers/common/grid.hpp"
 #include "analyzers/common/mill.hpp"
@@ -146,7 +147,7 @@ class Ergodicity {
     const double* moment = sums[kMoments] + 3 * q;
     const double mean = ratio(moment[1], moment[0]), variance = ratio(moment[2], moment[0]) - mean * mean;
     return find_fluctuation({sums[kWindows], sums[kWindows] + 1 + q, windows_, beads_, kQuantities + 1}, variance,
-                            2 * kPi / std::fabs(context_.omega));
+                            2 * std::numbers::pi / std::fabs(context_.omega));
   }
 
   static void add_verdict(Results& results, double verdict, const std::vector<double>& elapsed) {

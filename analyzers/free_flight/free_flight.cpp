@@ -9,6 +9,7 @@
 // simulation seen by the same camera, not with 9.81.
 #include <algorithm>
 #include <array>
+#include <numbers>
 
 #include "analyzers/common/flight.hpp"
 #include "analyzers/common/grid.hpp"
@@ -47,7 +48,7 @@ class FreeFlight {
         roughest_(p.number("roughest")),
         least_points_(static_cast<std::size_t>(p.integer("least_points"))),
         stride_(even_stride(context.largest_id, p.integer("beads"))),
-        angles_(-kPi, kPi, kAngleBins) {}
+        angles_(-std::numbers::pi, std::numbers::pi, kAngleBins) {}
 
   std::vector<ArrayInfo> arrays() const {
     return {additive("normal", "mixed", {4, 4}), additive("right", "mixed", {4}), additive("totals", "mixed", {kTotalCount}),

@@ -7,6 +7,7 @@
 // with the rate. In free flight a = g; elsewhere it is the mean force per mass of walls, neighbours, fluid. Along the motion:
 // Σ v̂·Δv / Σ Δt by speed, v̂ the direction of the mean of both velocities: what brakes fast beads.
 #include <algorithm>
+#include <numbers>
 #include <vector>
 
 #include "analyzers/common/angle.hpp"
@@ -37,7 +38,7 @@ class MeanAcceleration {
   MeanAcceleration(const Parameters& p, const AnalyzerContext& context)
       : range_(axial_range(p, context)),
         rings_(0, shell_radius(context), p.integer("rings")),
-        sectors_(-kPi, kPi, p.integer("sectors")),
+        sectors_(-std::numbers::pi, std::numbers::pi, p.integer("sectors")),
         speeds_(0, p.number("largest_speed"), p.integer("bins_speed")),
         sense_(known_sense(context)),
         shell_speed_(std::fabs(context.omega) * shell_radius(context)) {}
@@ -66,7 +67,7 @@ class MeanAcceleration {
     }
     for (std::size_t i = 0; i < speeds; ++i) along[i] = ratio(sums[1][i * kSpeedMoments + kAlong], sums[1][i * kSpeedMoments + kSpeedTime]);
     results.add("r_edges", "m", rings_.edges().data(), {rings + 1}, "Edges of the rings.");
-    results.add("angle_edges", "deg", sectors_.edges(180 / kPi).data(), {sectors + 1},
+    results.add("angle_edges", "deg", sectors_.edges(180 / std::numbers::pi).data(), {sectors + 1},
                 "Edges of the sectors, from 6 o'clock in the turning sense.");
     results.add("speed_edges", "1", speeds_.edges().data(), {speeds + 1}, "Edges of the bins of speed over the shell's.");
     results.add("x", "m/s^2", x.data(), {rings, sectors}, "Mean acceleration along x.", {"r_edges", "angle_edges"}, kOdd);

@@ -5,13 +5,14 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 namespace millscope::analyzers::models {
 
 /// Eq. 3.1: N_c = 42.3/√(D − d) rpm; here in rad/s. Needs D > d.
-inline double critical_speed(double diameter, double bead) { return 42.3 / std::sqrt(diameter - bead) * 3.14159265358979323846 / 30; }
+inline double critical_speed(double diameter, double bead) { return 42.3 / std::sqrt(diameter - bead) * std::numbers::pi / 30; }
 
-inline double volume(double diameter, double length) { return 0.25 * 3.14159265358979323846 * diameter * diameter * length; }
+inline double volume(double diameter, double length) { return 0.25 * std::numbers::pi * diameter * diameter * length; }
 
 /// Eq. 3.2: J = V_beads/(V_mill (1 − φ)).
 inline double filling(double mass, double density, double mill_volume, double porosity) {

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,7 @@ class Cells {
     const double half = parameters.given("half_width") ? parameters.number("half_width") : shell_radius(context);
     if (polar_) {
       sense_ = known_sense(context);
-      fast_ = Bins(-kPi, kPi, parameters.integer("cells_theta"));
+      fast_ = Bins(-std::numbers::pi, std::numbers::pi, parameters.integer("cells_theta"));
       middle_ = Bins(0, half, parameters.integer("cells_r"));
     } else {
       fast_ = Bins(-half, half, parameters.integer("cells_x"));

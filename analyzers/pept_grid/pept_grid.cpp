@@ -9,6 +9,7 @@
 //
 // A visit is an entry into a cell, seen in two samples of the same bead that follow each other without a gap.
 #include <algorithm>
+#include <numbers>
 #include <vector>
 
 #include "analyzers/pept_grid/cells.hpp"
@@ -39,7 +40,7 @@ class PeptGrid {
 
   PeptGrid(const Parameters& parameters, const AnalyzerContext& context)
       : range_(axial_range(parameters, context)), cells_(parameters, context, range_), largest_id_(context.largest_id) {
-    const double beads = context.charge_count * 4.0 / 3.0 * kPi * std::pow(context.bead_radius, 3);
+    const double beads = context.charge_count * 4.0 / 3.0 * std::numbers::pi * std::pow(context.bead_radius, 3);
     bead_volume_ = beads > 0 ? beads : context.bead_density > 0 ? context.charge_mass / context.bead_density : 0;
   }
 

@@ -8,6 +8,7 @@
 // Only a sector counts, by default from 6 o'clock 60° up the rising side, where the bed is carried en masse; elsewhere beads flow back
 // over it or fly.
 #include <algorithm>
+#include <numbers>
 #include <vector>
 
 #include "analyzers/common/angle.hpp"
@@ -24,8 +25,9 @@ constexpr Parameter kParameters[] = {
     integer_parameter("bins_phase", 12, 1, 1000, "Bins of the lifter phase."),
     number_parameter("lifter_angle", "rad", 0, -100, 100,
                      "Angle of the middle of a lifter from the x axis, counter-clockwise, when the shell's angle is zero."),
-    number_parameter("sector_from", "rad", 0, -kPi, kPi, "Start of the sector, from 6 o'clock, positive in the turning sense."),
-    number_parameter("sector_to", "rad", kPi / 3, -kPi, kPi, "End of the sector."),
+    number_parameter("sector_from", "rad", 0, -std::numbers::pi, std::numbers::pi,
+                     "Start of the sector, from 6 o'clock, positive in the turning sense."),
+    number_parameter("sector_to", "rad", std::numbers::pi / 3, -std::numbers::pi, std::numbers::pi, "End of the sector."),
     kAxialFrom,
     kAxialTo,
     kEndTrim,
@@ -48,7 +50,7 @@ class Slip {
     if (!(to_ > from_)) throw Refusal("the sector is empty: sector_to must be larger than sector_from");
     const auto lifters = p.integer("lifters");
     if (lifters == 0 || (context.has & kHasPhase) == 0) return;
-    pitch_ = 2 * kPi / static_cast<double>(lifters);
+    pitch_ = 2 * std::numbers::pi / static_cast<double>(lifters);
     phases_ = Bins(0, 1, p.integer("bins_phase"));
   }
 

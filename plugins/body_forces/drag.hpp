@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace millscope::body_forces {
-
-inline constexpr double kPi = 3.14159265358979323846;
 
 struct Fluid {
   double density;    ///< ρ, kg/m³
@@ -19,8 +18,8 @@ struct Fluid {
 inline double drag_rate(const Fluid& fluid, double diameter, double speed) {
   const double momentum = fluid.density * speed * diameter;  // η Re
   const double reynolds = fluid.viscosity > 0.0 ? momentum / fluid.viscosity : 0.0;
-  const double schiller = 3.0 * kPi * diameter * fluid.viscosity * (1.0 + 0.15 * std::pow(reynolds, 0.687));
-  const double newton = 0.44 * kPi / 8.0 * diameter * momentum;
+  const double schiller = 3.0 * std::numbers::pi * diameter * fluid.viscosity * (1.0 + 0.15 * std::pow(reynolds, 0.687));
+  const double newton = 0.44 * std::numbers::pi / 8.0 * diameter * momentum;
   return reynolds > 800.0 || fluid.viscosity == 0.0 ? std::max(schiller, newton) : schiller;
 }
 

@@ -20,6 +20,8 @@
 //
 // Power taken from the bead is −F·v − ½ v² dm_a/dt: its sum is what the liquid took for good, and its potential energy. What the ledger has
 // no place for is the liquid's kinetic energy Σ ½ m_a v², which in a steady state does not grow.
+#include <numbers>
+
 #include "drag.hpp"
 #include "millscope/body_force_adapter.hpp"
 
@@ -64,12 +66,13 @@ class FluidPool {
     const Vec<double>&x = bead.position, &v = bead.velocity;
     const double full = 2.0 * bead.radius, depth = std::clamp(level_ - x.y + bead.radius, 0.0, full);
     if (depth == 0.0 || fluid_.density == 0.0) return;
-    const double volume = kPi / 3.0 * depth * depth * (3.0 * bead.radius - depth), area = kPi * depth * (full - depth);
+    const double volume = std::numbers::pi / 3.0 * depth * depth * (3.0 * bead.radius - depth),
+                 area = std::numbers::pi * depth * (full - depth);
     const double displaced = fluid_.density * volume, added = 0.5 * displaced, growth = -0.5 * fluid_.density * area * v.y;
 
     const Vec<double> flow{-turning_ * x.y, turning_ * x.x, 0.0}, slip = flow - v;
     const Vec<double> turn{-turning_ * turning_ * x.x, -turning_ * turning_ * x.y, 0.0};
-    const double share = volume / (4.0 / 3.0 * kPi * bead.radius * bead.radius * bead.radius);
+    const double share = volume / (4.0 / 3.0 * std::numbers::pi * bead.radius * bead.radius * bead.radius);
     const double resistance = std::max(growth, 0.0) + share * drag(full, length(slip));
     out.force = displaced * (turn + Vec<double>{0.0, gravity_, 0.0}) + added * turn + resistance * slip;
     out.added_mass = added;

@@ -16,13 +16,14 @@
 // both jumps take, 0.3 and 0.0315 of E* c³ R* s, is the channel `adhesion`; U is counted from separation. The damping is Hertz's at
 // stiffness 2 E* a, so e is reached where adhesion does not count. Ferrari: y = ½ (√(2m) + √(√(2/m) − 2m)) with m the positive root of m³ +
 // D m − ⅛ = 0, polished by three Newton steps.
+#include <numbers>
+
 #include "options.hpp"
 #include "tangential_spring.hpp"
 
 namespace millscope::laws {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kSmallestAdhesion = 1e-15;             // J/m², stands for 0: D stays finite, the force is Hertz's to the last digits
 constexpr double kLeast = -0.75 * 0.6299605249474366;   // D where the surfaces part: y³ = 1/4
 constexpr double kJumpIn = 0.3;                         // energy lost where they meet and where they part, over E* c³ R* s
@@ -76,11 +77,11 @@ class Jkr {
         friction_(values.number("static_friction")),
         damping_(hertz_damping(restitution_)),
         adhesion_(std::max(values.number("surface_energy"), kSmallestAdhesion)),
-        c_(std::sqrt(2.0 * kPi * adhesion_ / young_)),
+        c_(std::sqrt(2.0 * std::numbers::pi * adhesion_ / young_)),
         normal_root_(std::sqrt(2.0 * young_)),
         shear_root_(std::sqrt(shear_)),
         softness_(1.0 / shear_),
-        pull_off_(1.5 * kPi * adhesion_),
+        pull_off_(1.5 * std::numbers::pi * adhesion_),
         energy_(young_ * c_ * c_),
         tension_(values.flag("allow_tension")),
         cap_(cap_choice(values)) {}

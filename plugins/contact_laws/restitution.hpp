@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "millscope/pack.hpp"
 
@@ -13,9 +14,8 @@ inline constexpr double kSmallestRestitution = 1e-6;
 
 /// |β| = −ln e/√(ln² e + π²): damping as a fraction of the critical one that gives a linear spring the restitution e.
 inline double damping_fraction(double restitution) {
-  constexpr double pi = 3.14159265358979323846;
   const double logarithm = std::log(std::clamp(restitution, kSmallestRestitution, 1.0));
-  return -logarithm / std::sqrt(logarithm * logarithm + pi * pi);
+  return -logarithm / std::sqrt(logarithm * logarithm + std::numbers::pi * std::numbers::pi);
 }
 
 /// For a linear spring: 2|β|, exact when tension is allowed.

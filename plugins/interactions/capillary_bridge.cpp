@@ -18,12 +18,13 @@
 //
 // The law's own F_n grows by what the bridge presses, so with `friction: contact` its cap μ F_n counts that as load; with
 // `friction: net` it is taken off the cap.
+#include <numbers>
+
 #include "options.hpp"
 
 namespace millscope::interactions {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kLinear = 1.05, kSquare = 2.5;  // of Willett's fit, for the full separation
 
 constexpr Parameter kParameters[] = {
@@ -56,7 +57,7 @@ class CapillaryBridge {
   static constexpr ContactLawInfo kInfo = {1, 1, {1, 1, 1, 1, 1, 1}, {"bridge", "", "", "", "", ""}, {"bridge", "", "", "", "", ""}};
 
   CapillaryBridge(const Parameters& values, const PairContext& pair)
-      : force_(4.0 * kPi * values.number("surface_tension") * std::cos(values.number("contact_angle"))),
+      : force_(4.0 * std::numbers::pi * values.number("surface_tension") * std::cos(values.number("contact_angle"))),
         length_(pair.with_wall ? 1.0 : 2.0),
         stretch_(std::sqrt(2.0 / (values.number("volume_ratio") * length_ * length_ * length_))),
         rupture_((1.0 + 0.5 * values.number("contact_angle")) * std::cbrt(values.number("volume_ratio")) * length_),

@@ -12,12 +12,12 @@
 //
 // The law's own F_n grows by what cohesion presses, so with `friction: contact` its cap μ F_n counts the cohesion as load (as in LIGGGHTS
 // without `tangential_reduce`); with `friction: net` k A is taken off the cap, which then follows the net force.
+#include <numbers>
+
 #include "options.hpp"
 
 namespace millscope::interactions {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 constexpr Parameter kParameters[] = {
     pair_parameter("cohesion_energy_density", "J/m^3", kRequired, 0.0, kUnbounded, "Attractive force per contact area."),
@@ -47,10 +47,12 @@ class CohesionSjkr {
     const auto wall = pair.radius_j <= zero;
     const R sum = pair.radius_i + pair.radius_j, difference = pair.radius_i - pair.radius_j;
     const R distance = maximum(sum - overlap, R(1e-100));
-    const R lens = R(0.25 * kPi) * overlap * (two * pair.radius_i - overlap) * (two * pair.radius_j - overlap) * (two * sum - overlap);
-    const R area = select(wall, R(kPi) * overlap * (two * pair.radius_i - overlap), lens / (distance * distance));
+    const R lens =
+        R(0.25 * std::numbers::pi) * overlap * (two * pair.radius_i - overlap) * (two * pair.radius_j - overlap) * (two * sum - overlap);
+    const R area = select(wall, R(std::numbers::pi) * overlap * (two * pair.radius_i - overlap), lens / (distance * distance));
     const R span = distance * distance + two * distance * sum - R(3.0) * difference * difference;
-    const R volume = R(kPi) * overlap * overlap * select(wall, pair.radius_i - overlap * R(1.0 / 3.0), span / (R(12.0) * distance));
+    const R volume =
+        R(std::numbers::pi) * overlap * overlap * select(wall, pair.radius_i - overlap * R(1.0 / 3.0), span / (R(12.0) * distance));
     const R force = R(density_) * area;
     out.added_force = -force;
     if (net_) out.added_cap = -force;

@@ -14,12 +14,13 @@
 //   G(h) = ∫₀^h = h (1/h_min − 1/H) up to h_min,  1 + ln(h/h_min) − h/H above.
 // A bead without contact damping that comes at v then leaves with e = 1 − 2 ln(H/h_min)/St, St = m* v/(6π μ R*²), and does not touch at all
 // below St = ln(H/h_min). No step takes more than half of v_n, however stiff the film.
+#include <numbers>
+
 #include "options.hpp"
 
 namespace millscope::interactions {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kShort = 0.25;           // way in a step over the gap up to which Gauss's two points serve: 1/h to 1e-4
 constexpr double kGauss = 0.28867513459;  // ½/√3: where they lie
 
@@ -41,7 +42,7 @@ class Lubrication {
   static constexpr ContactLawInfo kInfo = {0, 1, {1, 1, 1, 1, 1, 1}, {"", "", "", "", "", ""}, {"film_damping", "", "", "", "", ""}};
 
   Lubrication(const Parameters& values, const PairContext&)
-      : resistance_(6.0 * kPi * values.number("viscosity")), cut_(values.number("cut")), range_(values.number("range")) {}
+      : resistance_(6.0 * std::numbers::pi * values.number("viscosity")), cut_(values.number("cut")), range_(values.number("range")) {}
 
   double reach(double radius) const { return resistance_ > 0.0 ? range_ * radius : 0.0; }
 

@@ -10,21 +10,20 @@
 //
 // All zero leaves the track as it is. Gravity in the camera's frame is turned by R, too: its angle from −y shows the tilt.
 #include <array>
+#include <numbers>
 
 #include "camera_view.hpp"
 
 namespace millscope::observations {
 namespace {
 
-constexpr double kHalfTurn = 3.14159265358979323846;
-
 constexpr Parameter kParameters[] = {
     number_parameter("offset_x", "m", 0.0, -10.0, 10.0, "Where the mill's axis appears along x."),
     number_parameter("offset_y", "m", 0.0, -10.0, 10.0, "Where the mill's axis appears along y."),
     number_parameter("offset_z", "m", 0.0, -10.0, 10.0, "Where the mill's origin appears along z."),
-    number_parameter("tilt_x", "rad", 0.0, -kHalfTurn, kHalfTurn, "Rotation of the bead's path about x."),
-    number_parameter("tilt_y", "rad", 0.0, -kHalfTurn, kHalfTurn, "Rotation about y."),
-    number_parameter("tilt_z", "rad", 0.0, -kHalfTurn, kHalfTurn, "Rotation about z: the camera is not level."),
+    number_parameter("tilt_x", "rad", 0.0, -std::numbers::pi, std::numbers::pi, "Rotation of the bead's path about x."),
+    number_parameter("tilt_y", "rad", 0.0, -std::numbers::pi, std::numbers::pi, "Rotation about y."),
+    number_parameter("tilt_z", "rad", 0.0, -std::numbers::pi, std::numbers::pi, "Rotation about z: the camera is not level."),
     number_parameter("scale", "1", 0.0, -0.99, 100.0, "Relative error of all lengths; 0: none."),
     number_parameter("clock", "1", 0.0, -0.99, 100.0, "Relative error of all times; above 0 everything seems slower. 0: none."),
 };

@@ -6,12 +6,12 @@
 //
 // With probability p a location is moved by an exponentially distributed distance of mean D, in a direction that is even over the
 // sphere. p = 0 leaves the track as it is.
+#include <numbers>
+
 #include "camera_view.hpp"
 
 namespace millscope::observations {
 namespace {
-
-constexpr double kTwoPi = 6.283185307179586;
 
 constexpr Parameter kParameters[] = {
     number_parameter("fraction", "1", 0.0, 0.0, 1.0, "Share of the locations that are outliers; 0: none."),
@@ -28,7 +28,8 @@ class Outliers {
     Random random(context.seed);
     for (TrackSample& s : track) {
       if (random.uniform() >= fraction_) continue;
-      const double length = distance_ * random.exponential(), along = 2.0 * random.uniform() - 1.0, angle = kTwoPi * random.uniform();
+      const double length = distance_ * random.exponential(), along = 2.0 * random.uniform() - 1.0,
+                   angle = 2.0 * std::numbers::pi * random.uniform();
       const double across = std::sqrt(1.0 - along * along);
       s.position[0] += length * across * std::cos(angle);
       s.position[1] += length * across * std::sin(angle);
