@@ -50,7 +50,7 @@ inline int call_action(const ActionTable& table, const Arguments& arguments) {
     if (arguments[0] == a.name) return a.call(Arguments(arguments.begin() + 1, arguments.end()));
     names.emplace_back(a.name);
   }
-  throw config::UserError(fmt::format("'{} {}' is no action; {}", table.name, arguments[0], config::suggestion(arguments[0], names)));
+  throw base::UserError(fmt::format("'{} {}' is no action; {}", table.name, arguments[0], config::suggestion(arguments[0], names)));
 }
 
 }  // namespace millscope::app

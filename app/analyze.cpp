@@ -22,7 +22,7 @@ namespace {
 
 namespace po = boost::program_options;
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 constexpr std::size_t kShownNumbers = 8;  // of each analyzer
 
 using Clock = std::chrono::steady_clock;

@@ -16,7 +16,7 @@ namespace {
 
 namespace po = boost::program_options;
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 /// The study's overrides, and the study itself in the place of every recording that is not there yet: a bank depends on none.
 std::vector<std::string> without_recordings(const std::string& study, std::vector<std::string> overrides) {

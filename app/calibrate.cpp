@@ -14,7 +14,7 @@ namespace {
 
 namespace po = boost::program_options;
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 void print_found(const calibrate::Study& study, const calibrate::Calibration& c, const fs::path& output) {
   fmt::print("\n{:<24} {:>10} {:>12}   90 % interval\n", "parameter", "value", "most likely");

@@ -15,7 +15,7 @@ namespace {
 
 namespace po = boost::program_options;
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 /// "--partition=long --time=60" → words.
 std::vector<std::string> words_of(const std::vector<std::string>& texts) {

@@ -17,7 +17,7 @@ namespace {
 
 namespace po = boost::program_options;
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 void add_runner_options(Options& options, const char* cache) {
   options.add()("cache", po::value<std::string>()->value_name("DIR"), cache);

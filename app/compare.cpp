@@ -15,7 +15,7 @@ namespace {
 
 namespace po = boost::program_options;
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 constexpr std::size_t kRows = 20, kGiven = 6;
 

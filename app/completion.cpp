@@ -158,7 +158,7 @@ int completion(const Arguments& arguments) {
   const std::string shell = options.text("SHELL");
   const std::optional<std::string_view> script = shell_script(shell);
   if (!script)
-    throw config::UserError(fmt::format("there is no completion for '{}'; {}", shell, config::suggestion(shell, {"bash", "zsh", "fish"})));
+    throw base::UserError(fmt::format("there is no completion for '{}'; {}", shell, config::suggestion(shell, {"bash", "zsh", "fish"})));
   fmt::print("{}", *script);
   return kDone;
 }

@@ -13,7 +13,7 @@ namespace {
 
 namespace po = boost::program_options;
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 void print_found(const diagnose::Diagnosis& d, const fs::path& output) {
   fmt::print("\n{}\n{}\n", diagnose::name_of(d.verdict), d.sentence);

@@ -17,7 +17,7 @@ namespace {
 
 namespace po = boost::program_options;
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 std::vector<std::string> split(const Options& options, const char* name) {
   std::vector<std::string> words;

@@ -17,7 +17,7 @@ namespace millscope::app {
 namespace {
 
 namespace po = boost::program_options;
-using config::UserError;
+using base::UserError;
 
 /// One geometry to look at, from a case or from a mesh file.
 struct Named {

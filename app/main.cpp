@@ -73,7 +73,7 @@ int dispatch(const Arguments& all) {
     if (all[0] == c.name) return c.call(Arguments(all.begin() + 1, all.end()));
     if (c.what != nullptr) names.emplace_back(c.name);
   }
-  throw config::UserError(fmt::format("'{}' is no command; {}", all[0], config::suggestion(all[0], names)));
+  throw base::UserError(fmt::format("'{}' is no command; {}", all[0], config::suggestion(all[0], names)));
 }
 
 }  // namespace
@@ -88,10 +88,10 @@ int main(int count, char** words) {
   try {
     const int code = app::dispatch(app::Arguments(words + 1, words + count));
     if (std::fflush(stdout) != 0)
-      throw config::UserError(fmt::format("standard output cannot be written ({}); send it elsewhere", std::strerror(errno)),
-                              app::kCannotWrite);
+      throw base::UserError(fmt::format("standard output cannot be written ({}); send it elsewhere", std::strerror(errno)),
+                            app::kCannotWrite);
     return code;
-  } catch (const config::UserError& e) {
+  } catch (const base::UserError& e) {
     fmt::print(stderr, "millscope: {}\n", e.what());
     return e.exit_code();
   } catch (const std::filesystem::filesystem_error& e) {

@@ -17,7 +17,7 @@ namespace {
 
 namespace po = boost::program_options;
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 void add_new_options(Options& options) {
   const auto value = [&options](const char* name, const char* shown, const char* what) {

@@ -10,7 +10,7 @@
 namespace millscope::app {
 
 namespace po = boost::program_options;
-using config::UserError;
+using base::UserError;
 
 std::vector<std::string> command_line;
 

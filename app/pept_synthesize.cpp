@@ -2,7 +2,7 @@
 #include <fmt/core.h>
 
 #include "app/commands.hpp"
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/file.hpp"
 #include "studies/camera/estimate_camera.hpp"
 #include "studies/camera/synthesize.hpp"
@@ -32,7 +32,7 @@ void refuse_targets(const Options& options, const studies::SimulatedBeads& beads
 studies::Camera chosen_camera(const Options& options, const host::Registry& registry, const std::filesystem::path& file,
                               std::string& text) {
   if (options.has("camera") == options.has("like")) {
-    throw config::UserError("give either --camera camera.yaml or --like RECORDING; configs/cameras holds examples");
+    throw base::UserError("give either --camera camera.yaml or --like RECORDING; configs/cameras holds examples");
   }
   if (options.has("camera")) return studies::read_camera(options.text("camera"), registry, options.list("set"));
   text = camera_of(options.text("like"));
@@ -74,7 +74,7 @@ int pept_synthesize(const Arguments& arguments) {
     } catch (const std::exception&) {
       used = 0;
     }
-    if (used == 0 || used != id.size()) throw config::UserError(fmt::format("--bead {}: is no number of a bead", id));
+    if (used == 0 || used != id.size()) throw base::UserError(fmt::format("--bead {}: is no number of a bead", id));
   }
   refuse_targets(options, beads, request);
   std::string estimated;

@@ -65,13 +65,13 @@ int plugin(const Arguments& arguments) {
   options.choices("KIND", kinds);
   options.add()("directory", po::value<std::string>()->value_name("DIR")->default_value("."), "where to put it");
   if (!options.parse(arguments)) return kDone;
-  if (options.text("ACTION") != "new") throw config::UserError(fmt::format("plugin {}: the only action is 'new'", options.text("ACTION")));
+  if (options.text("ACTION") != "new") throw base::UserError(fmt::format("plugin {}: the only action is 'new'", options.text("ACTION")));
   const std::string word = options.text("KIND");
   const std::optional<Kind> kind = host::parse_kind(word);
   if (!kind) {
     std::vector<std::string> known;
     for (const Kind k : host::all_kinds()) known.push_back(host::text(k));
-    throw config::UserError(fmt::format("'{}' is no kind of plugin; {}", word, config::suggestion(word, known)));
+    throw base::UserError(fmt::format("'{}' is no kind of plugin; {}", word, config::suggestion(word, known)));
   }
   const std::string path = host::scaffold(*kind, options.text("NAME"), options.text("directory"));
   fmt::print("wrote {0}\nbuild and test it:\n  cmake -B {0}/build {0} && cmake --build {0}/build && ctest --test-dir {0}/build\n", path);

@@ -18,7 +18,7 @@ namespace {
 
 namespace po = boost::program_options;
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 constexpr double kMostMovie = 500;  // MB
 constexpr int kStay = 60;           // s that a page is served after the last run has ended

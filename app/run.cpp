@@ -40,7 +40,7 @@ run::RunOptions run_options(const Options& options) {
   r.terminal = isatty(STDERR_FILENO) != 0;
   if (options.has("threads")) {
     r.threads = options.integer("threads");
-    if (r.threads < 1 || r.threads > 1024) throw config::UserError(fmt::format("--threads {}: give 1 to 1024", r.threads));
+    if (r.threads < 1 || r.threads > 1024) throw base::UserError(fmt::format("--threads {}: give 1 to 1024", r.threads));
   }
   return r;
 }

@@ -8,7 +8,7 @@ namespace millscope::app {
 
 namespace po = boost::program_options;
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 void add_study_options(Options& options) {
   options.positional("STUDY.yaml", "base case, conditions with recordings, parameters, objective, method, budget");

@@ -11,8 +11,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <numbers>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/frames.hpp"
 #include "millscope/observation_adapter.hpp"
 #include "studies/analysis/analysis.hpp"
@@ -52,7 +53,7 @@ void write_frames(const fs::path& directory, std::size_t beads, std::size_t fram
   for (std::size_t k = 0; k < beads; ++k) {
     id.push_back(static_cast<std::uint32_t>(k));
     loop.push_back(0.075 * std::sqrt(random.uniform()));
-    phase.push_back(6.2831853 * random.uniform());
+    phase.push_back(2 * std::numbers::pi * random.uniform());
     z.push_back(0.27 * random.uniform());
   }
   auto writer =

@@ -15,7 +15,7 @@ namespace millscope::bench {
 namespace {
 
 namespace po = boost::program_options;
-using config::UserError;
+using base::UserError;
 
 double cpu_seconds() {
   timespec t{};

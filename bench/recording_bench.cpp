@@ -14,7 +14,7 @@
 #include <map>
 #include <random>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/track_reader.hpp"
 #include "studies/trajectory/trajectory.hpp"
 

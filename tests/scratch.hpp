@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace testing {
 
@@ -35,7 +35,7 @@ class Scratch {
 inline std::string refusal(const std::function<void()>& body) {
   try {
     body();
-  } catch (const millscope::config::UserError& e) {
+  } catch (const millscope::base::UserError& e) {
     return e.what();
   }
   return "";

@@ -17,9 +17,12 @@
 #include <string_view>
 #include <vector>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::config {
+
+using base::Location;
+using base::UserError;
 
 struct NodeData;
 

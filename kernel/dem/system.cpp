@@ -5,7 +5,8 @@
 #include <cstring>
 #include <numeric>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
+#include "kernel/base/hash.hpp"
 #include "kernel/dem/slab.hpp"
 
 namespace millscope::dem {
@@ -121,7 +122,7 @@ void System::prepare() {
       std::snprintf(line, sizeof line,
                     "the periodic length along %c is %.4g m; beads of this size need at least %.4g m: lengthen the slice", "xyz"[a], length,
                     needed);
-      throw config::UserError(line);
+      throw base::UserError(line);
     }
   }
   reaches_.resize(particles.position.size());
@@ -205,7 +206,9 @@ std::array<double, 3> System::centre_of_mass() const {
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
     const double m = 1.0 / particles.motion[i].inverse_mass;
     const PositionLine& x = particles.position[i];
-    for (std::size_t a = 0; a < 3; ++a) sum[a] += m * x.centre[a];
+    sum[0] += m * x.x;
+    sum[1] += m * x.y;
+    sum[2] += m * x.z;
     mass += m;
   }
   for (double& s : sum) s /= mass;
@@ -236,21 +239,10 @@ std::vector<double> System::shear_work(std::size_t body) const {
 
 namespace {
 
-class Hash {
- public:
-  void add(const void* data, std::size_t bytes) {
-    const unsigned char* p = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < bytes; ++i) value_ = (value_ ^ p[i]) * 0x100000001b3ULL;
-  }
-  void add(double v) {
-    v += 0.0;  // −0 and 0 are the same state
-    add(&v, sizeof v);
-  }
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325ULL;
-};
+void add(base::Hash& hash, double v) {
+  v += 0.0;  // −0 and 0 are the same state
+  hash.add(&v, sizeof v);
+}
 
 }  // namespace
 
@@ -259,16 +251,17 @@ std::uint64_t System::state_hash() const {
   std::vector<std::uint32_t> order(n);
   std::iota(order.begin(), order.end(), 0U);
   std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) { return particles.id[a] < particles.id[b]; });
-  Hash hash;
-  hash.add(time());
-  for (const Body& b : bodies) hash.add(pose_at(b.motion, time()).angle);
+  base::Hash hash;
+  add(hash, time());
+  for (const Body& b : bodies) add(hash, pose_at(b.motion, time()).angle);
   for (const std::uint32_t i : order) {
     hash.add(&particles.id[i], sizeof particles.id[i]);
     const PositionLine& x = particles.position[i];
     // Periodic coordinates are wrapped at rebuilds only: hash them wrapped.
-    for (int a = 0; a < 3; ++a) hash.add(wrapped(settings_, a, x.centre[a]));
-    for (int a = 0; a < 3; ++a) hash.add(particles.half[i].v[a]);
-    for (int a = 0; a < 3; ++a) hash.add(particles.half[i].w[a]);
+    const double* c = &x.x;
+    for (int a = 0; a < 3; ++a) add(hash, wrapped(settings_, a, c[a]));
+    for (int a = 0; a < 3; ++a) add(hash, particles.half[i].v[a]);
+    for (int a = 0; a < 3; ++a) add(hash, particles.half[i].w[a]);
   }
   // Histories in the order of (smaller id, larger id), as seen from the smaller.
   struct Entry {
@@ -293,7 +286,7 @@ std::uint64_t System::state_hash() const {
     hash.add(&e.a, sizeof e.a);
     hash.add(&e.b, sizeof e.b);
     for (std::size_t h = 0; h < e.list->history.size(); ++h)
-      hash.add((e.flip ? layout_.history_sign[h] : 1) * e.list->history[h][e.contact]);
+      add(hash, (e.flip ? layout_.history_sign[h] : 1) * e.list->history[h][e.contact]);
   }
   for (std::size_t body = 0; body < bodies.size(); ++body) {
     std::vector<std::pair<std::uint32_t, std::vector<double>>> contacts;
@@ -308,10 +301,28 @@ std::uint64_t System::state_hash() const {
     std::stable_sort(contacts.begin(), contacts.end(), [](const auto& p, const auto& q) { return p.first < q.first; });
     for (const auto& [id, values] : contacts) {
       hash.add(&id, sizeof id);
-      for (const double v : values) hash.add(v);
+      for (const double v : values) add(hash, v);
     }
   }
   return hash.value();
+}
+
+std::size_t System::memory_bytes() const {
+  const std::size_t n = particles.position.size();
+  std::size_t bytes = n * (2 * sizeof(PositionLine) + 3 * sizeof(MotionLine) + sizeof(AccelerationLine) + sizeof(ReferenceLine) + 13);
+  for (const auto& slab : slabs_) {
+    for (const PairList& list : slab->lists) {
+      bytes += list.owner.capacity() * 9;
+      for (const auto& h : list.history) bytes += 8 * h.capacity();
+      for (const auto& h : list.next) bytes += 8 * h.capacity();
+    }
+    bytes += slab->halo.capacity() * sizeof(ForceLine);
+    for (const WallSlab& wall : slab->walls) {
+      bytes += wall.bead.capacity() * 12 + wall.candidates.capacity() * 4 +
+               wall.active.bead.capacity() * (32 + 8 * wall.active.history.size()) * 2;
+    }
+  }
+  return bytes;
 }
 
 }  // namespace millscope::dem

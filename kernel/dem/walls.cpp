@@ -1,8 +1,9 @@
 // Beads at the walls, at each list rebuild: which features are near which bead. The contacts of each step are in wall_contacts.cpp.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/dem/rows.hpp"
 #include "kernel/dem/slab.hpp"
 
@@ -49,7 +50,7 @@ void System::build_walls() {
     double translation = 0;
     for (std::size_t a = 0; a < 3; ++a) {
       translation += std::abs(body.motion.velocity[a]) +
-                     std::abs(body.motion.oscillation_amplitude[a]) * 6.2831853071795865 * body.motion.oscillation_frequency;
+                     std::abs(body.motion.oscillation_amplitude[a]) * 2 * std::numbers::pi * body.motion.oscillation_frequency;
     }
     wall_speed_ = std::max(wall_speed_, rotation * body.greatest_distance + translation);
   }
@@ -76,7 +77,7 @@ void System::build_walls() {
                              }};
     Failure failure{};
     if (body.table->candidates(body.self, &beads, wall_margin_, &sink, &failure) != 0) {
-      throw config::UserError(std::string("geometry '") + body.name + "': " + failure.message);
+      throw base::UserError(std::string("geometry '") + body.name + "': " + failure.message);
     }
     if (!std::is_sorted(near.begin(), near.end())) std::sort(near.begin(), near.end());
 

@@ -1,6 +1,6 @@
 #include <cstring>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/dem/wide.hpp"
 
 namespace millscope::dem {
@@ -20,8 +20,8 @@ const WideTable& wide_table(const char* wanted) {
   if (std::strcmp(wanted, "v2") == 0) return wide_v2;
   if (std::strcmp(wanted, "v3") == 0 && v3) return wide_v3;
   if (std::strcmp(wanted, "v4") == 0 && v4) return wide_v4;
-  throw config::UserError(std::string("instruction set '") + wanted + "' is not one that this machine runs (v2" + (v3 ? ", v3" : "") +
-                          (v4 ? ", v4" : "") + ")");
+  throw base::UserError(std::string("instruction set '") + wanted + "' is not one that this machine runs (v2" + (v3 ? ", v3" : "") +
+                        (v4 ? ", v4" : "") + ")");
 }
 
 }  // namespace millscope::dem

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::host {
 
@@ -22,7 +22,7 @@ namespace {
 struct stat status_of(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) {
-    throw config::UserError(fmt::format("plugin path '{}': {}", path, std::strerror(errno)));
+    throw base::UserError(fmt::format("plugin path '{}': {}", path, std::strerror(errno)));
   }
   return status;
 }
@@ -64,7 +64,7 @@ void check_parents(const std::filesystem::path& path) {
   for (std::filesystem::path above = path.parent_path(); above.has_relative_path(); above = above.parent_path()) {
     const struct stat status = status_of(above.string());
     if (foreign_owner(status)) {
-      throw config::UserError(
+      throw base::UserError(
           fmt::format("plugins are not loaded from '{}': '{}' above it belongs to user id {}, neither to you nor to root; copy the plugins "
                       "to a directory of your own, or chown it",
                       path.string(), above.string(), status.st_uid));
@@ -72,8 +72,8 @@ void check_parents(const std::filesystem::path& path) {
     const std::string writers = other_writers(status);
     if (writers.empty() || (status.st_mode & S_ISVTX) != 0) continue;
     if (writers != "anyone" && is_system_directory(above, status)) continue;
-    throw config::UserError(fmt::format("plugins are not loaded from '{}': {} can write to '{}' above it; chmod {}-w '{}'", path.string(),
-                                        writers, above.string(), writers == "anyone" ? "go" : "g", above.string()));
+    throw base::UserError(fmt::format("plugins are not loaded from '{}': {} can write to '{}' above it; chmod {}-w '{}'", path.string(),
+                                      writers, above.string(), writers == "anyone" ? "go" : "g", above.string()));
   }
 }
 
@@ -82,13 +82,13 @@ void check_parents(const std::filesystem::path& path) {
 void require_private(const std::string& path) {
   const struct stat status = status_of(path);
   if (foreign_owner(status)) {
-    throw config::UserError(
+    throw base::UserError(
         fmt::format("plugins are not loaded from '{}': it belongs to user id {}, neither to you nor to root; copy it or chown it", path,
                     status.st_uid));
   }
   const std::string writers = other_writers(status);
   if (!writers.empty())
-    throw config::UserError(fmt::format("plugins are not loaded from '{}': {} can write to it; chmod go-w '{}'", path, writers, path));
+    throw base::UserError(fmt::format("plugins are not loaded from '{}': {} can write to it; chmod go-w '{}'", path, writers, path));
   check_parents(path);
 }
 

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::host {
 
@@ -16,7 +16,7 @@ InstructionSet machine_instruction_set() {
     if (__builtin_cpu_supports("x86-64-v4")) return InstructionSet::v4;
     if (__builtin_cpu_supports("x86-64-v3")) return InstructionSet::v3;
     if (__builtin_cpu_supports("x86-64-v2")) return InstructionSet::v2;
-    throw config::UserError("this processor does not run x86-64-v2 (SSE4.2), the least that millscope is built for");
+    throw base::UserError("this processor does not run x86-64-v2 (SSE4.2), the least that millscope is built for");
   }();
   return level;
 }
@@ -35,11 +35,11 @@ InstructionSet choose_instruction_set(std::optional<InstructionSet> asked) {
   if (!asked && variable != nullptr && *variable != '\0') {
     source = "MILLSCOPE_INSTRUCTION_SET";
     asked = parse_instruction_set(variable);
-    if (!asked) throw config::UserError(fmt::format("{} is '{}'; known: v2, v3, v4 (unset it to take the best)", source, variable));
+    if (!asked) throw base::UserError(fmt::format("{} is '{}'; known: v2, v3, v4 (unset it to take the best)", source, variable));
   }
   const InstructionSet best = machine_instruction_set();
   if (asked && *asked > best) {
-    throw config::UserError(
+    throw base::UserError(
         fmt::format("{} is x86-64-{}, but this machine runs x86-64-{} at most; take that or less", source, text(*asked), text(best)));
   }
   return asked.value_or(best);

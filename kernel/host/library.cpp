@@ -10,7 +10,8 @@
 #include <fstream>
 #include <utility>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
+#include "kernel/base/hash.hpp"
 #include "kernel/host/descriptor_check.hpp"
 #include "kernel/host/directory_check.hpp"
 
@@ -21,7 +22,7 @@ namespace {
 constexpr const char* kSymbol = "millscope_plugins";
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {
-  throw config::UserError(fmt::format("plugin library '{}' is not loaded: {}", path, what));
+  throw base::UserError(fmt::format("plugin library '{}' is not loaded: {}", path, what));
 }
 
 /// FNV-1a over the bytes of a file; refuses what is no shared library before the system's loader sees it.
@@ -30,9 +31,7 @@ std::string hash_file(const std::string& path) {
   if (!file) refuse(path, "it cannot be read");
   std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (bytes.size() < sizeof(ElfW(Ehdr)) || !bytes.starts_with(ELFMAG)) refuse(path, "it is not a shared library (no ELF file)");
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
-  return fmt::format("{:016x}", hash);
+  return base::Hash().add(bytes).text();
 }
 
 boost::dll::shared_library open_handle(const std::string& path) {
@@ -90,7 +89,7 @@ std::shared_ptr<const Library> Library::open(const std::string& path, const std:
   std::error_code trouble;
   auto state = std::make_unique<State>();
   state->path = std::filesystem::canonical(path, trouble).string();
-  if (trouble) throw config::UserError(fmt::format("plugin library '{}' does not exist or cannot be reached", path));
+  if (trouble) throw base::UserError(fmt::format("plugin library '{}' does not exist or cannot be reached", path));
   state->level = level;
   require_private(state->path);
   state->hash = hash_file(state->path);

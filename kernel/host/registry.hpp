@@ -11,15 +11,15 @@
 #include <string_view>
 #include <vector>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/host/instruction_set.hpp"
 #include "kernel/host/library.hpp"
 #include "millscope/abi.hpp"
 
 namespace millscope::host {
 
-using config::Location;
-using config::UserError;
+using base::Location;
+using base::UserError;
 
 /// "contact_law", "interaction", … as it is written in YAML and on the command line.
 std::string text(Kind kind);

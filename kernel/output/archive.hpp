@@ -23,7 +23,7 @@ concept ArchiveValue = std::same_as<T, double> || std::same_as<T, std::int32_t> 
 inline constexpr std::uint32_t kArchiveSchema = 1;
 
 /// Writes `path`.tmp and renames it to `path` in `commit`. Without `commit`, or after a failure, `path` is as it was before.
-/// Every member throws config::UserError when the disk is full or the file cannot be written.
+/// Every member throws base::UserError when the disk is full or the file cannot be written.
 class ArchiveWriter {
  public:
   explicit ArchiveWriter(std::filesystem::path path);
@@ -59,7 +59,7 @@ class ArchiveWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Opens an archive and checks every byte of it. Throws config::UserError when it is missing, cut short, damaged or of another
+/// Opens an archive and checks every byte of it. Throws base::UserError when it is missing, cut short, damaged or of another
 /// schema version; asking for a name that is not there, or as another type, is a UserError too (an archive of another program).
 class ArchiveReader {
  public:

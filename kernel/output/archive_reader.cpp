@@ -4,7 +4,7 @@
 #include <cerrno>
 #include <cstdio>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/archive.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/hdf5_tools.hpp"
@@ -13,7 +13,7 @@
 namespace millscope::output {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 using hdf5::Handle;
 
 namespace {

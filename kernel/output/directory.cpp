@@ -13,14 +13,14 @@
 #include <string_view>
 #include <vector>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/archive.hpp"
 #include "kernel/output/file.hpp"
 
 namespace millscope::output {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 namespace {
 

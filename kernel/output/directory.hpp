@@ -13,7 +13,7 @@ enum class Mode {
   resume,     ///< must hold a checkpoint
 };
 
-/// Takes hold of OUT. What is wrong is a config::UserError before anything was changed: existing output, a parent that cannot be
+/// Takes hold of OUT. What is wrong is a base::UserError before anything was changed: existing output, a parent that cannot be
 /// written, another run in it, too little free disk.
 class OutputDirectory {
  public:

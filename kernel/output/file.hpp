@@ -11,7 +11,7 @@ namespace millscope::output {
 /// Exit code of the errors that throw_write_error raises: the place cannot be written or is full.
 inline constexpr int kExitDisk = 4;
 
-/// Throws config::UserError for a write that failed with `error` (an errno): disk full, not permitted, …
+/// Throws base::UserError for a write that failed with `error` (an errno): disk full, not permitted, …
 [[noreturn]] void throw_write_error(const std::filesystem::path& file, int error);
 
 /// Throws the disk-full error when `bytes` and a small reserve do not fit on the disk of `file`.
@@ -30,7 +30,7 @@ bool is_temporary_of(const std::filesystem::path& temporary, const std::filesyst
 /// Syncs `temporary` and renames it to `path`; throws through throw_write_error.
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& path);
 
-/// Throws config::UserError when `path` exists already.
+/// Throws base::UserError when `path` exists already.
 void refuse_existing(const std::filesystem::path& path);
 
 /// "1.5 MB".
@@ -76,7 +76,7 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// Writes a whole file through AtomicFile. Without `overwrite` throws config::UserError when `path` exists already.
+/// Writes a whole file through AtomicFile. Without `overwrite` throws base::UserError when `path` exists already.
 void write_file(const std::filesystem::path& path, std::string_view bytes, bool overwrite = true);
 
 }  // namespace millscope::output

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <limits>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/archive.hpp"
 #include "kernel/output/directory.hpp"
 #include "kernel/output/file.hpp"
@@ -16,7 +16,7 @@
 namespace millscope::output {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/frames.hpp"
 #include "kernel/output/reading.hpp"
 
@@ -43,7 +43,7 @@ struct FrameReader::Impl {
   void read_scalars();
   void read_impacts();
   [[noreturn]] void damaged(const std::string& what) const {
-    throw config::UserError(fmt::format("{}: {}; it is damaged: write it again with 'millscope run'", path.string(), what));
+    throw base::UserError(fmt::format("{}: {}; it is damaged: write it again with 'millscope run'", path.string(), what));
   }
 };
 

@@ -36,7 +36,7 @@ struct FrameScalars {
 
 enum class BeadField { position, velocity, spin };
 
-/// Opens the file and reads all but the bead arrays. Throws config::UserError when it is missing, no such file, of another schema version
+/// Opens the file and reads all but the bead arrays. Throws base::UserError when it is missing, no such file, of another schema version
 /// or damaged.
 class FrameReader {
  public:

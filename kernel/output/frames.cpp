@@ -6,7 +6,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/growing_file.hpp"
 
@@ -78,8 +78,8 @@ Column open_column(hid_t file, const char* name, const fs::path& path) {
 void check_bead_count(hid_t file, const fs::path& path, std::size_t bead_count) {
   const hsize_t found = open_column(file, "beads/id", path).rows();
   if (found == bead_count) return;
-  throw config::UserError(fmt::format("{}: holds {} beads, the checkpoint {}; it belongs to another run: move it away or use another -o",
-                                      path.string(), found, bead_count));
+  throw base::UserError(fmt::format("{}: holds {} beads, the checkpoint {}; it belongs to another run: move it away or use another -o",
+                                    path.string(), found, bead_count));
 }
 
 }  // namespace

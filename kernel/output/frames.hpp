@@ -41,7 +41,7 @@ struct FrameView {
   std::span<const double> spin;              ///< [N,3] rad/s
 };
 
-/// Writes frames.h5 (docs/format.md). The number of beads is fixed by the table. Throws config::UserError when the disk is full or
+/// Writes frames.h5 (docs/format.md). The number of beads is fixed by the table. Throws base::UserError when the disk is full or
 /// the file cannot be written; what was appended before stays readable.
 class FrameWriter {
  public:

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/superblock.hpp"
 
@@ -63,8 +63,8 @@ void Column::append_raw(hid_t type, const void* values, hsize_t count) {
 
 void Column::truncate(hsize_t rows) {
   if (rows > extent_.front()) {
-    throw config::UserError(fmt::format("{}: a dataset has only {} of {} rows; the file is damaged: move it away and start the run again",
-                                        path_.string(), extent_.front(), rows));
+    throw base::UserError(fmt::format("{}: a dataset has only {} of {} rows; the file is damaged: move it away and start the run again",
+                                      path_.string(), extent_.front(), rows));
   }
   if (rows == extent_.front()) return;
   extent_.front() = rows;
@@ -117,12 +117,12 @@ void GrowingFile::create(const fs::path& path, const std::function<void(hid_t)>&
 void GrowingFile::reopen(const fs::path& path, const std::function<void(hid_t)>& trim) {
   prepare();
   if (::access(path.c_str(), F_OK) != 0) {
-    throw config::UserError(
+    throw base::UserError(
         fmt::format("{}: is missing, the run cannot be continued; put it back or start the run again with another -o", path.string()));
   }
   if (::access(path.c_str(), W_OK) != 0) throw_write_error(path, errno);
   if (!repair_superblock(path)) {
-    throw config::UserError(fmt::format("{}: is damaged at its start; move it away and start the run again", path.string()));
+    throw base::UserError(fmt::format("{}: is damaged at its start; move it away and start the run again", path.string()));
   }
   Handle file = checked({H5Fopen(path.c_str(), H5F_ACC_RDWR, access_list()), H5Fclose}, path, "opening the file");
   trim(file);

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/file.hpp"
 
 namespace millscope::output::hdf5 {
@@ -51,9 +51,9 @@ Fault last_fault() {
 void fail(const std::filesystem::path& file, const std::string& doing) {
   const Fault fault = last_fault();
   if (fault.error != 0) throw_write_error(file, fault.error);
-  throw config::UserError(fmt::format("{}: {} failed ({}); the file may be damaged or in use: move it away and try again", file.string(),
-                                      doing, fault.text.empty() ? "HDF5 gives no reason" : fault.text),
-                          kExitDisk);
+  throw base::UserError(fmt::format("{}: {} failed ({}); the file may be damaged or in use: move it away and try again", file.string(),
+                                    doing, fault.text.empty() ? "HDF5 gives no reason" : fault.text),
+                        kExitDisk);
 }
 
 Handle checked(Handle handle, const std::filesystem::path& file, const std::string& doing) {
@@ -115,14 +115,14 @@ void stamp_schema(hid_t file, const std::string& format, std::uint32_t schema_ve
 void require_schema(hid_t file, const std::filesystem::path& path, const std::string& format, std::uint32_t schema_version) {
   const std::string found = get_text_attribute(file, "format");
   if (found != format) {
-    throw config::UserError(
+    throw base::UserError(
         fmt::format("{}: its attribute 'format' is '{}', not '{}'; give a file that millscope wrote", path.string(), found, format));
   }
   const std::uint32_t version = get_attribute(file, "schema_version", 0);
   if (version == schema_version) return;
-  throw config::UserError(fmt::format("{}: its schema_version is {}, this millscope reads {}; use the {} millscope ({})", path.string(),
-                                      version, schema_version, version > schema_version ? "newer" : "older",
-                                      get_text_attribute(file, "created_by")));
+  throw base::UserError(fmt::format("{}: its schema_version is {}, this millscope reads {}; use the {} millscope ({})", path.string(),
+                                    version, schema_version, version > schema_version ? "newer" : "older",
+                                    get_text_attribute(file, "created_by")));
 }
 
 }  // namespace millscope::output::hdf5

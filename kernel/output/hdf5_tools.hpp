@@ -79,7 +79,7 @@ std::uint32_t get_attribute(hid_t object, const char* name, std::uint32_t missin
 /// The text attribute, or "".
 std::string get_text_attribute(hid_t object, const char* name);
 
-/// Throws config::UserError unless the root says `format` with `schema_version`.
+/// Throws base::UserError unless the root says `format` with `schema_version`.
 void require_schema(hid_t file, const std::filesystem::path& path, const std::string& format, std::uint32_t schema_version);
 /// Writes what require_schema reads.
 void stamp_schema(hid_t file, const std::string& format, std::uint32_t schema_version);

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/vtk.hpp"
 
@@ -56,7 +56,7 @@ PictureSeries PictureSeries::resume(const std::filesystem::path& path, double ti
     if (line.find("<DataSet ") == std::string::npos) continue;
     Entry entry{std::strtod(attribute(line, "timestep").c_str(), nullptr), attribute(line, "file"),
                 std::atoi(attribute(line, "part").c_str())};
-    if (entry.file.empty()) throw config::UserError(path.string() + ": was changed by another program; move it away and resume again");
+    if (entry.file.empty()) throw base::UserError(path.string() + ": was changed by another program; move it away and resume again");
     ++found;
     if (entry.time <= time) series.entries_.push_back(std::move(entry));
   }

@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::output::hdf5 {
 
 namespace {
 
 [[noreturn]] void damaged(const std::filesystem::path& path, const std::string& what) {
-  throw config::UserError(fmt::format("{}: {}; it is damaged or was not written by millscope: write it again", path.string(), what));
+  throw base::UserError(fmt::format("{}: {}; it is damaged or was not written by millscope: write it again", path.string(), what));
 }
 
 Handle text_type() {
@@ -24,9 +24,9 @@ Handle text_type() {
 Handle open_for_reading(const std::filesystem::path& path, const std::string& remedy) {
   prepare();
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) throw config::UserError(fmt::format("{}: there is no such file; {}", path.string(), remedy));
+  if (!std::filesystem::exists(path, ignored)) throw base::UserError(fmt::format("{}: there is no such file; {}", path.string(), remedy));
   if (H5Fis_hdf5(path.c_str()) <= 0)
-    throw config::UserError(fmt::format("{}: is no HDF5 file, or cannot be read; {}", path.string(), remedy));
+    throw base::UserError(fmt::format("{}: is no HDF5 file, or cannot be read; {}", path.string(), remedy));
   const Handle list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   // Beside a writer HDF5 reads metadata anew until it is whole, waiting twice as long each time: 16 ms in all, then it is damaged.
   H5Pset_metadata_read_attempts(list, 24);

@@ -18,7 +18,7 @@ struct Dataset {
   std::vector<hsize_t> extent;
 };
 
-/// Throws config::UserError when it is missing or has not `rank` dimensions.
+/// Throws base::UserError when it is missing or has not `rank` dimensions.
 Dataset open_dataset(hid_t parent, const std::string& name, int rank, const std::filesystem::path& path);
 bool has(hid_t parent, const std::string& name);
 

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <vector>
 
+#include "kernel/base/hash.hpp"
 #include "kernel/output/file.hpp"
 
 namespace millscope::output {
@@ -25,21 +26,23 @@ struct Seal {
 };
 static_assert(sizeof(Seal) == 32);
 
-constexpr std::uint64_t kStart = 0xcbf29ce484222325ULL;
 constexpr std::size_t kBlock = 1 << 20;
 
 // FNV-1a over words of 8 bytes, the last one padded with zeros. Each step is a bijection of the word and of the sum so far, so a
 // change within any one word always changes the result.
-std::uint64_t add_words(std::uint64_t sum, const char* bytes, std::size_t count) {
+void add_words(base::Hash& sum, const char* bytes, std::size_t count) {
   for (std::size_t at = 0; at < count; at += 8) {
     std::uint64_t word = 0;
     std::memcpy(&word, bytes + at, std::min<std::size_t>(8, count - at));
-    sum = (sum ^ word) * 0x100000001b3ULL;
+    sum.add_word(word);
   }
-  return sum;
 }
 
-std::uint64_t check_of(const Seal& seal) { return add_words(kStart, reinterpret_cast<const char*>(&seal), offsetof(Seal, check)); }
+std::uint64_t check_of(const Seal& seal) {
+  base::Hash sum;
+  add_words(sum, reinterpret_cast<const char*>(&seal), offsetof(Seal, check));
+  return sum.value();
+}
 
 // Reads exactly `count` bytes; false at the end of the file or on an error.
 bool read_all(int descriptor, char* bytes, std::size_t count) {
@@ -53,14 +56,15 @@ bool read_all(int descriptor, char* bytes, std::size_t count) {
   return true;
 }
 
-bool checksum_of(int descriptor, std::uint64_t length, std::uint64_t& sum) {
+bool checksum_of(int descriptor, std::uint64_t length, std::uint64_t& checksum) {
   std::vector<char> block(kBlock);
-  sum = kStart;
+  base::Hash sum;
   for (std::uint64_t at = 0; at < length; at += kBlock) {
     const std::size_t count = static_cast<std::size_t>(std::min<std::uint64_t>(kBlock, length - at));
     if (!read_all(descriptor, block.data(), count)) return false;
-    sum = add_words(sum, block.data(), count);
+    add_words(sum, block.data(), count);
   }
+  checksum = sum.value();
   return true;
 }
 

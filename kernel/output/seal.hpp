@@ -6,7 +6,7 @@
 
 namespace millscope::output {
 
-/// Appends the seal to the finished file; syncs nothing. Throws config::UserError when it cannot be written.
+/// Appends the seal to the finished file; syncs nothing. Throws base::UserError when it cannot be written.
 void append_seal(const std::filesystem::path& file);
 
 /// "" when the seal is there and right; otherwise what is wrong, as a clause ("is cut short", …).

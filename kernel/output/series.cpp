@@ -13,13 +13,13 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/file.hpp"
 
 namespace millscope::output {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 namespace {
 

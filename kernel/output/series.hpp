@@ -10,7 +10,7 @@
 namespace millscope::output {
 
 /// Writes a CSV whose first column is the time in seconds. Numbers are written so that reading them gives the same bits.
-/// Throws config::UserError when the disk is full or the file cannot be written.
+/// Throws base::UserError when the disk is full or the file cannot be written.
 class SeriesWriter {
  public:
   /// `columns`: names with units, e.g. "time_s", "kinetic_energy_J". An existing file is a UserError.
@@ -38,11 +38,11 @@ struct Series {
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;  ///< NaN where no number stands
 
-  /// Throws config::UserError when no column has the name.
+  /// Throws base::UserError when no column has the name.
   const std::vector<double>& column(const std::string& name) const;
 };
 
-/// All whole rows: one that is just being written is left out; a cell that is no number is NaN. Throws config::UserError when the file
+/// All whole rows: one that is just being written is left out; a cell that is no number is NaN. Throws base::UserError when the file
 /// cannot be read or its rows differ in length.
 Series read_series(const std::filesystem::path& path);
 

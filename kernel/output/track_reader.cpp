@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/reading.hpp"
 
 namespace millscope::output {
@@ -47,7 +47,7 @@ void TrackReader::Impl::list() {
   std::sort(tracks.begin(), tracks.end(),
             [](const TrackInfo& a, const TrackInfo& b) { return std::tie(a.bead, a.name) < std::tie(b.bead, b.name); });
   if (tracks.empty())
-    throw config::UserError(fmt::format("{}: holds no track; write it with 'output: {{tracks: {{}}}}' in the case", path.string()));
+    throw base::UserError(fmt::format("{}: holds no track; write it with 'output: {{tracks: {{}}}}' in the case", path.string()));
 }
 
 TrackReader::TrackReader(fs::path path) : impl_(std::make_unique<Impl>()) {
@@ -75,13 +75,13 @@ TrackSamples TrackReader::read(std::size_t track) const {
   samples.time = hdf5::read_rows<double>(t, t.extent[0], impl_->path);
   for (std::size_t i = 1; i < samples.size(); ++i) {
     if (samples.time[i] > samples.time[i - 1]) continue;
-    throw config::UserError(fmt::format("{}: the times of track '{}' do not increase at sample {}; the file is damaged: write it again",
-                                        impl_->path.string(), name, i));
+    throw base::UserError(fmt::format("{}: the times of track '{}' do not increase at sample {}; the file is damaged: write it again",
+                                      impl_->path.string(), name, i));
   }
   const Dataset p = hdf5::open_dataset(impl_->file, name + "/position", 2, impl_->path);
   if (p.extent[1] != 3 || p.extent[0] < samples.size()) {
-    throw config::UserError(fmt::format("{}: the positions of track '{}' do not fit its {} times; the file is damaged: write it again",
-                                        impl_->path.string(), name, samples.size()));
+    throw base::UserError(fmt::format("{}: the positions of track '{}' do not fit its {} times; the file is damaged: write it again",
+                                      impl_->path.string(), name, samples.size()));
   }
   const std::vector<double> position = hdf5::read_rows<double>(p, samples.size(), impl_->path);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -105,7 +105,7 @@ bool is_track_file(const fs::path& path) {
   if (H5Fis_hdf5(path.c_str()) <= 0) return false;
   try {
     return hdf5::get_text_attribute(hdf5::open_for_reading(path, ""), "format") == "millscope tracks";
-  } catch (const config::UserError&) {
+  } catch (const base::UserError&) {
     return false;
   }
 }

@@ -17,7 +17,7 @@ struct TrackSamples {
   std::size_t size() const { return time.size(); }
 };
 
-/// Throws config::UserError when the file is missing, of another kind or schema version, damaged, or has no track.
+/// Throws base::UserError when the file is missing, of another kind or schema version, damaged, or has no track.
 class TrackReader {
  public:
   explicit TrackReader(std::filesystem::path path);

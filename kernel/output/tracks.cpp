@@ -6,7 +6,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/growing_file.hpp"
 
@@ -35,8 +35,8 @@ void build_track(hid_t file, const TrackInfo& info, const fs::path& path) {
 void trim_track(hid_t file, const TrackInfo& info, const fs::path& path, double time) {
   const Handle group(H5Gopen2(file, info.name.c_str(), H5P_DEFAULT), H5Gclose);
   if (!group.valid() || hdf5::get_attribute(group, "bead", info.bead + 1) != info.bead) {
-    throw config::UserError(fmt::format("{}: has no track '{}' of bead {}; it belongs to another run: move it away or use another -o",
-                                        path.string(), info.name, info.bead));
+    throw base::UserError(fmt::format("{}: has no track '{}' of bead {}; it belongs to another run: move it away or use another -o",
+                                      path.string(), info.name, info.bead));
   }
   const auto open = [&](const char* name) {
     return Column(hdf5::checked({H5Dopen2(group, name, H5P_DEFAULT), H5Dclose}, path, fmt::format("opening '{}'", name)), path);

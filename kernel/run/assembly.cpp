@@ -13,7 +13,7 @@
 namespace millscope::run {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 int index_of(const std::vector<std::string>& names, const std::string& name) {
   return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());

@@ -13,7 +13,7 @@
 namespace millscope::run {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 /// A geometry with the values that it was made of.
 struct Made {
@@ -91,7 +91,7 @@ Range range_along_z(const Surface& s) {
 
 /// `period` of a geometry: the same as the domain's, and the surface where the domain is. Copies stand half a period beyond each end.
 void check_period(const config::GeometryCase& g, const Made& made, double period, const config::Case& c) {
-  const config::Location& where = made.values.where("period");
+  const base::Location& where = made.values.where("period");
   const std::string name = g.plugin.node.path();
   const double low = c.domain.box.low[2], high = c.domain.box.high[2], length = high - low;
   if (!c.domain.periodic[2]) {

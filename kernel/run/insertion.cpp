@@ -6,14 +6,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernel/run/random.hpp"
 #include "kernel/run/scatter.hpp"
 #include "kernel/run/space.hpp"
+#include "millscope/random.hpp"
 
 namespace millscope::run {
 namespace {
 
-using config::UserError;
+using base::UserError;
 constexpr double kSpacing = 1.04;   // of the largest diameter: neighbouring sites, so that jitter leaves no overlap
 constexpr double kMostSites = 4e9;  // of the whole lattice: beyond, walking through it takes minutes
 

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
-#include "kernel/run/random.hpp"
+#include "millscope/random.hpp"
 
 namespace millscope::run {
 namespace {
@@ -132,7 +133,7 @@ Recorder::Recorder(const Assembly& a, std::filesystem::path directory, std::opti
     track_ids_ = tracked(a);
     std::vector<output::TrackInfo> infos;
     for (const std::uint32_t id : track_ids_) {
-      const double volume = 4.0 / 3.0 * 3.14159265358979323846 * radius_[id] * radius_[id] * radius_[id];
+      const double volume = 4.0 / 3.0 * std::numbers::pi * radius_[id] * radius_[id] * radius_[id];
       infos.push_back({fmt::format("bead_{}", id), id, 2 * radius_[id], mass_[id] / volume, "simulation"});
     }
     const auto path = directory_ / "tracks.h5";
@@ -190,7 +191,9 @@ void Recorder::gather(const dem::System& system) {
   const dem::Particles& p = system.particles;
   for (std::size_t i = 0; i < p.position.size(); ++i) {
     const std::size_t k = 3 * static_cast<std::size_t>(p.id[i]);
-    std::copy_n(p.position[i].centre, 3, &position_[k]);
+    position_[k] = p.position[i].x;
+    position_[k + 1] = p.position[i].y;
+    position_[k + 2] = p.position[i].z;
     wrap(system.settings(), &position_[k]);
     system.velocity_at_step(static_cast<std::int64_t>(i), &velocity_[k], &spin_[k]);
   }
@@ -232,7 +235,7 @@ void Recorder::write_tracks(const dem::System& system) {
   std::vector<double> position;
   for (const std::uint32_t id : track_ids_) {
     const dem::PositionLine& x = p.position[index_of_id_[id]];
-    double c[3] = {x.centre[0], x.centre[1], x.centre[2]};
+    double c[3] = {x.x, x.y, x.z};
     wrap(system.settings(), c);
     position.insert(position.end(), c, c + 3);
   }

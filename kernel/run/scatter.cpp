@@ -106,8 +106,8 @@ class Points {
       if (!bad[i]) free_.push_back(points[i]);
     }
     if (free_.empty() && ++vain_ > 200) {
-      throw config::UserError(a_.c.fill.where,
-                              "no place is clear of the walls; check the liner's unit and orientation (millscope geometry report)");
+      throw base::UserError(a_.c.fill.where,
+                            "no place is clear of the walls; check the liner's unit and orientation (millscope geometry report)");
     }
   }
   Point draw(double radius, double top) {
@@ -157,7 +157,7 @@ std::vector<Point> scattered(const Assembly& a, const Region& region, const std:
         points.forget();
       }
       if (part >= 1 && tries > kLastTries) {
-        throw config::UserError(
+        throw base::UserError(
             a.c.fill.where,
             fmt::format("{} beads are asked for but only {} fit without touching, neither on a lattice of the largest bead's "
                         "size nor at random; lower the filling, or check that the liner is in the right unit (millscope "

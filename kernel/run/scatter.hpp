@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "kernel/run/random.hpp"
 #include "kernel/run/space.hpp"
+#include "millscope/random.hpp"
 
 namespace millscope::run {
 

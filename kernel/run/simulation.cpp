@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "kernel/base/hash.hpp"
 #include "kernel/config/writer.hpp"
 #include "kernel/output/archive.hpp"
 #include "kernel/output/directory.hpp"
@@ -18,7 +19,7 @@
 namespace millscope::run {
 namespace {
 
-using config::UserError;
+using base::UserError;
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
@@ -84,18 +85,13 @@ std::int64_t fingerprint(const Assembly& a, const host::Registry& registry) {
   c.time.end = c.time.analyze_from = 0;
   c.run.threads = 0;
   c.output = {};
-  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
-  const auto add = [&hash](const void* data, std::size_t bytes) {
-    const unsigned char* byte = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < bytes; ++i) hash = (hash ^ byte[i]) * 0x100000001b3ULL;
-  };
-  const std::string text = config::resolved_yaml(c, registry.descriptors());
-  add(text.data(), text.size());
+  base::Hash hash;
+  hash.add(config::resolved_yaml(c, registry.descriptors()));
   for (const GeometryUse& g : a.geometries) {
-    add(g.surface.vertices, 3 * g.surface.vertex_count * sizeof *g.surface.vertices);
-    add(g.surface.triangles, 3 * g.surface.triangle_count * sizeof *g.surface.triangles);
+    hash.add(g.surface.vertices, 3 * g.surface.vertex_count * sizeof *g.surface.vertices);
+    hash.add(g.surface.triangles, 3 * g.surface.triangle_count * sizeof *g.surface.triangles);
   }
-  return static_cast<std::int64_t>(hash);
+  return static_cast<std::int64_t>(hash.value());
 }
 
 void write_checkpoint(Session& s) {
@@ -194,7 +190,7 @@ void advance(Session& s) {
     throw RanAway{e.what(), time.step ? fmt::format("time.step_s={:.17g}", 0.5 * *time.step)
                                       : fmt::format("time.step_fraction={:.17g}", 0.5 * time.step_fraction)};
   } catch (const UserError& e) {
-    if (e.exit_code() != config::kExitBadInput) throw;
+    if (e.exit_code() != base::kExitBadInput) throw;
     throw UserError(with_what_is_left(s, e));
   }
 }

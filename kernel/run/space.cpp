@@ -9,7 +9,7 @@
 namespace millscope::run {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 /// Marks the sites whose sphere touches a surface.
 void mark_touching(const GeometryUse& g, const std::vector<Point>& sites, std::vector<double> r, std::vector<std::uint8_t>& bad) {

@@ -30,7 +30,7 @@ struct AnalysisRequest {
   std::function<void(const char* doing, double fraction)> progress;
 };
 
-/// Throws config::UserError.
+/// Throws base::UserError.
 ResultSet analyze(const AnalysisRequest& request, const host::Registry& registry);
 
 }  // namespace millscope::studies

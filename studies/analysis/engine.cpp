@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/base/parallel.hpp"
 #include "studies/analysis/covariance.hpp"
-#include "studies/analysis/parallel.hpp"
 #include "studies/analysis/resample.hpp"
 #include "studies/analysis/sums.hpp"
 #include "studies/analysis/times.hpp"
@@ -15,7 +15,7 @@
 namespace millscope::studies {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 constexpr std::size_t kMostChunks = 128, kWantedBlocks = 64, kSpeedBlocks = 20, kFewestChunks = 16;
 constexpr double kMostSumBytes = 1e9, kMostDrawBytes = 4e9;
@@ -54,7 +54,7 @@ Blocks gather(FrameSource& source, const std::vector<AnalyzerInstance>& instance
   blocks.rule = block_rule(blocks.series, one_bead);
   const double length = block_length(blocks.rule, options.block, total);
   source.cut(length, most_chunks(layout));
-  const std::size_t workers = worker_count(options.threads, source.chunk_count());
+  const std::size_t workers = base::worker_count(options.threads, source.chunk_count());
   blocks.table = merge_blocks(sum_chunks(source, instances, layout, workers, options.progress), length);
   return blocks;
 }
@@ -130,7 +130,7 @@ Deviations resample(const AnalyzerInstance& instance, const SumLayout::Part& par
   };
   std::vector<Scratch> scratch(workers);
   const std::vector<std::vector<double>> groups = group_sums(part, resampling);
-  for_each_item(resampling.items(), workers, [&](std::size_t item, std::size_t worker) {
+  base::for_each_item(resampling.items(), workers, [&](std::size_t item, std::size_t worker) {
     Scratch& s = scratch[worker];
     s.sums.assign(part.size, 0.0);
     s.values.resize(centre.size());
@@ -261,7 +261,7 @@ ResultSet run_analyzers(FrameSource& source, const std::vector<AnalyzerInstance>
     results.meta.times[k].independent = independent_values(blocks.series, k, results.meta.blocks, counts);
   const Resampling resampling{blocks.table.rows, counts, options.draws};
   const std::vector<std::uint8_t> follows = followers(blocks.table.spans);
-  const std::size_t workers = worker_count(options.threads, resampling.items());
+  const std::size_t workers = base::worker_count(options.threads, resampling.items());
   for (std::size_t k = 0; k < instances.size(); ++k) {
     if (options.progress) options.progress("resampling", static_cast<double>(k) / static_cast<double>(instances.size()));
     const SumLayout::Part& part = layout.parts[k];

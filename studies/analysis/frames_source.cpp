@@ -8,13 +8,13 @@
 #include <numbers>
 #include <numeric>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/analysis/times.hpp"
 
 namespace millscope::studies {
 namespace {
 
-using config::UserError;
+using base::UserError;
 using output::BeadField;
 
 constexpr std::size_t kMostChunkBytes = 256U << 20U;  // of the arrays of one chunk

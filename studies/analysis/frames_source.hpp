@@ -11,7 +11,7 @@ namespace millscope::studies {
 class FramesSource : public FrameSource {
  public:
   /// Frames with from ≤ time ≤ to, s. `context`: `has`, `largest_id`, `omega`, `start`, `end` and what follows from the beads (mass, count,
-  /// mean radius and density) are set here. Throws config::UserError when fewer than two frames are left.
+  /// mean radius and density) are set here. Throws base::UserError when fewer than two frames are left.
   FramesSource(output::FrameReader reader, AnalyzerContext context, std::optional<double> from, std::optional<double> to);
 
   const AnalyzerContext& context() const override { return context_; }

@@ -10,7 +10,7 @@
 namespace millscope::studies {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 struct FieldName {
   std::uint64_t bit;
@@ -87,7 +87,7 @@ std::vector<Request> pick(std::vector<Request> all, const std::vector<std::strin
 }
 
 AnalyzerInstance create(const Request& request, const host::Registry& registry, const AnalyzerContext& context) {
-  const config::Location where = request.node ? request.node->where() : config::Location{"", 0};
+  const base::Location where = request.node ? request.node->where() : base::Location{"", 0};
   const host::Loaded& plugin = registry.find(Kind::analyzer, request.kind, where);
   const config::Node empty = config::parse_document("{}", "the defaults of analyzer '" + request.name + "'");
   const config::ResolvedValues values = config::resolve(*plugin.descriptor, request.node ? *request.node : empty, Scope::instance);

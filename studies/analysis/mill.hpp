@@ -27,7 +27,7 @@ struct MillOfCase {
 std::optional<Slice> slice_of(const MillOfCase& mill);
 
 /// Reads a case, or what `millscope run` left of it (case.resolved.yaml). Of the plugins only those of geometry and gravity are used.
-/// `settings`: as `--set`. Throws config::UserError.
+/// `settings`: as `--set`. Throws base::UserError.
 MillOfCase read_mill_of_case(const std::filesystem::path& case_file, const host::Registry& registry,
                              const std::vector<std::string>& settings = {});
 

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "kernel/base/hash.hpp"
 #include "kernel/config/units.hpp"
 #include "kernel/output/track_reader.hpp"
 #include "studies/analysis/frames_source.hpp"
@@ -16,7 +17,7 @@ namespace millscope::studies {
 namespace {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 constexpr const char* kResolvedCase = "case.resolved.yaml";
 
@@ -129,19 +130,16 @@ std::string file_hash(const fs::path& file) {
   const std::uint64_t size = fs::file_size(file, ignored);
   const bool whole = size <= kPart * kParts;
   std::ifstream in(file, std::ios::binary);
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  base::Hash hash;
   std::vector<char> buffer(kPart);
-  const auto add = [&hash](const char* bytes, std::streamsize count) {
-    for (std::streamsize i = 0; i < count; ++i) hash = (hash ^ static_cast<unsigned char>(bytes[i])) * 0x100000001b3ULL;
-  };
-  if (!whole) add(reinterpret_cast<const char*>(&size), sizeof size);
+  if (!whole) hash.add(&size, sizeof size);
   for (std::uint64_t part = 0; part < kParts; ++part) {
     if (!whole) in.seekg(static_cast<std::streamoff>(part * ((size - kPart) / (kParts - 1))));
     in.read(buffer.data(), static_cast<std::streamsize>(kPart));
-    add(buffer.data(), in.gcount());
+    hash.add(buffer.data(), static_cast<std::size_t>(in.gcount()));
     if (!in) break;
   }
-  return fmt::format("{:016x}", hash);
+  return hash.text();
 }
 
 }  // namespace millscope::studies

@@ -27,7 +27,7 @@ struct OpenedSource {
   ResultMeta meta;  ///< source, description, name, case_file, inputs, notes
 };
 
-/// Throws config::UserError.
+/// Throws base::UserError.
 OpenedSource open_source(const SourceRequest& request, const host::Registry& registry);
 
 /// Reads `trajectory: {kind: cubic|smoothing, step, gap_limit, least_points, noise, noise_correlation, low, high}`

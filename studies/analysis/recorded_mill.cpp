@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/inspect/mill_motion.hpp"
 
 namespace millscope::studies {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 constexpr double kRpm = 30 / std::numbers::pi;
 

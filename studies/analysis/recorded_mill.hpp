@@ -16,7 +16,7 @@ struct RecordedMill {
   std::vector<std::string> notes;  ///< what was estimated, with its interval
 };
 
-/// `mill`: of the geometry that the condition names. Throws config::UserError where the axis is neither given nor to be found, and where
+/// `mill`: of the geometry that the condition names. Throws base::UserError where the axis is neither given nor to be found, and where
 /// the tracer contradicts the speed or the sense that are stated.
 RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCase>& mill);
 

@@ -11,7 +11,7 @@ namespace millscope::studies {
 namespace {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 Run cut_to(const Run& run, const SourceRequest& request) {
   if (!request.from && !request.to) return run;

@@ -5,7 +5,7 @@
 
 namespace millscope::studies {
 
-/// Reads, moves to the mill's frame and fits trajectories. Throws config::UserError where the frame is neither given nor to be found.
+/// Reads, moves to the mill's frame and fits trajectories. Throws base::UserError where the frame is neither given nor to be found.
 OpenedSource open_recording(const SourceRequest& request, const host::Registry& registry);
 
 }  // namespace millscope::studies

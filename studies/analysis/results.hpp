@@ -118,10 +118,10 @@ struct ResultSet {
 /// "pept_grid.occupancy", or "distributions.x_share[12]".
 std::string entry_name(const ResultSet& results, const CovarianceEntry& entry);
 
-/// Writes aside and renames. Throws config::UserError when the file exists (unless `overwrite`) or cannot be written.
+/// Writes aside and renames. Throws base::UserError when the file exists (unless `overwrite`) or cannot be written.
 void write_results(const std::filesystem::path& file, const ResultSet& results, bool overwrite = false);
 
-/// Reads a results.h5, or that of an output directory. Throws config::UserError.
+/// Reads a results.h5, or that of an output directory. Throws base::UserError.
 ResultSet read_results(const std::filesystem::path& file_or_directory);
 
 }  // namespace millscope::studies

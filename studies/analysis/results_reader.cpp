@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/reading.hpp"
 #include "studies/analysis/results_file.hpp"
 
@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 namespace hdf5 = output::hdf5;
-using config::UserError;
+using base::UserError;
 using hdf5::Dataset;
 using hdf5::Handle;
 

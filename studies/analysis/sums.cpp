@@ -8,13 +8,13 @@
 #include <mutex>
 #include <set>
 
+#include "kernel/base/parallel.hpp"
 #include "millscope/analyzer_adapter.hpp"
-#include "studies/analysis/parallel.hpp"
 
 namespace millscope::studies {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 std::vector<double*> pointers(const SumLayout::Part& part, double* row) {
   std::vector<double*> arrays;
@@ -114,7 +114,7 @@ SumTable sum_chunks(const FrameSource& source, const std::vector<AnalyzerInstanc
   std::vector<std::unique_ptr<FrameSource::Scratch>> scratch(workers);
   std::size_t done = 0;
   std::mutex guard;
-  for_each_item(count, workers, [&](std::size_t chunk, std::size_t worker) {
+  base::for_each_item(count, workers, [&](std::size_t chunk, std::size_t worker) {
     if (!scratch[worker]) scratch[worker] = source.make_scratch();
     const FrameBlock& block = source.load(chunk, *scratch[worker]);
     table.rows[chunk].assign(layout.size, 0.0);

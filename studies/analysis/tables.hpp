@@ -12,7 +12,7 @@
 namespace millscope::studies {
 
 /// Writes DIRECTORY/numbers.csv (all single numbers) and one table for each set of axes of an analyzer, ANALYZER.AXES.csv: a row for each
-/// cell with the bounds of its axes, then value, _sem, _low and _high of each result. Returns the files. Throws config::UserError.
+/// cell with the bounds of its axes, then value, _sem, _low and _high of each result. Returns the files. Throws base::UserError.
 std::vector<std::filesystem::path> write_tables(const std::filesystem::path& directory, const ResultSet& results);
 
 /// Provenance, notes and all single numbers with their uncertainty: results.json.

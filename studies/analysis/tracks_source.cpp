@@ -14,7 +14,7 @@ namespace millscope::studies {
 namespace {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 /// Indices of the tracks that are asked for.
 std::vector<std::size_t> pick(const output::TrackReader& reader, const std::vector<std::string>& tracers) {

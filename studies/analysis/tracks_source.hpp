@@ -6,7 +6,7 @@
 
 namespace millscope::studies {
 
-/// The tracks that `request` names, or all. Throws config::UserError.
+/// The tracks that `request` names, or all. Throws base::UserError.
 OpenedSource open_tracks(const SourceRequest& request, MillOfCase mill);
 
 /// The shell's turning speed and angle as functions of time; empty for a mill at rest.

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/analysis/times.hpp"
 
 namespace millscope::studies {
@@ -93,7 +93,7 @@ void TrajectorySource::tell_trimmed() {
   if (trimmed == 0) return;
   const auto outside = std::erase_if(trajectories_, [](const Trajectory& t) { return t.pieces.empty(); });
   if (trajectories_.empty()) {
-    throw config::UserError(
+    throw base::UserError(
         fmt::format("{}: nothing lies between trajectory.low and trajectory.high: z goes from {:.4g} m to {:.4g} m; give a range within "
                     "that, with its unit (low: 20 mm)",
                     description_, low, high));

@@ -16,7 +16,7 @@ struct ShellMotion {
 class TrajectorySource : public FrameSource {
  public:
   /// `context.has`, `largest_id`, `start` and `end` are set here. `exact`: positions without noise, so that no variance is given.
-  /// Trajectories without a piece, all of whose samples were trimmed, are left out; throws config::UserError when none remains.
+  /// Trajectories without a piece, all of whose samples were trimmed, are left out; throws base::UserError when none remains.
   TrajectorySource(std::vector<Trajectory> trajectories, AnalyzerContext context, ShellMotion motion, bool exact, std::string description);
   ~TrajectorySource() override;
 

@@ -12,7 +12,7 @@
 namespace millscope::calibrate {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 /// At most `wished` of those that may be followed.
 std::vector<std::size_t> evenly(const output::FrameBeads& beads, const config::Case& c, int wished) {

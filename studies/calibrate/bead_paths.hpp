@@ -27,7 +27,7 @@ class BeadPaths {
  public:
   /// At most `beads` of the run, of those that the case lets be followed (`tracer: true`), evenly over their ids, from the time on at which
   /// the case begins its analysis. The beads of a periodic slice are spread over a longer `place`, so that the camera sees them as far away
-  /// as it saw the recorded one. Throws config::UserError when the run has no frames or fewer than four.
+  /// as it saw the recorded one. Throws base::UserError when the run has no frames or fewer than four.
   BeadPaths(const std::filesystem::path& run, int beads, const AxialPlace& place, const host::Registry& registry);
 
   std::size_t size() const { return ids_.size(); }

@@ -14,11 +14,11 @@
 namespace millscope::calibrate {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 /// The case as it would be run, or the reader's own message at the place in the study.
 std::string resolved(const Study& study, const std::vector<std::string>& settings, const host::Registry& registry,
-                     const config::Location& where, const std::string& what) {
+                     const base::Location& where, const std::string& what) {
   try {
     const config::Case c = config::read_case(study.base.string(), settings);
     const std::vector<const Descriptor*> descriptors = registry.descriptors();

@@ -13,7 +13,7 @@
 namespace millscope::calibrate {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 constexpr double kFirstStep = 0.3;  // of the ranges
 constexpr int kRunsPerParameter = 10;

@@ -11,7 +11,7 @@
 namespace millscope::calibrate {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 std::string point_text(const Study& study, const Eigen::VectorXd& point) {
   std::string text;

@@ -88,7 +88,7 @@ std::optional<Inference> infer(const Evaluator& evaluator, std::vector<std::stri
     inference.diagnostics = emulator.leave_one_out();
     inference.observables = f.training.observable;
     return inference;
-  } catch (const config::UserError& e) {
+  } catch (const base::UserError& e) {
     notes.push_back(fmt::format("no posterior: {}", e.what()));
     return std::nullopt;
   }

@@ -10,7 +10,7 @@ namespace {
 
 double rms_difference(const Histogram& a, const Histogram& b) {
   if (a.percent.size() != b.percent.size() || a.percent.empty()) {
-    throw config::UserError(
+    throw base::UserError(
         fmt::format("the distributions have {} and {} bins; analyse both with the same settings", a.percent.size(), b.percent.size()));
   }
   double squares = 0;

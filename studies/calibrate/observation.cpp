@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::calibrate {
 namespace {
@@ -24,7 +24,7 @@ Histogram histogram_from(const Json& j) {
 void require_defined(const Observation& o) {
   for (Eigen::Index i = 0; i < o.value.size(); ++i) {
     if (!std::isfinite(o.value[i]))
-      throw config::UserError(fmt::format(
+      throw base::UserError(fmt::format(
           "'{}' is undefined in {}: no bead was seen there; leave such speeds out (objective: {{without: [region_speed]}}), or narrow "
           "the ranges",
           o.observables[static_cast<std::size_t>(i)].name, o.of));

@@ -43,7 +43,7 @@ struct Observation {
   bool of_tracks() const { return bead_seconds > 0; }
 };
 
-/// Throws config::UserError where a value is NaN: a speed where no bead was seen.
+/// Throws base::UserError where a value is NaN: a speed where no bead was seen.
 void require_defined(const Observation& observation);
 
 /// Takes observables out, with their part of the covariance. Names that it does not have are passed over.

@@ -19,7 +19,7 @@ namespace millscope::calibrate {
 class Observer {
  public:
   /// Looks at the recordings of all conditions, or at those with `role` alone. `cache`: results are kept below it. `threads` 0: all cores;
-  /// no influence on results. `say`: one line on what is being done; may be empty. Throws config::UserError.
+  /// no influence on results. `say`: one line on what is being done; may be empty. Throws base::UserError.
   Observer(const Study& study, const host::Registry& registry, std::filesystem::path cache, int threads,
            std::function<void(const std::string&)> say);
   ~Observer();
@@ -28,13 +28,13 @@ class Observer {
   bool turns_other_way(std::size_t condition) const;
   /// What the recording of a condition shows.
   const Observation& recorded(std::size_t condition) const;
-  /// What a finished run shows, with exactly the same observables. `key`: of the run's cache entry, from which the camera's chance comes
-  /// too; `camera`: a camera file's text, whose links come before those of the recording's camera; may be empty. A speed where no bead was
-  /// seen is NaN. May be called from several threads. Throws config::UserError.
+  /// What a finished run shows, with exactly the same observables. `key`: of the run's cache entry. `camera`: a camera file's text, whose
+  /// links come before those of the recording's camera; may be empty. A speed where no bead was seen is NaN. May be called from several
+  /// threads. Throws base::UserError.
   Observation simulated(std::size_t condition, const std::filesystem::path& run, const std::string& key,
                         const std::string& camera = {}) const;
   /// Results of other analyzers (as in analysis.yaml): of the recording where `run` is empty, else of a finished run seen in the same way.
-  studies::ResultSet results(std::size_t condition, const std::filesystem::path& run, const std::string& key, const std::string& analyzers,
+  studies::ResultSet results(std::size_t condition, const std::filesystem::path& run, const std::string& analyzers,
                              const std::string& camera = {}) const;
 
  private:

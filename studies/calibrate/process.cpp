@@ -5,15 +5,15 @@
 #include <mutex>
 #include <optional>
 
+#include "kernel/base/parallel.hpp"
 #include "studies/analysis/engine.hpp"
-#include "studies/analysis/parallel.hpp"
 #include "studies/analysis/trajectory_source.hpp"
 #include "studies/calibrate/recorded.hpp"
 
 namespace millscope::calibrate {
 namespace {
 
-using config::UserError;
+using base::UserError;
 using studies::AnalyzerInstance;
 
 /// The analyzers of this room, and those of the study's own section `analyzers`.
@@ -44,7 +44,7 @@ struct Fitted {
 
 Fitted fit(const studies::Recording& recording, const studies::TrajectoryOptions& options, int threads) {
   std::vector<std::optional<studies::Trajectory>> fitted(recording.runs.size());
-  studies::for_each_item(recording.runs.size(), studies::worker_count(threads, recording.runs.size()), [&](std::size_t i, std::size_t) {
+  base::for_each_item(recording.runs.size(), base::worker_count(threads, recording.runs.size()), [&](std::size_t i, std::size_t) {
     const studies::Run& run = recording.runs[i];
     if (run.size() < static_cast<std::size_t>(options.least_points)) return;
     try {

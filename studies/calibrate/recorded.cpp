@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "kernel/base/hash.hpp"
 #include "kernel/output/summary.hpp"
 #include "studies/analysis/open_source.hpp"
 #include "studies/calibrate/velocity_profile.hpp"
@@ -17,7 +18,7 @@
 namespace millscope::calibrate {
 namespace {
 
-using config::UserError;
+using base::UserError;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kExactCamera = "observations: {rate: {kind: sampling, rate: 1000 Hz, shape: 1000}}\n";
@@ -205,12 +206,9 @@ RecordedCondition look(const studies::Recording& recording, std::size_t conditio
 }  // namespace
 
 std::string hash_of(const std::vector<std::string>& texts) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const std::string& text : texts) {
-    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-    hash = (hash ^ 0xffU) * 0x100000001b3ULL;
-  }
-  return fmt::format("{:016x}", hash);
+  base::Hash hash;
+  for (const std::string& text : texts) hash.add(text).add("\xff");
+  return hash.text();
 }
 
 std::string dump(const config::Node& node) {

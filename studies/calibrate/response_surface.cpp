@@ -10,7 +10,7 @@
 namespace millscope::calibrate {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 constexpr double kDescentStep = 0.5;  // of the screening's step, in the factor with the largest effect
 constexpr int kShrinkages = 6;

@@ -27,7 +27,7 @@ struct SessionOptions {
 /// The study's recordings and campaign, ready for an Evaluator.
 class Session {
  public:
-  /// Checks the study and looks at its recordings. Throws config::UserError.
+  /// Checks the study and looks at its recordings. Throws base::UserError.
   Session(const Study& study, const host::Registry& registry, SessionOptions options);
   Evaluator& evaluator() { return *evaluator_; }
   const Observer& observer() const { return *observer_; }

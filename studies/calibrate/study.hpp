@@ -36,7 +36,7 @@ struct Condition {
   std::vector<std::string> settings;  ///< "mill.speed=75 %critical", laid on the base case
   std::filesystem::path recording;
   Role role = Role::fit;
-  config::Location where;
+  base::Location where;
 };
 
 /// One number of the case that is looked for.
@@ -46,7 +46,7 @@ struct Parameter {
   double low = 0, high = 0;              ///< SI
   std::vector<std::string> tied;         ///< paths that take the same value
   std::optional<double> centre, spread;  ///< of the first design: `centre`, `step`; default: the middle, a quarter of the range
-  config::Location where;
+  base::Location where;
 };
 
 /// An inequality between parameters, e.g. "mu_r < 0.5 * mu_s".
@@ -61,7 +61,7 @@ enum class ObjectiveKind { chagas2015, likelihood };
 struct Term {
   std::string analyzer, result;
   double weight = 1;  ///< chagas2015: per percent of the recorded value
-  config::Location where;
+  base::Location where;
   std::string name() const { return analyzer + "." + result; }
 };
 
@@ -103,7 +103,7 @@ struct Observing {
 
 struct Study {
   std::filesystem::path file, base;
-  config::Location base_place;
+  base::Location base_place;
   std::vector<Condition> conditions;  ///< in the order of the file
   std::vector<Parameter> parameters;
   std::vector<Constraint> constraints;
@@ -128,12 +128,12 @@ std::vector<std::string> settings_of(const Study& study, const Eigen::VectorXd& 
 /// Sections of a study that `diagnose` reads and `calibrate` has no use for: one file may serve both.
 inline constexpr std::array<std::string_view, 3> kDiagnoseSections{"nuisances", "hypotheses", "bank"};
 
-/// Reads the file alone; `also`: sections that another room reads from `Study::root`. Throws config::UserError with file:line.
+/// Reads the file alone; `also`: sections that another room reads from `Study::root`. Throws base::UserError with file:line.
 Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
                  std::span<const std::string_view> also = {});
 
 /// Holds the study against the plugins, the base case and the recordings' conditions: unknown or idle parameters, values that a plugin
-/// refuses, recordings of another mill. Throws config::UserError.
+/// refuses, recordings of another mill. Throws base::UserError.
 void check_study(const Study& study, const host::Registry& registry);
 
 /// Leaves of a map as "path=value", as `--set` takes them, paths below the map; a list is one value.

@@ -146,12 +146,12 @@ void refuse_twice(const std::vector<Parameter>& parameters) {
     own.push_back(p.path);
     for (const std::string& path : own) {
       if (std::find(paths.begin(), paths.end(), normal_path(path)) != paths.end()) {
-        throw config::UserError(p.where, fmt::format("'{}' is given by two parameters; tie it to one of them", path));
+        throw base::UserError(p.where, fmt::format("'{}' is given by two parameters; tie it to one of them", path));
       }
       paths.push_back(normal_path(path));
     }
     if (std::find(names.begin(), names.end(), p.name) != names.end())
-      throw config::UserError(p.where, fmt::format("two parameters are called '{}'; choose another 'name'", p.name));
+      throw base::UserError(p.where, fmt::format("two parameters are called '{}'; choose another 'name'", p.name));
     names.push_back(p.name);
   }
 }

@@ -15,7 +15,7 @@ DesignChoice read_design(const config::Node& section);
 Budget read_budget(const config::Node& section);
 Observing read_observing(const config::Node& section);
 
-/// "a < 0.5 * b", "a >= 0.1": names or paths of parameters. Throws config::UserError at the node.
+/// "a < 0.5 * b", "a >= 0.1": names or paths of parameters. Throws base::UserError at the node.
 Constraint read_constraint(const config::Node& node, const std::vector<Parameter>& parameters);
 
 /// The index of the parameter of that name or path; −1: none.

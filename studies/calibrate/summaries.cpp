@@ -8,13 +8,13 @@
 #include <numeric>
 #include <optional>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/compare/regions.hpp"
 
 namespace millscope::calibrate {
 namespace {
 
-using config::UserError;
+using base::UserError;
 using studies::ResultArray;
 using studies::ResultSet;
 

@@ -32,7 +32,7 @@ struct SummaryChoice {
 /// follows from the others and is left out), the most visited regions, the terms of the study.
 std::vector<Summary> choose_summaries(const studies::ResultSet& recorded, const Study& study, const SummaryChoice& choice);
 
-/// The same summaries of other results, with covariance. A mean over cells in which nothing was seen is NaN; throws config::UserError where
+/// The same summaries of other results, with covariance. A mean over cells in which nothing was seen is NaN; throws base::UserError where
 /// the results lack a summary or another value is undefined.
 Observation summarise(const studies::ResultSet& results, const std::vector<Summary>& summaries);
 

@@ -15,7 +15,7 @@ namespace millscope::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 using Json = nlohmann::ordered_json;
 
 using studies::kNormal90;

@@ -42,7 +42,7 @@ struct Validation {
   bool pass() const { return judged > 0 && judged == passed; }
 };
 
-/// The set that calibration.json holds, in the order of the study's parameters. Throws config::UserError when it is no such file or holds
+/// The set that calibration.json holds, in the order of the study's parameters. Throws base::UserError when it is no such file or holds
 /// other parameters.
 Eigen::VectorXd calibrated_set(const std::filesystem::path& file, const Study& study);
 

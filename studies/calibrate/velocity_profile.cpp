@@ -21,8 +21,8 @@ namespace millscope::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
+using base::UserError;
 using config::Node;
-using config::UserError;
 
 constexpr const char* kVersion = "profile 1";  // grows when what is computed here changes
 constexpr std::size_t kMostValues = 12;

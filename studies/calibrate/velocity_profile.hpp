@@ -33,10 +33,10 @@ struct VelocityProfile {
   std::optional<double> z_low, z_high;
 };
 
-/// The profile that a recording.yaml tells of; nothing where it tells of tracks. Throws config::UserError with file:line.
+/// The profile that a recording.yaml tells of; nothing where it tells of tracks. Throws base::UserError with file:line.
 std::optional<VelocityProfile> read_profile(const std::filesystem::path& recording);
 
-/// Neighbouring points together, at most twelve values. Throws config::UserError where the case's mill is too small for them.
+/// Neighbouring points together, at most twelve values. Throws base::UserError where the case's mill is too small for them.
 RecordedCondition look_at_profile(const VelocityProfile& profile, std::size_t condition, const Processing& how);
 
 /// What a finished run shows of it.

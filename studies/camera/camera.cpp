@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "kernel/base/hash.hpp"
 #include "kernel/config/units.hpp"
 #include "kernel/config/values.hpp"
 #include "millscope/observation_adapter.hpp"
@@ -13,8 +14,8 @@
 namespace millscope::studies {
 namespace {
 
+using base::UserError;
 using config::Node;
-using config::UserError;
 
 /// Samples between two links of the chain.
 struct Samples {
@@ -53,12 +54,6 @@ Status give_room(void* host, std::int64_t count, TrackBuffer* out) {
 
 std::uint64_t mixed(std::uint64_t seed, std::uint64_t with) { return Random(seed ^ Random(with).bits()).bits(); }
 
-std::uint64_t hash_of(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  return hash;
-}
-
 void check_samples(const CameraLink& link, const Samples& samples) {
   for (std::size_t i = 0; i < samples.time.size(); ++i) {
     const bool finite = std::isfinite(samples.time[i]) && std::isfinite(samples.position[0][i]) && std::isfinite(samples.position[1][i]) &&
@@ -71,7 +66,7 @@ void check_samples(const CameraLink& link, const Samples& samples) {
 }
 
 Samples pass(const CameraLink& link, const Samples& in, TrackContext context) {
-  context.seed = mixed(context.seed, hash_of(link.name));
+  context.seed = mixed(context.seed, base::Hash().add(link.name).value());
   Samples out;
   const TrackSink sink{&out, give_room};
   const TrackView view = in.view();

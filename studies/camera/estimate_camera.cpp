@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/camera/estimate_parts.hpp"
 #include "studies/inspect/mill_motion.hpp"
 #include "studies/inspect/windows.hpp"
@@ -61,8 +61,8 @@ CameraEstimate estimate_camera(const Recording& recording, const EstimateOptions
   CameraEstimate e;
   for (const Run& run : recording.runs) e.locations += run.size();
   if (e.locations < kFewest) {
-    throw config::UserError(fmt::format("{}: {} locations are too few to tell the camera from; {} at least are needed",
-                                        recording.file.string(), e.locations, kFewest));
+    throw base::UserError(fmt::format("{}: {} locations are too few to tell the camera from; {} at least are needed",
+                                      recording.file.string(), e.locations, kFewest));
   }
   const std::optional<MillFrame> frame = options.frame ? options.frame : recording.frame;
   e.axis = axis_of(recording, frame);

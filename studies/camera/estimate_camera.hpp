@@ -73,7 +73,7 @@ struct EstimateOptions {
   std::size_t most_stretches = 300;  ///< for the noise: more cost more time
 };
 
-/// Throws config::UserError when the recording is too short or sparse (fewer than 200 locations or 20 unbroken stretches of 24).
+/// Throws base::UserError when the recording is too short or sparse (fewer than 200 locations or 20 unbroken stretches of 24).
 CameraEstimate estimate_camera(const Recording& recording, const EstimateOptions& options = {});
 
 /// The estimate with its standard errors; units are in the names of the keys, numbers that are not finite are null.

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/camera/estimate_parts.hpp"
 #include "studies/camera/maximise.hpp"
 #include "studies/recording/select.hpp"
@@ -83,7 +83,7 @@ std::vector<RateWindow> rate_windows(const Recording& recording, const Middle& m
     for (const Piece& piece : trajectory.pieces) add_windows(piece, trajectory.location_time, middle, group, windows);
   }
   if (windows.empty()) {
-    throw config::UserError(
+    throw base::UserError(
         fmt::format("{}: no {:.0f} ms without a pause of {:.3g} s; the rate of locations is told from such spans; give a recording whose "
                     "locations do not come in short bursts",
                     recording.file.string(), 1e3 * kWindow, pause));

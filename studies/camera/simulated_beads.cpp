@@ -14,7 +14,7 @@
 namespace millscope::studies {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 std::filesystem::path case_of(const std::filesystem::path& run) {
   const std::filesystem::path file = run / "case.resolved.yaml";

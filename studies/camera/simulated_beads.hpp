@@ -15,7 +15,7 @@ namespace millscope::studies {
 /// The directory of a run with tracks.h5.
 class SimulatedBeads {
  public:
-  /// Throws config::UserError when the directory is no run, or has no tracks.
+  /// Throws base::UserError when the directory is no run, or has no tracks.
   SimulatedBeads(std::filesystem::path run, const host::Registry& registry);
 
   const std::filesystem::path& directory() const { return run_; }

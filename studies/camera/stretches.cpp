@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/recording/select.hpp"
 
 namespace millscope::studies::camera {
@@ -61,7 +61,7 @@ std::vector<Stretch> stretches_of(const Recording& recording, const Middle& midd
     }
   }
   if (all.size() < kFewest) {
-    throw config::UserError(
+    throw base::UserError(
         fmt::format("{}: only {} stretches of {} locations without a pause of {:.3g} s; the noise needs {}; record for longer",
                     recording.file.string(), all.size(), kLength, pause, kFewest));
   }

@@ -7,7 +7,7 @@
 namespace millscope::studies::camera {
 
 /// At most `most` stretches without a pause longer than `pause` (s), evenly spread over the recording; none overlaps another, and those
-/// that hold an impact or a stray location are left out. Throws config::UserError when there are too few.
+/// that hold an impact or a stray location are left out. Throws base::UserError when there are too few.
 std::vector<Stretch> stretches_over(const Recording& recording, const Middle& middle, double pause, std::size_t most);
 
 /// Stretches in which the bead rides with the bed, so that next to nothing but noise moves it off a cubic. They are chosen by slopes and

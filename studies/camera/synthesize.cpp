@@ -10,7 +10,7 @@
 namespace millscope::studies {
 namespace {
 
-using config::UserError;
+using base::UserError;
 namespace fs = std::filesystem;
 
 constexpr double kFineStep = 0.55e-3;  // s: tracks of 2 kHz and a little more

@@ -28,10 +28,10 @@ struct Synthesis {
   std::vector<std::string> notes;  ///< what the user should know
 };
 
-/// The files that `synthesize` will write. Throws config::UserError: no such bead.
+/// The files that `synthesize` will write. Throws base::UserError: no such bead.
 std::vector<std::filesystem::path> synthesis_targets(const SimulatedBeads& beads, const SynthesisRequest& request);
 
-/// Writes all files or, where one of them exists already, none. Throws config::UserError: no such bead, nothing seen of a bead, a file
+/// Writes all files or, where one of them exists already, none. Throws base::UserError: no such bead, nothing seen of a bead, a file
 /// that exists, a disk that is full.
 Synthesis synthesize(const SimulatedBeads& beads, const Camera& camera, const SynthesisRequest& request);
 

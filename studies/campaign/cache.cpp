@@ -41,7 +41,7 @@ std::string keep_copy(const NamedFile& file, const fs::path& cache) {
     make_directory(copy.parent_path());
     const std::optional<std::string> bytes = text_of(file.path);
     if (!bytes || content_hash(*bytes) != file.hash)
-      throw config::UserError(file.path + ": changes while the campaign is being prepared; start again when it is whole");
+      throw base::UserError(file.path + ": changes while the campaign is being prepared; start again when it is whole");
     output::write_file(copy, *bytes);
   }
   return "../files/" + name;

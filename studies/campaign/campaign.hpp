@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::campaign {
 
@@ -58,7 +58,7 @@ struct Options {
 };
 
 /// Stopped by SIGINT or SIGTERM: the simulations have been asked to write a checkpoint and to stop. The same call goes on from there.
-class Interrupted : public config::UserError {
+class Interrupted : public base::UserError {
  public:
   explicit Interrupted(const std::string& message) : UserError(message, 3) {}
 };

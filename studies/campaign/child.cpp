@@ -11,7 +11,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/file.hpp"
 
 namespace millscope::campaign {
@@ -49,8 +49,8 @@ Child::Child(const std::vector<std::string>& command, const std::filesystem::pat
   process_ = ::fork();
   if (process_ == 0) become(words.data(), output.descriptor(), head);
   if (process_ < 0) {
-    throw config::UserError(fmt::format(
-        "no process can be started for a simulation ({}); give fewer --slots or raise the limit (ulimit -u)", std::strerror(errno)));
+    throw base::UserError(fmt::format("no process can be started for a simulation ({}); give fewer --slots or raise the limit (ulimit -u)",
+                                      std::strerror(errno)));
   }
 }
 

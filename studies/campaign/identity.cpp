@@ -20,7 +20,7 @@ namespace millscope::campaign {
 namespace {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 constexpr int kCacheVersion = 1;                  // of what a key is made of
 constexpr std::uint64_t kBaseMemory = 40U << 20;  // bytes: the program, its libraries and buffers, as `millscope check` has it

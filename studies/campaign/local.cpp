@@ -45,7 +45,7 @@ class Local {
       report();
       std::this_thread::sleep_for(kBreath);
     }
-    if (!trouble_.empty()) throw config::UserError(trouble_, trouble_code_);
+    if (!trouble_.empty()) throw base::UserError(trouble_, trouble_code_);
     if (stopping_ && !board_.open().empty())
       throw Interrupted(board_.interrupted_message("the runs under way have written their checkpoints"));
   }
@@ -76,7 +76,7 @@ class Local {
     if (ended.signal == 0 && (ended.exit_code == output::kExitDisk || ended.exit_code == kCannotStart)) {
       trouble_ = ended.exit_code == kCannotStart ? fmt::format("{}: cannot be started; give the millscope program", program())
                                                  : last_line(r.job.entry.messages());
-      trouble_code_ = ended.exit_code == kCannotStart ? config::kExitBadInput : output::kExitDisk;
+      trouble_code_ = ended.exit_code == kCannotStart ? base::kExitBadInput : output::kExitDisk;
       return give_back(r.job, 0);
     }
     if (ended.signal == 0 && ended.exit_code == kBusy) return give_back(r.job, kLookEvery);
@@ -173,7 +173,7 @@ class Local {
   std::map<std::string, int> fruitless_;
   bool stopping_ = false;
   std::string trouble_;
-  int trouble_code_ = config::kExitBadInput;
+  int trouble_code_ = base::kExitBadInput;
   Clock::time_point start_ = Clock::now();
 };
 

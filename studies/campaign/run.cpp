@@ -8,11 +8,10 @@ namespace millscope::campaign {
 namespace {
 
 void check(const Options& options) {
-  if (options.cache.empty()) throw config::UserError("campaign: no directory for the cache is given");
+  if (options.cache.empty()) throw base::UserError("campaign: no directory for the cache is given");
   if (options.runner != "local" && options.runner != "slurm")
-    throw config::UserError(fmt::format("runner '{}': give local or slurm", options.runner));
-  if (options.slots < 0)
-    throw config::UserError(fmt::format("slots {}: give 1 or more, or 0 for as many as there are cores", options.slots));
+    throw base::UserError(fmt::format("runner '{}': give local or slurm", options.runner));
+  if (options.slots < 0) throw base::UserError(fmt::format("slots {}: give 1 or more, or 0 for as many as there are cores", options.slots));
 }
 
 Options with_absolute_paths(Options options) {
@@ -32,7 +31,7 @@ Board::Board(std::span<const Simulation> simulations, const Options& options)
     Identity id;
     try {
       id = identifier.identify(simulations[i]);
-    } catch (const config::UserError& e) {
+    } catch (const base::UserError& e) {
       settle(i, {State::failed, {}, e.what(), true, 0, ""}, 0);
       continue;
     }

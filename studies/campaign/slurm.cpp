@@ -18,7 +18,7 @@ namespace millscope::campaign {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using config::UserError;
+using base::UserError;
 
 constexpr std::size_t kLargestArray = 1000;            // below Slurm's default MaxArraySize
 constexpr int kTries = 3;                              // lost tasks without a newer checkpoint

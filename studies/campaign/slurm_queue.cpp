@@ -11,7 +11,7 @@
 #include <cstring>
 #include <sstream>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/file.hpp"
 #include "studies/campaign/cache.hpp"
 
@@ -20,7 +20,7 @@ extern char** environ;
 namespace millscope::campaign {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 std::string shell_quoted(const std::string& text) { return fmt::format("'{}'", replaced(text, "'", "'\\''")); }
 

@@ -18,7 +18,7 @@ namespace millscope::campaign {
 namespace {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 constexpr int kInterruptedCode = 3;
 constexpr double kPatience = 30;  // s for another process to write its last checkpoint
@@ -77,7 +77,7 @@ int failed(const Entry& entry, TaskRecord record, const std::string& message) {
   record.message = message;
   entry.write(record);
   fmt::print(stderr, "millscope: {}\n", message);
-  return config::kExitBadInput;
+  return base::kExitBadInput;
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace millscope::challenge {
 namespace {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 using Json = nlohmann::ordered_json;
 
 std::string bytes_of(const fs::path& file) {

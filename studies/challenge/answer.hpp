@@ -39,9 +39,9 @@ std::string fresh_salt();
 /// Writes the answers with fresh salts, then the manifest with their hashes. `study`: the file that all sets include.
 void seal(const std::filesystem::path& sets, const std::vector<Answer>& answers, const std::filesystem::path& study);
 
-/// The names in the manifest. Throws config::UserError when there is none.
+/// The names in the manifest. Throws base::UserError when there is none.
 std::vector<std::string> set_names(const std::filesystem::path& sets);
-/// Answers as sealed. Throws config::UserError when one is missing or is not what the manifest has the hash of.
+/// Answers as sealed. Throws base::UserError when one is missing or is not what the manifest has the hash of.
 std::vector<Answer> open_answers(const std::filesystem::path& sets);
 /// Of the manifest's bytes: published beforehand, it binds whoever made the sets.
 std::string manifest_hash(const std::filesystem::path& sets);

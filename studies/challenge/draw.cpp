@@ -42,8 +42,7 @@ Eigen::VectorXd draw_theta(const Challenge& challenge, const SetsOf& sets, const
     }
     if (q.study.allowed(theta.head(parameters))) break;
     if (trial == kTrials)
-      throw config::UserError(
-          fmt::format("{}: the study's constraints leave nothing of the middle of its ranges", challenge.file.string()));
+      throw base::UserError(fmt::format("{}: the study's constraints leave nothing of the middle of its ranges", challenge.file.string()));
   }
   for (std::size_t i = 0; i < q.nuisances.size(); ++i) {
     const diagnose::Nuisance& n = q.nuisances[i];

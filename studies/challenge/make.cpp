@@ -11,7 +11,7 @@ namespace millscope::challenge {
 namespace {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 using Json = nlohmann::ordered_json;
 
 std::string set_name(std::size_t i) { return fmt::format("set_{:03}", i + 1); }
@@ -51,8 +51,8 @@ struct Maker {
   /// One condition of a set: what the camera and the meter make of the truth.
   Json record(const Truth& truth, std::size_t condition, const campaign::Outcome& outcome, const fs::path& folder) const {
     emulate::Random random = random_of(challenge, truth, condition);
-    random.next();  // the run's own seed
-    const std::uint64_t camera_seed = random.next();
+    random.bits();  // the run's own seed
+    const std::uint64_t camera_seed = random.bits();
     const PowerOfRun power = power_of(outcome.folder, registry);
     const double measured = power.value * (1 + question.study.power_error * random.normal());
     RecordingOf what{outcome.folder, folder, "r_" + question.study.conditions[condition].name, believed(question, condition, registry),

@@ -21,7 +21,7 @@ struct MakeOptions {
   std::function<void(const std::string&)> say;
 };
 
-/// Simulates, records and seals. Stopped, it goes on from its cache. Throws config::UserError: a truth that cannot be simulated, a folder
+/// Simulates, records and seals. Stopped, it goes on from its cache. Throws base::UserError: a truth that cannot be simulated, a folder
 /// that holds sealed sets already.
 void make(const Challenge& challenge, const diagnose::Question& question, const host::Registry& registry, MakeOptions options);
 

@@ -77,14 +77,14 @@ void check_hypothesis(const SetsOf& sets, const std::string& name, const diagnos
   for (const diagnose::Candidate& c : question.candidates) names.push_back(c.name);
   const auto found = std::find_if(question.candidates.begin(), question.candidates.end(), [&](const auto& c) { return c.name == name; });
   if (found == question.candidates.end())
-    throw config::UserError(sets.where, fmt::format("'{}' is no hypothesis of the study; {}", name, config::suggestion(name, names)));
+    throw base::UserError(sets.where, fmt::format("'{}' is no hypothesis of the study; {}", name, config::suggestion(name, names)));
   if (!found->on_or_off() && (sets.low < found->range.low || sets.high > found->range.high)) {
-    throw config::UserError(sets.where, fmt::format("the strength {:.3g} … {:.3g} of '{}' leaves its range; give shares of {:.3g} … {:.3g}",
-                                                    sets.low, sets.high, name, found->range.low, found->range.high));
+    throw base::UserError(sets.where, fmt::format("the strength {:.3g} … {:.3g} of '{}' leaves its range; give shares of {:.3g} … {:.3g}",
+                                                  sets.low, sets.high, name, found->range.low, found->range.high));
   }
   for (const std::string& other : sets.hypotheses) {
     if (std::find(found->excludes.begin(), found->excludes.end(), other) != found->excludes.end())
-      throw config::UserError(sets.where, fmt::format("'{}' and '{}' cannot hold together; choose another pair", name, other));
+      throw base::UserError(sets.where, fmt::format("'{}' and '{}' cannot hold together; choose another pair", name, other));
   }
 }
 
@@ -102,12 +102,12 @@ bool stands_for(const diagnose::Candidate& c, const std::string& setting) {
 }
 
 /// What is drawn, or what a hypothesis stands for: set beside them it would be scored as what it is not.
-void check_settings(const std::vector<std::string>& settings, const config::Location& where, const diagnose::Question& question) {
+void check_settings(const std::vector<std::string>& settings, const base::Location& where, const diagnose::Question& question) {
   for (const std::string& setting : settings) {
     const std::string path = path_of(setting);
     for (const diagnose::Candidate& c : question.candidates) {
       if (stands_for(c, setting))
-        throw config::UserError(
+        throw base::UserError(
             where, fmt::format("sets '{}', which hypothesis '{}' of the study stands for; leave it out, or list the study's 'hypotheses' "
                                "without '{}'",
                                path, c.name, c.name));
@@ -118,7 +118,7 @@ void check_settings(const std::vector<std::string>& settings, const config::Loca
     const auto& nuisances = question.nuisances;
     if (std::any_of(question.study.parameters.begin(), question.study.parameters.end(), drawn) ||
         std::any_of(nuisances.begin(), nuisances.end(), [&](const diagnose::Nuisance& n) { return !n.usual && n.path == path; }))
-      throw config::UserError(where, fmt::format("sets '{}', which the study looks for and the challenge draws; leave it out", path));
+      throw base::UserError(where, fmt::format("sets '{}', which the study looks for and the challenge draws; leave it out", path));
   }
 }
 
@@ -175,7 +175,7 @@ diagnose::Question question_of(const Challenge& challenge, const host::Registry&
   diagnose::Question question = diagnose::read_question(challenge.study, overrides, registry);
   for (const diagnose::Nuisance& n : question.nuisances) {
     if (n.of_camera())
-      throw config::UserError(
+      throw base::UserError(
           n.where, fmt::format("nuisance '{}': the recordings of a challenge state no frame that could be doubted; leave it out", n.name));
   }
   check_settings(challenge.truth, challenge.truth_where, question);

@@ -34,23 +34,23 @@ struct SetsOf {
   std::string name;                   ///< of what lies outside the study's list
   std::vector<std::string> settings;  ///< that make it
   int count = 1;
-  config::Location where;
+  base::Location where;
 };
 
 struct Challenge {
   std::filesystem::path file, study, camera;
   std::uint64_t seed = 1;
   std::vector<std::string> truth;  ///< settings of all truths
-  config::Location truth_where;
+  base::Location truth_where;
   int beads = 60;
   double seconds = 20;
   std::vector<SetsOf> sets;
 };
 
-/// Throws config::UserError with file:line.
+/// Throws base::UserError with file:line.
 Challenge read_challenge(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// The study without its recordings. Throws config::UserError where the sets name hypotheses that it does not have, or where
+/// The study without its recordings. Throws base::UserError where the sets name hypotheses that it does not have, or where
 /// something is set that is drawn or that a hypothesis of the study stands for.
 diagnose::Question question_of(const Challenge& challenge, const host::Registry& registry);
 

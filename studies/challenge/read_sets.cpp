@@ -66,7 +66,7 @@ std::optional<Found> read_found(const fs::path& set) {
     try {
       return found_from(Json::parse(bytes_of(file)));
     } catch (const Json::exception& e) {
-      throw config::UserError(
+      throw base::UserError(
           fmt::format("{}: is no diagnosis that can be scored ({}); remove it and run the challenge again", file.string(), e.what()));
     }
   }
@@ -99,9 +99,9 @@ std::vector<Marked> read_all_sets(const std::vector<fs::path>& folders) {
   for (const fs::path& folder : folders) {
     const std::string name = name_of_folder(folder);
     if (!manifests.insert(manifest_hash(folder)).second)
-      throw config::UserError(fmt::format("{}: holds the same sets as a folder before it; leave one out", folder.string()));
+      throw base::UserError(fmt::format("{}: holds the same sets as a folder before it; leave one out", folder.string()));
     if (!names.insert(name).second)
-      throw config::UserError(
+      throw base::UserError(
           fmt::format("{}: two folders are called '{}', and their sets could not be told apart; rename one", folder.string(), name));
     for (Marked& m : read_sets(folder)) {
       m.answer.set = name + "/" + m.answer.set;

@@ -6,10 +6,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "kernel/base/parallel.hpp"
 #include "kernel/config/case.hpp"
 #include "kernel/output/file.hpp"
 #include "studies/analysis/mill.hpp"
-#include "studies/analysis/parallel.hpp"
 #include "studies/calibrate/bead_paths.hpp"
 #include "studies/camera/ctrack_writer.hpp"
 #include "studies/camera/simulated_beads.hpp"
@@ -18,7 +18,7 @@
 namespace millscope::challenge {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 namespace {
 
@@ -60,7 +60,7 @@ void write_recording(const RecordingOf& what, const studies::Camera& camera, con
   const studies::SimulatedBeads beads(what.run, registry);
   const std::size_t count = beads.tracks().size();
   std::vector<std::string> texts(count);
-  studies::for_each_item(count, studies::worker_count(0, count), [&](std::size_t i, std::size_t) {
+  base::for_each_item(count, base::worker_count(0, count), [&](std::size_t i, std::size_t) {
     const studies::Run run = studies::observe(beads.path(i, beads.analyze_from()), camera, beads.context(i, what.seed));
     if (run.size() >= kLeastPoints) texts[i] = studies::ctrack_text(run);
   });

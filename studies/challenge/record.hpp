@@ -27,7 +27,7 @@ struct RecordingOf {
   std::uint64_t seed = 1;  ///< of the camera
 };
 
-/// Passes the run's beads through the camera. Throws config::UserError when it saw none for long enough.
+/// Passes the run's beads through the camera. Throws base::UserError when it saw none for long enough.
 void write_recording(const RecordingOf& what, const studies::Camera& camera, const host::Registry& registry);
 
 }  // namespace millscope::challenge

@@ -46,8 +46,8 @@ RunCount run(const fs::path& sets, const host::Registry& registry, calibrate::Se
     std::string failure;
     try {
       diagnose_set(sets / name, registry, session, naming);
-    } catch (const config::UserError& e) {
-      if (e.exit_code() != config::kExitBadInput) throw;
+    } catch (const base::UserError& e) {
+      if (e.exit_code() != base::kExitBadInput) throw;
       failure = e.what();
     } catch (const fs::filesystem_error&) {
       throw;

@@ -55,7 +55,7 @@ struct Marked {
 std::optional<Found> read_found(const std::filesystem::path& set);
 /// Answers, held against their hashes, and diagnoses.
 std::vector<Marked> read_sets(const std::filesystem::path& sets);
-/// Those of several folders; each set is then called FOLDER/set_001. Throws config::UserError where two folders have one name,
+/// Those of several folders; each set is then called FOLDER/set_001. Throws base::UserError where two folders have one name,
 /// or the same manifest.
 std::vector<Marked> read_all_sets(const std::vector<std::filesystem::path>& folders);
 /// Last part of a folder's path that is a name: "sets" of "a/sets/".

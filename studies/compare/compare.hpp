@@ -52,7 +52,7 @@ struct Comparison {
   std::vector<std::string> notes;       ///< mirrored, other speed, other options, …
 };
 
-/// B less A. Throws config::UserError where grids or units differ, or nothing can be compared.
+/// B less A. Throws base::UserError where grids or units differ, or nothing can be compared.
 Comparison compare(const ResultSet& a, const ResultSet& b, const CompareOptions& options);
 
 }  // namespace millscope::studies

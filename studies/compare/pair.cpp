@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/picture/scale.hpp"
 
 namespace millscope::studies {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 constexpr double kSameGrid = 1e-6;  // of the axis's span
 

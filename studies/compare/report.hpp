@@ -17,7 +17,7 @@ std::string comparison_table(const Comparison& comparison, std::size_t rows);
 nlohmann::ordered_json comparison_json(const Comparison& comparison);
 
 /// OUT/comparison.json, observables.csv (ranked), elements.csv (every number, bin, cell and region that was judged); each whole or not at
-/// all. The directory is made. Throws config::UserError.
+/// all. The directory is made. Throws base::UserError.
 void write_comparison(const Comparison& comparison, const std::filesystem::path& directory);
 
 /// A difference map with the differing cells framed for every map, both curves for every curve. Returns what was written, without ending.

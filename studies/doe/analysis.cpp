@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::doe {
 namespace {
@@ -23,8 +23,8 @@ TableAnalysis analyze_table(const Table& table, const Choice& choice, ModelChoic
   for (std::size_t r = 0; r < analysis.table.responses.size(); ++r) {
     try {
       analysis.results.push_back(analyze_response(analysis, analysis.table.values[r], model));
-    } catch (const config::UserError& e) {
-      throw config::UserError(fmt::format("{}: {}: {}", table.file(), analysis.table.responses[r], e.what()));
+    } catch (const base::UserError& e) {
+      throw base::UserError(fmt::format("{}: {}: {}", table.file(), analysis.table.responses[r], e.what()));
     }
   }
   return analysis;

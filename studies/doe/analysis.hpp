@@ -31,7 +31,7 @@ struct TableAnalysis {
   std::vector<Result> results;  ///< one a response
 };
 
-/// Automatic: main effects for a two-level plan, else the full quadratic. Throws config::UserError that names the file and the response.
+/// Automatic: main effects for a two-level plan, else the full quadratic. Throws base::UserError that names the file and the response.
 TableAnalysis analyze_table(const Table& table, const Choice& choice, ModelChoice model, double confidence, const Descent& descent);
 
 std::string analysis_text(const TableAnalysis& analysis);

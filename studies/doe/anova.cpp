@@ -4,14 +4,14 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/doe/least_squares.hpp"
 #include "studies/doe/words.hpp"
 
 namespace millscope::doe {
 namespace {
 
-using config::UserError;
+using base::UserError;
 using Index = Eigen::Index;
 
 constexpr double kOnLevel = 1e-9;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::doe {
 namespace {
@@ -129,7 +129,7 @@ double asked_distance(const Composite& plan, const std::string& axial) {
   double value = 0;
   const auto [end, error] = std::from_chars(axial.data(), axial.data() + axial.size(), value);
   if (error != std::errc() || end != axial.data() + axial.size() || !(value > 0 && value < 100)) {
-    throw config::UserError(fmt::format("--axial '{}': give auto, as-written, rotatable, or a number of steps", axial));
+    throw base::UserError(fmt::format("--axial '{}': give auto, as-written, rotatable, or a number of steps", axial));
   }
   return value;
 }

@@ -3,14 +3,14 @@
 #include <cmath>
 #include <set>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/doe/least_squares.hpp"
 #include "studies/doe/words.hpp"
 
 namespace millscope::doe {
 namespace {
 
-using config::UserError;
+using base::UserError;
 constexpr int kMostRuns = 65536;
 
 void check_centre_points(int centre_points) {

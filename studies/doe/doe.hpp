@@ -6,7 +6,7 @@
 //   const auto path = steepest_descent(anova, 0.5, 4);                             // where to look next
 //   const Surface surface = fit_surface(central_composite(factors, rotatable(2), 5), objective);
 //
-// Factors are coded: natural = centre + step · coded. All functions are pure; what the user can put right is thrown as config::UserError.
+// Factors are coded: natural = centre + step · coded. All functions are pure; what the user can put right is thrown as base::UserError.
 // Methods: Montgomery, Design and Analysis of Experiments, 8th ed. 2013; Box, Hunter, Biometrika 41 (1954) 190 (confidence region).
 #pragma once
 

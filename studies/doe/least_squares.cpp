@@ -9,12 +9,12 @@
 #include <cmath>
 #include <map>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::doe {
 namespace {
 
-using config::UserError;
+using base::UserError;
 using Index = Eigen::Index;
 
 constexpr double kNothing = 1e-12;  // relative to a sum of squares: rounding, not error

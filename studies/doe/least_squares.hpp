@@ -9,10 +9,10 @@
 
 namespace millscope::doe {
 
-/// Throws config::UserError for factors without a name, named twice or without a step.
+/// Throws base::UserError for factors without a name, named twice or without a step.
 void check(const std::vector<Factor>& factors);
 
-/// Throws config::UserError unless there is one finite response a run, finite coded values, every factor varies and no two vary together.
+/// Throws base::UserError unless there is one finite response a run, finite coded values, every factor varies and no two vary together.
 void check(const Design& design, const Eigen::VectorXd& response);
 
 /// y = X b + e.
@@ -25,7 +25,7 @@ struct LeastSquares {
   double variance() const { return df > 0 ? residual_sum / df : kUndefined; }
 };
 
-/// Throws config::UserError when a term is a combination of others on these runs; `names`: of the terms, for the message.
+/// Throws base::UserError when a term is a combination of others on these runs; `names`: of the terms, for the message.
 LeastSquares solve(const Eigen::MatrixXd& model, const Eigen::VectorXd& response, const std::vector<std::string>& names);
 
 /// What each term adds to those before it.

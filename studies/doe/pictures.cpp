@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/doe/analysis.hpp"
 #include "studies/doe/least_squares.hpp"
 #include "studies/picture/picture.hpp"

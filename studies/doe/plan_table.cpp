@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::doe {
 namespace {
@@ -15,7 +15,7 @@ double number(const std::string& text, const std::string& whole) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
-    throw config::UserError(fmt::format("--factor '{}': '{}' is no number; write NAME=LOW:HIGH, e.g. friction=0.2:0.4", whole, text));
+    throw base::UserError(fmt::format("--factor '{}': '{}' is no number; write NAME=LOW:HIGH, e.g. friction=0.2:0.4", whole, text));
   }
   return value;
 }
@@ -25,10 +25,10 @@ double number(const std::string& text, const std::string& whole) {
 Factor parse_factor(const std::string& text) {
   const std::size_t equals = text.find('='), colon = text.find(':', equals);
   if (equals == std::string::npos || colon == std::string::npos) {
-    throw config::UserError(fmt::format("--factor '{}': write NAME=LOW:HIGH, e.g. friction=0.2:0.4", text));
+    throw base::UserError(fmt::format("--factor '{}': write NAME=LOW:HIGH, e.g. friction=0.2:0.4", text));
   }
   const double low = number(text.substr(equals + 1, colon - equals - 1), text), high = number(text.substr(colon + 1), text);
-  if (low >= high) throw config::UserError(fmt::format("--factor '{}': the high level must lie above the low one", text));
+  if (low >= high) throw base::UserError(fmt::format("--factor '{}': the high level must lie above the low one", text));
   return {text.substr(0, equals), (low + high) / 2, (high - low) / 2, ""};
 }
 

@@ -7,8 +7,8 @@
 #include <map>
 #include <optional>
 
+#include "kernel/base/error.hpp"
 #include "kernel/config/document.hpp"
-#include "kernel/config/error.hpp"
 #include "studies/doe/columns.hpp"
 #include "studies/doe/least_squares.hpp"
 #include "studies/picture/scale.hpp"
@@ -16,7 +16,7 @@
 namespace millscope::doe {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 /// Every figure of a result by "term/figure", and the degrees of freedom that each F is tested with.
 struct Figures {

@@ -18,7 +18,7 @@ struct PrintedFigure {
 };
 
 /// `printed`: a table with the columns response, term, figure, printed. Figures: SS, F, p, effect, coefficient, stationary (term: a
-/// factor). Terms: names of effects and coefficients, curvature, residual, total, lack of fit, pure error. Throws config::UserError with
+/// factor). Terms: names of effects and coefficients, curvature, residual, total, lack of fit, pure error. Throws base::UserError with
 /// the line.
 std::vector<PrintedFigure> compare_printed(const TableAnalysis& analysis, const Table& printed);
 

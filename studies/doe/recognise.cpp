@@ -9,14 +9,14 @@
 #include <map>
 #include <set>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/doe/coding.hpp"
 #include "studies/doe/words.hpp"
 
 namespace millscope::doe {
 namespace {
 
-using config::UserError;
+using base::UserError;
 using Index = Eigen::Index;
 
 constexpr std::array<const char*, 8> kLabels{"case", "run", "id", "trial", "number", "no", "label", "name"};

@@ -28,7 +28,7 @@ struct RecognisedTable {
   std::vector<std::string> notes;       ///< columns left aside, axial distances that were rounded
 };
 
-/// Throws config::UserError with the file and, where one is to blame, the line.
+/// Throws base::UserError with the file and, where one is to blame, the line.
 RecognisedTable recognise(const Table& table, const Choice& choice);
 
 }  // namespace millscope::doe

@@ -5,7 +5,7 @@
 #include <boost/random/sobol.hpp>
 #include <numeric>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "millscope/observation_adapter.hpp"
 #include "studies/doe/doe.hpp"
 #include "studies/doe/least_squares.hpp"
@@ -17,7 +17,7 @@ namespace {
 constexpr int kDraws = 100;
 
 void check_runs(int runs, int least) {
-  if (runs < least || runs > 65536) throw config::UserError(fmt::format("{} runs; give {} to 65536", runs, least));
+  if (runs < least || runs > 65536) throw base::UserError(fmt::format("{} runs; give {} to 65536", runs, least));
 }
 
 /// One run in the middle of each layer of each factor, coded.

@@ -4,14 +4,14 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/doe/least_squares.hpp"
 #include "studies/doe/stationary.hpp"
 
 namespace millscope::doe {
 namespace {
 
-using config::UserError;
+using base::UserError;
 using Index = Eigen::Index;
 
 std::string name_of(const std::vector<int>& term, const std::vector<Factor>& factors) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/doe/analysis.hpp"
 #include "studies/doe/columns.hpp"
 #include "studies/picture/scale.hpp"
@@ -56,7 +56,7 @@ std::string descent_text(const Anova& anova, const Descent& descent) {
   std::vector<Eigen::VectorXd> path;
   try {
     path = steepest_descent(anova, descent.step, descent.steps, descent.largest_p);
-  } catch (const config::UserError& e) {
+  } catch (const base::UserError& e) {
     return fmt::format("steepest descent: {}\n", e.what());
   }
   std::vector<Row> rows{{"step"}};

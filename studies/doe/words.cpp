@@ -7,13 +7,13 @@
 #include <bit>
 #include <map>
 
+#include "kernel/base/error.hpp"
 #include "kernel/config/document.hpp"
-#include "kernel/config/error.hpp"
 
 namespace millscope::doe {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 std::string trimmed(const std::string& text) {
   const std::size_t from = text.find_first_not_of(" \t"), to = text.find_last_not_of(" \t");

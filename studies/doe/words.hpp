@@ -26,7 +26,7 @@ struct Generator {
   Word of;
 };
 
-/// Throws config::UserError for what does not parse, unknown factors, a factor made twice or of made ones.
+/// Throws base::UserError for what does not parse, unknown factors, a factor made twice or of made ones.
 std::vector<Generator> parse_generators(const std::vector<std::string>& texts, const std::vector<Factor>& factors);
 
 /// All products of the words except the empty one: what is constant over the runs.

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::emulate {
 namespace {
 
-using config::UserError;
+using base::UserError;
 using Eigen::Index;
 
 void check_numbers(const Box& box, const Training& t) {

@@ -7,7 +7,7 @@ namespace millscope::emulate {
 
 std::string observable_name(const Training& training, Eigen::Index observable);
 
-/// Throws config::UserError; std::invalid_argument when the tables do not belong together.
+/// Throws base::UserError; std::invalid_argument when the tables do not belong together.
 void check_training(const Box& box, const Training& training);
 
 }  // namespace millscope::emulate

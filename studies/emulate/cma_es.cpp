@@ -9,7 +9,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/emulate/cma_transform.hpp"
 #include "studies/emulate/random.hpp"
 
@@ -58,12 +58,11 @@ CmaEs::CmaEs(const Box& box, const VectorXd& start, double sigma, std::uint64_t 
   box.check();
   const Index n = box.size();
   if (start.size() != n) throw std::invalid_argument("CmaEs: start has another number of parameters");
-  if (!box.contains(start))
-    throw config::UserError("the search's starting point lies outside the ranges or is not allowed; choose another");
+  if (!box.contains(start)) throw base::UserError("the search's starting point lies outside the ranges or is not allowed; choose another");
   if (!(sigma > 0 && sigma <= 1))
-    throw config::UserError(fmt::format("the search's first step is {}; it is a fraction of the ranges, above 0, up to 1", sigma));
+    throw base::UserError(fmt::format("the search's first step is {}; it is a fraction of the ranges, above 0, up to 1", sigma));
   if (population != 0 && population < 4)
-    throw config::UserError(fmt::format("a population of {} is too small for CMA-ES; take 4 or more", population));
+    throw base::UserError(fmt::format("a population of {} is too small for CMA-ES; take 4 or more", population));
   state_.mean = to_fraction(box, start).unaryExpr(&out_of_range);
   state_.path_sigma = state_.path_covariance = VectorXd::Zero(n);
   state_.covariance = MatrixXd::Identity(n, n);

@@ -36,7 +36,7 @@ class CmaEs {
 
   /// All that is needed to go on, as JSON, points asked for but not told of included.
   std::string save() const;
-  /// Throws config::UserError when the text is no state or of another number of parameters.
+  /// Throws base::UserError when the text is no state or of another number of parameters.
   static CmaEs restore(const Box& box, const std::string& state);
 
  private:

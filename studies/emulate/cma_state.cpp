@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/emulate/cma_es.hpp"
 
 namespace millscope::emulate {
@@ -21,7 +21,7 @@ json from(const VectorXd& v) { return std::vector<double>(v.begin(), v.end()); }
 
 VectorXd vector_of(const json& node, Index size) {
   const auto values = node.get<std::vector<double>>();
-  if (static_cast<Index>(values.size()) != size) throw config::UserError(fmt::format("{} numbers where {} belong", values.size(), size));
+  if (static_cast<Index>(values.size()) != size) throw base::UserError(fmt::format("{} numbers where {} belong", values.size(), size));
   return VectorXd::Map(values.data(), size);
 }
 
@@ -57,9 +57,9 @@ CmaEs CmaEs::restore(const Box& box, const std::string& text) {
   try {
     const json node = json::parse(text);
     const Index n = box.size();
-    if (node.at("version") != kVersion) throw config::UserError("it is of another version");
+    if (node.at("version") != kVersion) throw base::UserError("it is of another version");
     if (vector_of(node.at("lower"), n) != box.lower || vector_of(node.at("upper"), n) != box.upper) {
-      throw config::UserError("it was saved with other ranges");
+      throw base::UserError("it was saved with other ranges");
     }
     State s;
     s.mean = vector_of(node.at("mean"), n);
@@ -76,9 +76,9 @@ CmaEs CmaEs::restore(const Box& box, const std::string& text) {
     for (const json& x : node.at("asked")) s.asked.push_back(vector_of(x, n));
     return {box, std::move(s)};
   } catch (const json::exception& error) {
-    throw config::UserError(fmt::format("the saved state of the search cannot be read: {}; start the search again", error.what()));
-  } catch (const config::UserError& error) {
-    throw config::UserError(fmt::format("the saved state of the search does not fit: {}; start the search again", error.what()));
+    throw base::UserError(fmt::format("the saved state of the search cannot be read: {}; start the search again", error.what()));
+  } catch (const base::UserError& error) {
+    throw base::UserError(fmt::format("the saved state of the search does not fit: {}; start the search again", error.what()));
   }
 }
 

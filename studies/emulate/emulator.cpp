@@ -7,8 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "kernel/config/error.hpp"
-#include "studies/analysis/parallel.hpp"
+#include "kernel/base/error.hpp"
+#include "kernel/base/parallel.hpp"
 #include "studies/emulate/check_training.hpp"
 #include "studies/emulate/process.hpp"
 
@@ -59,7 +59,7 @@ Process best_process(const Sample& sample, const FitOptions& options, Index obse
   const auto stream = static_cast<std::uint64_t>(observable);
   const bool possible = options.trend != Trend::linear && quadratic_possible(sample);
   if (options.trend == Trend::quadratic && !possible) {
-    throw config::UserError(
+    throw base::UserError(
         fmt::format("the {} runs do not determine a quadratic trend; add runs or use the linear one", sample.input.cols()));
   }
   if (options.trend == Trend::quadratic) return fit_process(sample, Trend::quadratic, options, stream);
@@ -127,13 +127,13 @@ Emulator Emulator::fit(const Box& box, const Training& training, const FitOption
           .cwiseSqrt();
   state->noise.resize(q);
   std::vector<std::shared_ptr<Process>> found(static_cast<std::size_t>(q));
-  studies::for_each_item(found.size(), studies::worker_count(options.threads, found.size()), [&](std::size_t j, std::size_t) {
+  base::for_each_item(found.size(), base::worker_count(options.threads, found.size()), [&](std::size_t j, std::size_t) {
     const auto observable = static_cast<Index>(j);
     try {
       found[j] = std::make_shared<Process>(best_process(sample_of(*state, observable), options, observable));
     } catch (const std::domain_error& error) {
-      throw config::UserError(fmt::format("{} cannot be emulated: {}; runs at the same parameters that differ without noise?",
-                                          observable_name(training, observable), error.what()));
+      throw base::UserError(fmt::format("{} cannot be emulated: {}; runs at the same parameters that differ without noise?",
+                                        observable_name(training, observable), error.what()));
     }
   });
   for (Index j = 0; j < q; ++j) {

@@ -52,7 +52,7 @@ struct Hyperparameters {
 
 class Emulator {
  public:
-  /// Needs at least parameters + 3 runs. Throws config::UserError for numbers that are not finite, observables that never change,
+  /// Needs at least parameters + 3 runs. Throws base::UserError for numbers that are not finite, observables that never change,
   /// parameters that were never varied or only together, negative variances.
   static Emulator fit(const Box& box, const Training& training, const FitOptions& options = {});
 

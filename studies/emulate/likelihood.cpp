@@ -9,14 +9,14 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/emulate/check_training.hpp"
 #include "studies/emulate/cma_es.hpp"
 #include "studies/emulate/prior.hpp"
 
 namespace millscope::emulate {
 
-using config::UserError;
+using base::UserError;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;

@@ -7,7 +7,7 @@
 
 namespace millscope::emulate {
 
-/// Throws config::UserError when the observed values are not finite or the covariance is none; std::invalid_argument for wrong sizes.
+/// Throws base::UserError when the observed values are not finite or the covariance is none; std::invalid_argument for wrong sizes.
 void check_observed(const Emulator& emulator, const Observed& observed);
 
 class Likelihood {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::emulate {
 namespace {
@@ -24,7 +24,7 @@ constexpr double kFraction = 0.05;
 VectorXd flattened(const VectorXd& log_weights) {
   const double most = log_weights.maxCoeff();
   if (!std::isfinite(most))
-    throw config::UserError("no parameters in the ranges explain the recording at all: the emulator's covariance is singular there");
+    throw base::UserError("no parameters in the ranges explain the recording at all: the emulator's covariance is singular there");
   const auto enough = [](const VectorXd& w) { return w.sum() * w.sum() >= kFraction * static_cast<double>(w.size()) * w.squaredNorm(); };
   VectorXd weights = (log_weights.array() - most).exp();
   double temperature = 1;

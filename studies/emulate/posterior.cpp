@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "studies/analysis/parallel.hpp"
+#include "kernel/base/parallel.hpp"
 #include "studies/emulate/chains.hpp"
 #include "studies/emulate/likelihood.hpp"
 #include "studies/emulate/prior.hpp"
@@ -76,9 +76,9 @@ std::vector<Population> run_chains(const Likelihood& likelihood, const SamplerOp
     for (Index i = 0; i < candidates.cols(); ++i) candidates.col(i) = likelihood.box().coded(candidates.col(i));
     populations.emplace_back(density, candidates, chains, options.seed, stream);
   }
-  const std::size_t workers = studies::worker_count(options.threads, kPopulations);
+  const std::size_t workers = base::worker_count(options.threads, kPopulations);
   for (int doubling = 0, draws = options.draws; doubling <= options.doublings; ++doubling, draws *= 2) {
-    studies::for_each_item(kPopulations, workers, [&](std::size_t i, std::size_t) {
+    base::for_each_item(kPopulations, workers, [&](std::size_t i, std::size_t) {
       if (doubling == 0) populations[i].sample(draws);
       populations[i].sample(draws);
     });

@@ -44,7 +44,7 @@ struct Posterior {
   std::vector<std::string> statements;  ///< on the whole: misfit, convergence, pairs that conceal each other
 };
 
-/// Throws config::UserError when nothing in the box is allowed, the observed values are not finite, or the covariance is no covariance.
+/// Throws base::UserError when nothing in the box is allowed, the observed values are not finite, or the covariance is no covariance.
 Posterior sample_posterior(const Emulator& emulator, const Box& box, const Observed& observed, const SamplerOptions& options = {});
 
 /// How the fit suffers when one parameter is held at a value.

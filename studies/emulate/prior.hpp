@@ -7,7 +7,7 @@
 
 namespace millscope::emulate {
 
-/// parameters × count, even over what is allowed. Throws config::UserError when next to nothing is.
+/// parameters × count, even over what is allowed. Throws base::UserError when next to nothing is.
 Eigen::MatrixXd prior_points(const Box& box, int count, std::uint64_t seed);
 
 }  // namespace millscope::emulate

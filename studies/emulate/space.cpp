@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/emulate/prior.hpp"
 #include "studies/emulate/random.hpp"
 
@@ -28,11 +28,11 @@ std::string Box::name_of(Eigen::Index parameter) const {
 }
 
 void Box::check() const {
-  if (lower.size() == 0) throw config::UserError("no parameter to vary: give at least one range");
+  if (lower.size() == 0) throw base::UserError("no parameter to vary: give at least one range");
   if (upper.size() != lower.size()) throw std::invalid_argument("Box: lower and upper differ in length");
   for (Eigen::Index k = 0; k < size(); ++k) {
     if (!(std::isfinite(lower[k]) && std::isfinite(upper[k]) && lower[k] < upper[k])) {
-      throw config::UserError(fmt::format("range of {}: {} to {} is empty; the first must be smaller", name_of(k), lower[k], upper[k]));
+      throw base::UserError(fmt::format("range of {}: {} to {} is empty; the first must be smaller", name_of(k), lower[k], upper[k]));
     }
   }
 }
@@ -45,7 +45,7 @@ Eigen::MatrixXd prior_points(const Box& box, int count, std::uint64_t seed) {
   long tries = 0;
   for (int i = 0; i < count;) {
     if (tries++ > kTriesPerPoint * static_cast<long>(i + 1)) {
-      throw config::UserError(
+      throw base::UserError(
           fmt::format("the constraints leave next to nothing of the ranges: {} of {} points are allowed; contradict each "
                       "other ranges and constraints?",
                       i, tries - 1));

@@ -21,7 +21,7 @@ struct Box {
   Eigen::VectorXd coded(const Eigen::VectorXd& point) const;
   Eigen::VectorXd natural(const Eigen::VectorXd& coded) const;
   std::string name_of(Eigen::Index parameter) const;
-  /// Throws config::UserError when a range is empty, reversed or not finite.
+  /// Throws base::UserError when a range is empty, reversed or not finite.
   void check() const;
 };
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/run/random.hpp"
+#include "millscope/random.hpp"
 #include "studies/inspect/circles.hpp"
 #include "studies/recording/select.hpp"
 
@@ -97,7 +97,7 @@ std::optional<Rotation> search_rotation(const std::vector<Parabola>& windows, co
   }
   std::vector<double> xs = x, ys = y;
   const double extent = std::max(quantile(xs, 0.99) - quantile(xs, 0.01), quantile(ys, 0.99) - quantile(ys, 0.01));
-  run::Random random(1);
+  Random random(1);
   std::optional<Rotation> best;
   for (int attempt = 0; attempt < 4000; ++attempt) {
     const auto i = static_cast<std::size_t>(random.below(windows.size())), j = static_cast<std::size_t>(random.below(windows.size()));

@@ -4,13 +4,13 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
-#include "kernel/run/random.hpp"
+#include "millscope/random.hpp"
 
 namespace millscope::studies {
 
 std::vector<double> bootstrap_deviation(std::size_t groups, std::size_t draws,
                                         const std::function<std::vector<double>(const std::vector<double>&)>& estimate) {
-  run::Random random(20150601);
+  Random random(20150601);
   std::vector<double> sum, squares, times(groups);
   double count = 0;
   for (std::size_t draw = 0; draw < draws; ++draw) {

@@ -18,7 +18,7 @@ namespace millscope::new_mill {
 namespace {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 constexpr std::uint64_t kQuickBeads = 200000;  // more take long to place, and are placed by 'millscope check'
 

@@ -15,7 +15,7 @@
 namespace millscope::new_mill {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 host::GeometryObject make_mesh(const std::string& file, const std::string& unit, bool turned, const host::Registry& registry) {
   const host::Loaded& plugin = registry.find(Kind::geometry, "mesh");

@@ -11,8 +11,8 @@ namespace millscope::new_mill {
 namespace {
 
 namespace fs = std::filesystem;
+using base::UserError;
 using config::Node;
-using config::UserError;
 
 fs::path library() {
   std::error_code trouble;

@@ -15,9 +15,9 @@
 namespace millscope::new_mill {
 namespace {
 
+using base::UserError;
 using config::Node;
 using config::Range;
-using config::UserError;
 
 constexpr double kShortestSlice = 3.2;  // bead diameters: two reaches of a neighbour list, as the run itself demands
 constexpr int kMeshDigits = 5;          // a mesh's coordinates are seldom better

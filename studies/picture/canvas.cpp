@@ -6,8 +6,9 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/file.hpp"
 #include "studies/picture/svg_names.hpp"
 
@@ -20,7 +21,6 @@ const char* __lsan_default_suppressions() { return "leak:libfontconfig"; }
 namespace millscope::studies {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr const char* kFamily = "DejaVu Sans";
 
 using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
@@ -58,8 +58,7 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned int lengt
 
 void require(cairo_status_t status, const std::filesystem::path& file) {
   if (status != CAIRO_STATUS_SUCCESS) {
-    throw config::UserError(file.string() + ": the picture cannot be drawn (" + cairo_status_to_string(status) +
-                            "); is there memory left?");
+    throw base::UserError(file.string() + ": the picture cannot be drawn (" + cairo_status_to_string(status) + "); is there memory left?");
   }
 }
 
@@ -127,13 +126,13 @@ void Canvas::fill_rectangle(const Box& box, const Color& color) {
 
 void Canvas::circle(Point centre, double radius, const Pen& pen) {
   cairo_new_path(context_);
-  cairo_arc(context_, centre.x, centre.y, radius, 0, 2 * kPi);
+  cairo_arc(context_, centre.x, centre.y, radius, 0, 2 * std::numbers::pi);
   stroke(pen);
 }
 
 void Canvas::dot(Point centre, double radius, const Color& color) {
   cairo_new_path(context_);
-  cairo_arc(context_, centre.x, centre.y, radius, 0, 2 * kPi);
+  cairo_arc(context_, centre.x, centre.y, radius, 0, 2 * std::numbers::pi);
   set_color(context_, color);
   cairo_fill(context_);
 }
@@ -156,7 +155,7 @@ void Canvas::text(Point at, const std::string& words, const Font& font, Align al
   const double back = align == Align::middle ? width / 2 : width;
   cairo_save(context_);
   cairo_translate(context_, at.x, at.y);
-  if (upright) cairo_rotate(context_, -kPi / 2);
+  if (upright) cairo_rotate(context_, -std::numbers::pi / 2);
   cairo_move_to(context_, align == Align::start ? 0 : -back, 0);
   cairo_show_text(context_, words.c_str());
   cairo_restore(context_);
@@ -197,7 +196,7 @@ void Canvas::within(const Box& box, const std::function<void()>& draw) {
 void Canvas::within(Point centre, double radius, const std::function<void()>& draw) {
   cairo_save(context_);
   cairo_new_path(context_);
-  cairo_arc(context_, centre.x, centre.y, radius, 0, 2 * kPi);
+  cairo_arc(context_, centre.x, centre.y, radius, 0, 2 * std::numbers::pi);
   cairo_clip(context_);
   draw();
   cairo_restore(context_);
@@ -232,7 +231,7 @@ std::vector<std::string> wrap(const std::string& words, const Font& font, double
 
 void write_sheet(const Sheet& sheet, const std::filesystem::path& stem) {
   if (!(text_width("mill", Font{}) > 0)) {
-    throw config::UserError("no font is installed, so pictures would have no words; install a font package, e.g. fonts-dejavu-core");
+    throw base::UserError("no font is installed, so pictures would have no words; install a font package, e.g. fonts-dejavu-core");
   }
   // Names hold dots ("shoulder.x"), so the ending is appended rather than replaced.
   const std::filesystem::path svg = stem.string() + ".svg", png = stem.string() + ".png";

@@ -86,7 +86,7 @@ struct Sheet {
   std::function<void(Canvas&)> draw;
 };
 
-/// Writes STEM.svg and STEM.png, aside and renamed; the same sheet gives the same bytes. Throws config::UserError when they cannot be
+/// Writes STEM.svg and STEM.png, aside and renamed; the same sheet gives the same bytes. Throws base::UserError when they cannot be
 /// written or no font is installed.
 void write_sheet(const Sheet& sheet, const std::filesystem::path& stem);
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/picture/frame.hpp"
 #include "studies/picture/picture.hpp"
 
@@ -39,12 +39,12 @@ bool is_geometric(const std::vector<double>& x) {
 }
 
 void check(const CurvePicture& picture) {
-  if (picture.curves.empty()) throw config::UserError("picture '" + picture.title + "': no curve");
+  if (picture.curves.empty()) throw base::UserError("picture '" + picture.title + "': no curve");
   for (const Curve& curve : picture.curves) {
     const std::size_t n = curve.value.size();
     const bool band = curve.low.size() == curve.high.size() && (curve.low.empty() || curve.low.size() == n);
     if (n == 0 || (curve.x.size() != n && curve.x.size() != n + 1) || !band) {
-      throw config::UserError(
+      throw base::UserError(
           fmt::format("picture '{}': {} values on an axis of {}; check the axes of this result", picture.title, n, curve.x.size()));
     }
   }

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/picture/frame.hpp"
 #include "studies/picture/map_colors.hpp"
 #include "studies/picture/picture.hpp"
@@ -15,7 +16,6 @@ namespace {
 
 constexpr double kLongSide = 300, kShortSide = 60;        // of the plot, points
 constexpr double kBarGap = 12, kBarWidth = 12, kTip = 7;  // colour bar
-constexpr double kPi = 3.14159265358979323846;
 constexpr Color kHatch{0.80, 0.80, 0.80, 1};
 
 /// The cell between edges that holds `value`.
@@ -29,12 +29,12 @@ void check(const MapPicture& picture) {
     return e.size() >= 2 && std::is_sorted(e.begin(), e.end()) && std::adjacent_find(e.begin(), e.end()) == e.end();
   };
   if (!increasing(picture.x.edges) || !increasing(picture.y.edges)) {
-    throw config::UserError("picture '" + picture.title + "': the edges of its cells do not increase; check the axes of this result");
+    throw base::UserError("picture '" + picture.title + "': the edges of its cells do not increase; check the axes of this result");
   }
   const std::size_t cells = (picture.x.edges.size() - 1) * (picture.y.edges.size() - 1);
   if (picture.value.values.size() != cells || (!picture.framed.empty() && picture.framed.size() != cells)) {
-    throw config::UserError(fmt::format("picture '{}': {} values for {} cells; check the axes of this result", picture.title,
-                                        picture.value.values.size(), cells));
+    throw base::UserError(fmt::format("picture '{}': {} values for {} cells; check the axes of this result", picture.title,
+                                      picture.value.values.size(), cells));
   }
 }
 
@@ -192,7 +192,7 @@ class MapDrawing {
 
   // In the free upper right corner, outside the shell: an arc with a head, and the speed.
   void draw_turning(Canvas& canvas) const {
-    constexpr double from = 30 * kPi / 180, to = 54 * kPi / 180;
+    constexpr double from = 30 * std::numbers::pi / 180, to = 54 * std::numbers::pi / 180;
     const Point centre = shell_centre();
     const double radius = 1.10 * paper(picture_.mill.radius), sense = picture_.mill.omega > 0 ? 1 : -1;
     const auto on_arc = [&](double angle, double r) { return Point{centre.x + r * std::cos(angle), centre.y - r * std::sin(angle)}; };
@@ -201,7 +201,7 @@ class MapDrawing {
     for (int i = 0; i <= 24; ++i) arc.push_back(on_arc((sense > 0 ? from : to) + sense * (to - from - head / 2) * i / 24, radius));
     canvas.polyline(arc, {kInk, 1.4});
     canvas.fill(std::array{on_arc(tip, radius), on_arc(tip - sense * head, radius + 3.2), on_arc(tip - sense * head, radius - 3.2)}, kInk);
-    const double rpm = std::abs(picture_.mill.omega) * 30 / kPi;
+    const double rpm = std::abs(picture_.mill.omega) * 30 / std::numbers::pi;
     canvas.text({frame_.plot().right() - 4, frame_.plot().top + 10}, significant_text(rpm, 3) + " rpm", kSmallFont, Align::end);
   }
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "kernel/base/error.hpp"
 #include "kernel/config/case.hpp"
-#include "kernel/config/error.hpp"
 #include "kernel/config/values.hpp"
 #include "kernel/host/objects.hpp"
 #include "studies/picture/results_pictures.hpp"
@@ -65,7 +65,7 @@ MillOutline outline_of(const ResultSet& results, const host::Registry& registry,
       const double z = std::lerp(context.mill_low, context.mill_high, 0.4987);
       for (const auto& line : section_of(surface, z, context.mill_radius)) outline.section.push_back(line);
     }
-  } catch (const config::UserError& e) {
+  } catch (const base::UserError& e) {
     outline.section.clear();
     why = e.what();
   }

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/picture/scale.hpp"
 
 namespace millscope::studies {
@@ -154,8 +154,8 @@ CellAxis cell_axis(const ResultSet& results, const ResultArray& array, std::size
   } else if (axis->size() == count) {
     cells.edges = edges_between(axis->value);
   } else {
-    throw config::UserError(fmt::format("{}: its axis '{}' has {} values for {} cells; an axis holds edges (one more) or centres",
-                                        full_name(array), axis->name, axis->size(), count));
+    throw base::UserError(fmt::format("{}: its axis '{}' has {} values for {} cells; an axis holds edges (one more) or centres",
+                                      full_name(array), axis->name, axis->size(), count));
   }
   return cells;
 }

@@ -17,7 +17,7 @@ struct DrawnPictures {
 };
 
 /// Draws each result of rank 1 and 2 as DIRECTORY/ANALYZER.NAME.svg and .png; maps over x and y with the mill. The directory is made.
-/// Single numbers and axes have no picture; whatever else has none is listed. Throws config::UserError when nothing can be written.
+/// Single numbers and axes have no picture; whatever else has none is listed. Throws base::UserError when nothing can be written.
 DrawnPictures draw_results(const ResultSet& results, const std::filesystem::path& directory, const MillOutline& mill);
 
 /// The shell that the results know of, without lifters.
@@ -36,7 +36,7 @@ std::vector<std::string> category_names(const ResultArray& array);
 std::string source_line(const ResultMeta& meta);
 
 /// An axis of one dimension as edges of cells; centres are turned into edges. Without an axis: 0.5, 1.5, … of "number".
-/// Throws config::UserError when the stored axis does not fit.
+/// Throws base::UserError when the stored axis does not fit.
 CellAxis cell_axis(const ResultSet& results, const ResultArray& array, std::size_t dimension);
 
 /// A result of rank 1 as a curve with its interval.

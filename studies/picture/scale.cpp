@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string_view>
 #include <utility>
 
@@ -77,7 +78,7 @@ DisplayUnit display_unit(const std::string& unit, double largest) {
   if (unit == "1" && largest <= 0.3 && largest >= 1e-5) return {100, "%"};
   if (unit == "kg" && largest < 0.1) return {1e3, "g"};
   if (unit == "deg") return {1, "°"};
-  if (unit == "rad") return {180 / 3.14159265358979323846, "°"};
+  if (unit == "rad") return {180 / std::numbers::pi, "°"};
   if (!prefixable(unit).empty()) return with_prefix(unit, largest);
   return with_power_of_ten(unit, largest);
 }

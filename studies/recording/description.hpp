@@ -39,25 +39,25 @@ struct AxisSource {
 
 struct RecordingFile {
   std::filesystem::path path;
-  config::Location where;  ///< where it was named; line 0: by the caller
+  base::Location where;  ///< where it was named; line 0: by the caller
 };
 
 struct Description {
   std::vector<RecordingFile> files;
   Format format = Format::automatic;
   std::optional<std::vector<ColumnEntry>> columns;
-  config::Location columns_place;
+  base::Location columns_place;
   std::optional<char> separator;
-  config::Location separator_place;
+  base::Location separator_place;
   std::size_t skip_lines = 0;
-  config::Location skip_lines_place;
+  base::Location skip_lines_place;
   std::array<AxisSource, 3> axes{{{0, 1}, {1, 1}, {2, 1}}};
   Condition condition;
   std::optional<MillFrame> frame;
   std::optional<double> gap_limit;
 };
 
-/// Reads a recording.yaml; throws config::UserError.
+/// Reads a recording.yaml; throws base::UserError.
 Description read_description(const std::filesystem::path& file);
 
 /// What `gap_limit` may be, s.

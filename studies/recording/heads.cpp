@@ -8,7 +8,7 @@
 namespace millscope::studies {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\"");
@@ -105,7 +105,7 @@ std::vector<HeadLine> head_lines(const Top& top) {
 }
 
 [[noreturn]] void fail_heads(const HeadLine& line, const std::string& why, const std::filesystem::path& file) {
-  throw UserError(config::Location{file.string(), static_cast<int>(line.line)},
+  throw UserError(base::Location{file.string(), static_cast<int>(line.line)},
                   fmt::format("has the heads {}, {}; say what the columns are in a recording.yaml, e.g. files: [{}] and columns: "
                               "{{t: {{column: 1, unit: ms}}, x: {{column: 2, unit: mm}}, …}}",
                               listed(line.words), why, file.filename().string()));
@@ -227,7 +227,7 @@ std::vector<ColumnEntry> entries_of_heads(const Top& top, const std::filesystem:
 void refuse_decimal_commas(const Top& top, const std::filesystem::path& file) {
   const Words words = split(top.row, top.row.find(';') != std::string_view::npos ? ';' : ' ');
   if (words.size() < 4 || std::none_of(words.begin(), words.end(), has_decimal_comma)) return;
-  throw UserError(config::Location{file.string(), static_cast<int>(top.row_line)},
+  throw UserError(base::Location{file.string(), static_cast<int>(top.row_line)},
                   fmt::format("'{}' has decimal commas; replace them by points", top.row.substr(0, 60)));
 }
 

@@ -23,7 +23,7 @@ struct Top {
 };
 Top top_of(std::string_view text, const Description& description);
 
-/// Throws config::UserError where the first row is written with decimal commas.
+/// Throws base::UserError where the first row is written with decimal commas.
 void refuse_decimal_commas(const Top& top, const std::filesystem::path& file);
 
 /// A line above the first row, in words.
@@ -38,7 +38,7 @@ HeadLine heads_of(const Top& top);
 /// 'a', 'b', for messages.
 std::string listed(const Words& words);
 
-/// The columns as their heads name them; nothing where there are no heads. Throws config::UserError for heads that do not say where t, x, y
+/// The columns as their heads name them; nothing where there are no heads. Throws base::UserError for heads that do not say where t, x, y
 /// and z are: they must not be passed over.
 std::vector<ColumnEntry> entries_of_heads(const Top& top, const std::filesystem::path& file);
 

@@ -9,7 +9,7 @@
 namespace millscope::studies {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 /// The tracker's nine lines, or eight columns of which the sixth and seventh are 0.
 bool looks_like_ctrack(const Top& top) {
@@ -27,7 +27,7 @@ std::vector<ColumnEntry> usual_entries(const Top& top, const std::filesystem::pa
   const std::size_t columns = split(top.row, top.separator).size();
   if (columns != 4 && columns != 5) {
     throw UserError(
-        config::Location{file.string(), static_cast<int>(top.row_line)},
+        base::Location{file.string(), static_cast<int>(top.row_line)},
         fmt::format("has {} columns and no line that names them; say what they are in a recording.yaml, e.g. files: [{}] and columns: "
                     "{{t: ms, x: mm, y: mm, z: mm, error: mm}}",
                     columns, file.filename().string()));
@@ -40,7 +40,7 @@ std::vector<ColumnEntry> usual_entries(const Top& top, const std::filesystem::pa
 }
 
 /// Finds the columns that are named by their heads.
-void place(std::vector<ColumnEntry>& entries, const Top& top, const config::Location& where, const std::filesystem::path& file) {
+void place(std::vector<ColumnEntry>& entries, const Top& top, const base::Location& where, const std::filesystem::path& file) {
   const Words heads = heads_of(top).words;
   for (ColumnEntry& entry : entries) {
     if (entry.header.empty()) continue;

@@ -16,7 +16,7 @@ struct KnownLayout {
   std::string time_unit, length_unit;  ///< as written; for hints
 };
 
-/// Throws config::UserError where nothing fits.
+/// Throws base::UserError where nothing fits.
 KnownLayout layout_of(std::string_view text, const std::filesystem::path& file, const Description& description);
 
 }  // namespace millscope::studies

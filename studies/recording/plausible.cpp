@@ -83,33 +83,33 @@ Measured measure(const std::vector<Run>& runs, double gap_limit) {
 std::string in_millimetres(double length) { return fmt::format("say the unit, e.g. {:.4g} mm", length); }
 
 /// What `condition` says of beads and of the mill's length, against the points.
-void check_condition(const Measured& m, const Condition& condition, const config::Location& where) {
+void check_condition(const Measured& m, const Condition& condition, const base::Location& where) {
   constexpr double kLargestBead = 1.0 / 3;  // of the points' width
   constexpr double kLongest = 50;           // times what the tracer saw of it
   const auto check_bead = [&](const char* key, const std::optional<double>& diameter) {
     if (!diameter || !m.moves() || *diameter <= kLargestBead * m.across) return;
-    throw config::UserError(where, fmt::format("'{}' of 'condition' is {:.4g} m, but the bead moves within {:.3g} m across; {}", key,
-                                               *diameter, m.across, in_millimetres(*diameter)));
+    throw base::UserError(where, fmt::format("'{}' of 'condition' is {:.4g} m, but the bead moves within {:.3g} m across; {}", key,
+                                             *diameter, m.across, in_millimetres(*diameter)));
   };
   check_bead("bead_diameter", condition.bead_diameter);
   check_bead("tracer: diameter", condition.tracer.diameter);
   const std::optional<double>& length = condition.mill_length;
   if (!length || m.along < 10 * m.noise) return;
   if (m.along > 1.5 * *length || *length > kLongest * m.along) {
-    throw config::UserError(where,
-                            fmt::format("'mill_length' of 'condition' is {:.4g} m, but the points span {:.3g} m along z; correct it ({}), "
-                                        "or the axes",
-                                        *length, m.along, in_millimetres(*length)));
+    throw base::UserError(where,
+                          fmt::format("'mill_length' of 'condition' is {:.4g} m, but the points span {:.3g} m along z; correct it ({}), "
+                                      "or the axes",
+                                      *length, m.along, in_millimetres(*length)));
   }
 }
 
 }  // namespace
 
-void check_units(const std::vector<Run>& runs, const Condition& condition, const config::Location& where, const std::string& time_unit,
+void check_units(const std::vector<Run>& runs, const Condition& condition, const base::Location& where, const std::string& time_unit,
                  const std::string& length_unit) {
   const Measured m = measure(runs, default_gap_limit(runs));
   const auto refuse = [&](const std::string& what) {
-    throw config::UserError(where, fmt::format("{}; {}", what, hint(m, condition, time_unit, length_unit)));
+    throw base::UserError(where, fmt::format("{}; {}", what, hint(m, condition, time_unit, length_unit)));
   };
   if (m.across > kLargestMill || m.along > 2 * kLargestMill) {
     refuse(fmt::format("the points span {:.4g} m across and {:.4g} m along z, and no mill is that large", m.across, m.along));

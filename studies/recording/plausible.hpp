@@ -5,10 +5,10 @@
 
 namespace millscope::studies {
 
-/// Throws config::UserError at `where` when the points span more than any mill, or more or less than the mill that the condition states, or
+/// Throws base::UserError at `where` when the points span more than any mill, or more or less than the mill that the condition states, or
 /// when their 99th-percentile speed is above 3 √(2 g D); says which unit is probably meant. `time_unit`, `length_unit`: as written. Also
 /// when the stated beads are larger than a third of that span, or the stated length does not fit the points.
-void check_units(const std::vector<Run>& runs, const Condition& condition, const config::Location& where, const std::string& time_unit,
+void check_units(const std::vector<Run>& runs, const Condition& condition, const base::Location& where, const std::string& time_unit,
                  const std::string& length_unit);
 
 }  // namespace millscope::studies

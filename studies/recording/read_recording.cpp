@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/track_reader.hpp"
 #include "studies/recording/clean.hpp"
 #include "studies/recording/layout.hpp"
@@ -17,7 +17,7 @@ namespace millscope::studies {
 namespace {
 
 namespace fs = std::filesystem;
-using config::UserError;
+using base::UserError;
 
 constexpr const char* kTracks = "tracks.h5: t s, position m";
 
@@ -36,14 +36,14 @@ std::string plain_name(fs::path file) {
     throw UserError(fmt::format("{}: holds no usable point: it has no row of numbers (read as {})", file.string(), layout));
   const char* remedy = fault.why == kDecimalCommas ? "replace them by points" : "say what its columns are in a recording.yaml";
   const std::string first = fault.line > 0 ? fmt::format("'{}' {}; ", fault.text, fault.why) : "";
-  throw UserError(config::Location{file.string(), static_cast<int>(fault.line)},
+  throw UserError(base::Location{file.string(), static_cast<int>(fault.line)},
                   fmt::format("{}{} of {} rows are unreadable, {} not finite and {} have false times, so the file is of no use as it is "
                               "read ({}); {}",
                               first, report.unreadable, report.rows, report.not_finite, report.false_times, layout, remedy));
 }
 
 /// Beyond three thousand years doubles cannot tell one point from the next. The median, for a false time or two are set aside.
-void check_times(const std::vector<double>& times, const config::Location& where, const std::string& unit) {
+void check_times(const std::vector<double>& times, const base::Location& where, const std::string& unit) {
   constexpr double kLatest = 1e11;  // s
   std::vector<double> some;
   for (std::size_t i = 0; i < times.size(); i += times.size() / 10000 + 1) some.push_back(std::fabs(times[i]));
@@ -63,7 +63,7 @@ std::vector<Run> read_table(const RecordingFile& file, const Description& descri
   Rows rows = read_rows(text.text(), known.layout, report, fault);
   const auto mostly_bad = [&] { return report.unreadable + report.not_finite + report.false_times > report.rows / 2; };
   if (rows.size() == 0 || mostly_bad()) fail_unusable(file.path, report, fault, known.words);
-  check_times(rows.time, description.columns ? description.columns_place : config::Location{file.path.string(), 0}, known.time_unit);
+  check_times(rows.time, description.columns ? description.columns_place : base::Location{file.path.string(), 0}, known.time_unit);
   units = {known.time_unit, known.length_unit};
   std::vector<Run> runs = order_rows(std::move(rows), report);
   for (const Run& run : runs) report.false_times += run.report.false_times;
@@ -214,7 +214,7 @@ Recording read_recording(const fs::path& file) {
   recording.frame = description.frame;
   Units units{"s", "m"};
   for (const RecordingFile& one : description.files) read_file(one, description, recording, units);
-  config::Location where{file.string(), 0};
+  base::Location where{file.string(), 0};
   if (description.columns) where = description.columns_place;
   check_units(recording.runs, recording.condition, where, units.time, units.length);
   recording.gap_limit = description.gap_limit.value_or(default_gap_limit(recording.runs));

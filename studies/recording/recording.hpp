@@ -90,7 +90,7 @@ struct Recording {
   double gap_limit = 0;  ///< s: a longer pause between two points is a gap (`gap_limit:` of recording.yaml, else from the data)
 };
 
-/// Reads and cleans (docs/recordings.md says by which rules). Throws config::UserError with file:line, value, reason and remedy; a file
+/// Reads and cleans (docs/recordings.md says by which rules). Throws base::UserError with file:line, value, reason and remedy; a file
 /// without a usable point is one, and so are units that cannot be meant.
 Recording read_recording(const std::filesystem::path& file);
 
@@ -99,7 +99,7 @@ Recording read_recording(const std::filesystem::path& file);
 Recording clean_recording(Recording given);
 
 /// Writes the points in the layout of tracks.h5 (docs/format.md), one track per run; whole or not at all. What that layout has no place for
-/// is left: spreads, events, the condition. `read_recording` reads it back. Throws config::UserError.
+/// is left: spreads, events, the condition. `read_recording` reads it back. Throws base::UserError.
 void write_tracks(const Recording& recording, const std::filesystem::path& file);
 
 }  // namespace millscope::studies

@@ -11,12 +11,12 @@
 #include <cstring>
 #include <limits>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::studies {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 class Descriptor {
  public:

@@ -11,7 +11,7 @@ namespace millscope::studies {
 /// The bytes of a file and the view of them.
 class TextFile {
  public:
-  /// A gzip file (known by its first bytes, whatever its name) is inflated. Throws config::UserError when the file cannot be opened, is no
+  /// A gzip file (known by its first bytes, whatever its name) is inflated. Throws base::UserError when the file cannot be opened, is no
   /// file, or is a damaged or cut gzip file.
   explicit TextFile(const std::filesystem::path& file);
   std::string_view text() const { return text_; }

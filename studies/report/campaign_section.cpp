@@ -17,7 +17,7 @@ double fraction_of(const fs::path& run) {
   try {
     const double end = config::read_case((run / "case.resolved.yaml").string()).time.end;
     return std::clamp(campaign::simulated_time(run) / end, 0.0, 1.0);
-  } catch (const config::UserError&) {
+  } catch (const base::UserError&) {
     return 0;  // it has only just begun
   }
 }

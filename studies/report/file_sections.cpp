@@ -63,10 +63,10 @@ Json begun(const char* kind, const std::string& title, const fs::path& folder) {
 
 Json read_json(const fs::path& file) {
   std::ifstream in(file);
-  if (!in) throw config::UserError(fmt::format("{}: cannot be read", file.string()));
+  if (!in) throw base::UserError(fmt::format("{}: cannot be read", file.string()));
   Json json = Json::parse(in, nullptr, false);
   if (!json.is_object())
-    throw config::UserError(fmt::format("{}: is damaged: no JSON object; run the command that wrote it again", file.string()));
+    throw base::UserError(fmt::format("{}: is damaged: no JSON object; run the command that wrote it again", file.string()));
   return json;
 }
 

@@ -1,4 +1,4 @@
-// The makers of sections, one for each kind. Each throws config::UserError for a file that cannot be read.
+// The makers of sections, one for each kind. Each throws base::UserError for a file that cannot be read.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 /// kind, title, source and an empty list of notes: what each section begins with.
 Json begun(const char* kind, const std::string& title, const std::filesystem::path& folder);
 
-/// Throws config::UserError with the file's name when it cannot be read or is no JSON object.
+/// Throws base::UserError with the file's name when it cannot be read or is no JSON object.
 Json read_json(const std::filesystem::path& file);
 
 Json run_section(const std::filesystem::path& folder, const host::Registry& registry, const SectionOptions& options);

@@ -17,7 +17,7 @@ nlohmann::ordered_json document_of(const std::string& title, const std::vector<n
 /// The page with the document in it.
 std::string page_of(const nlohmann::ordered_json& document);
 
-/// Writes it aside and renames it. Throws config::UserError.
+/// Writes it aside and renames it. Throws base::UserError.
 void write_page(const std::filesystem::path& file, const nlohmann::ordered_json& document);
 
 }  // namespace millscope::report

@@ -19,7 +19,7 @@ constexpr std::size_t kMostRows = 2000;
 
 std::string text_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw config::UserError(fmt::format("{}: cannot be read", file.string()));
+  if (!in) throw base::UserError(fmt::format("{}: cannot be read", file.string()));
   std::stringstream text;
   text << in.rdbuf();
   return text.str();
@@ -63,7 +63,7 @@ void add_pictures(Json& section, const fs::path& folder, const host::Registry& r
     const config::Case c = config::read_case(case_file.string());
     section["liner"] = liner_of(c, registry, section["notes"]);
     section["mill"] = mill_json(case_file, registry);
-  } catch (const config::UserError& e) {
+  } catch (const base::UserError& e) {
     section["notes"].push_back(fmt::format("the mill is not drawn: {}", e.what()));
   }
   if (!fs::exists(folder / "frames.h5")) {
@@ -72,7 +72,7 @@ void add_pictures(Json& section, const fs::path& folder, const host::Registry& r
   }
   try {
     section["movie"] = movie_of(output::FrameReader(folder / "frames.h5"), options.movie_bytes);
-  } catch (const config::UserError& e) {
+  } catch (const base::UserError& e) {
     section["notes"].push_back(fmt::format("the charge is not drawn: {}", e.what()));
   }
 }

@@ -70,14 +70,14 @@ std::string known_files() {
 
 std::vector<Json> sections_of(const fs::path& out, const host::Registry& registry, const SectionOptions& options) {
   if (!fs::exists(out))
-    throw config::UserError(fmt::format(
+    throw base::UserError(fmt::format(
         "{}: there is no such folder; give one that run, analyze, compare, calibrate, validate or diagnose wrote", out.string()));
-  if (!fs::is_directory(out)) throw config::UserError(fmt::format("{}: is a file; give the folder that it lies in", out.string()));
+  if (!fs::is_directory(out)) throw base::UserError(fmt::format("{}: is a file; give the folder that it lies in", out.string()));
   std::vector<Place> places;
   find_places(out, 0, places);
   if (places.empty())
-    throw config::UserError(fmt::format("{}: holds no result of millscope: none of {}; give the folder that a command wrote with -o",
-                                        out.string(), known_files()));
+    throw base::UserError(fmt::format("{}: holds no result of millscope: none of {}; give the folder that a command wrote with -o",
+                                      out.string(), known_files()));
   std::sort(places.begin(), places.end());
   std::vector<Json> sections;
   for (const Place& place : places) sections.push_back(kinds()[place.kind].make(place.folder, registry, options));

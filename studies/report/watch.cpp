@@ -45,7 +45,7 @@ class Content {
     std::vector<Json> sections;
     try {
       sections = sections_of(out_, registry_, options_);
-    } catch (const config::UserError&) {
+    } catch (const base::UserError&) {
       // Before the first file is there, or while one is being renamed, what was seen last is shown.
       if (made_) return document_;
     }
@@ -164,7 +164,7 @@ void watch(const fs::path& out, const host::Registry& registry, const WatchOptio
     acceptor.bind({asio::ip::address_v4::loopback(), options.port});
     acceptor.listen();
   } catch (const boost::system::system_error& e) {
-    throw config::UserError(fmt::format("--port {}: cannot be opened: {}; leave --port out to take any free one", options.port, e.what()));
+    throw base::UserError(fmt::format("--port {}: cannot be opened: {}; leave --port out to take any free one", options.port, e.what()));
   }
   const std::string token = random_token();
   Content content(out, registry, options.sections);

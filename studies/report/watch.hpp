@@ -19,7 +19,7 @@ struct WatchOptions {
 };
 
 /// Serves the page and its data at 127.0.0.1 under an address with a random token; nothing else, nothing to other machines, and nothing
-/// can be changed through it. Returns when `goes_on` says false. Throws config::UserError when the port is taken.
+/// can be changed through it. Returns when `goes_on` says false. Throws base::UserError when the port is taken.
 void watch(const std::filesystem::path& out, const host::Registry& registry, const WatchOptions& options);
 
 /// Whether a run or a study holds this folder, or one of those below it.

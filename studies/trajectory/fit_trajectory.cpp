@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/recording/travel.hpp"
 #include "studies/trajectory/pieces.hpp"
 #include "studies/trajectory/sample.hpp"
@@ -13,7 +13,7 @@
 namespace millscope::studies {
 namespace {
 
-using config::UserError;
+using base::UserError;
 
 /// Dwell times: a step for each sample; the ends stand for what the piece covers of theirs.
 void weigh(Piece& piece, double first, double last) {

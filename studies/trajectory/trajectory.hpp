@@ -71,7 +71,7 @@ NoiseEstimate estimate_noise_model(const Run& run, double gap_limit);
 /// The same from all runs of one tracker together: steadier, for TrajectoryOptions::noise and noise_correlation.
 NoiseEstimate estimate_noise_model(std::span<const Run> runs, double gap_limit);
 
-/// Throws config::UserError when no piece is long enough, with the reason. Of a run that never comes between `low` and `high` no piece is
+/// Throws base::UserError when no piece is long enough, with the reason. Of a run that never comes between `low` and `high` no piece is
 /// left; `samples_trimmed` tells.
 Trajectory fit_trajectory(const Run& run, const TrajectoryOptions& options);
 

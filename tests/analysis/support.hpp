@@ -53,7 +53,7 @@ studies::AnalyzerInstance local_instance(const std::string& name, const Analyzer
   }();
   const config::ResolvedValues values;
   const host::Loaded loaded{&descriptor, nullptr};
-  return {name, host::AnalyzerObject::create(loaded, values.view(), config::Location{}, context), values};
+  return {name, host::AnalyzerObject::create(loaded, values.view(), base::Location{}, context), values};
 }
 
 /// x_i = φ x_{i−1} + √(1 − φ²) ε_i: variance 1, integrated autocorrelation time ½ (1 + φ)/(1 − φ) steps.

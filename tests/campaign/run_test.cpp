@@ -155,7 +155,7 @@ TEST_CASE("options that make no sense are refused") {
   CHECK_THROWS_WITH(run(three(folder), options), Catch::Contains("cache"));
   options = folder.options();
   write(options.cache, "a file");
-  CHECK_THROWS_AS(run(three(folder), options), config::UserError);
+  CHECK_THROWS_AS(run(three(folder), options), base::UserError);
 }
 
 }  // namespace millscope::campaign::test

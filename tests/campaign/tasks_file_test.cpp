@@ -26,7 +26,7 @@ TEST_CASE("tasks that make no sense are refused with their line") {
     write(file, "schema_version: 1\n" + text);
     try {
       read_tasks(file.string());
-    } catch (const config::UserError& e) {
+    } catch (const base::UserError& e) {
       return std::string(e.what());
     }
     return std::string("nothing");

@@ -15,7 +15,7 @@ template <class Body>
 std::string message_of(Body&& body) {
   try {
     body();
-  } catch (const millscope::config::UserError& e) {
+  } catch (const millscope::base::UserError& e) {
     CHECK(e.exit_code() == 2);
     CHECK(std::string(e.what()).find('\n') == std::string::npos);
     return e.what();

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "dem/support.hpp"
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 using namespace dem_test;
 
@@ -146,7 +146,7 @@ TEST_CASE("a checkpoint whose numbers do not belong together is refused, never u
     Assembly a = assembled(s);
     try {
       restore(a, state);
-    } catch (const config::UserError&) {
+    } catch (const base::UserError&) {
       return true;
     }
     return false;

@@ -4,7 +4,7 @@
 #include <fmt/core.h>
 
 #include "dem/support.hpp"
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 using namespace dem_test;
 
@@ -13,7 +13,7 @@ namespace {
 std::string message(Assembly& a, int steps) {
   try {
     advance(a, steps);
-  } catch (const config::UserError& e) {
+  } catch (const base::UserError& e) {
     return e.what();
   }
   return "";
@@ -57,7 +57,7 @@ TEST_CASE("NaN never goes on silently") {
     start(a, {Bead{}, Bead{{0.03, 0, 0}}});
     const double nan = std::numeric_limits<double>::quiet_NaN();
     if (where == 0) {
-      a.system->particles.position[1].centre[1] = nan;
+      a.system->particles.position[1].y = nan;
     } else {
       a.system->particles.half[1].v[1] = nan;
     }

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "dem/support.hpp"
-#include "kernel/run/random.hpp"
+#include "millscope/random.hpp"
 
 using namespace dem_test;
 
@@ -40,8 +40,8 @@ IdPairs brute(const Assembly& a) {
   IdPairs found;
   for (std::size_t i = 0; i < p.position.size(); ++i) {
     for (std::size_t j = i + 1; j < p.position.size(); ++j) {
-      const double* x = p.position[i].centre;
-      const double* y = p.position[j].centre;
+      const double* x = &p.position[i].x;
+      const double* y = &p.position[j].x;
       double square = 0;
       for (int k = 0; k < 3; ++k) {
         double d = x[k] - y[k];
@@ -64,7 +64,7 @@ Setup gas(const std::string& domain) {
 }
 
 std::vector<Bead> random_beads(std::size_t count, const Vector& low, const Vector& high, std::uint64_t seed) {
-  run::Random random(seed);
+  Random random(seed);
   std::vector<Bead> beads(count);
   for (Bead& b : beads) {
     for (std::size_t k = 0; k < 3; ++k) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/doe/analysis.hpp"
 
 namespace doe_test {
@@ -43,7 +43,7 @@ template <class Call>
 std::string refusal(Call call) {
   try {
     call();
-  } catch (const millscope::config::UserError& e) {
+  } catch (const millscope::base::UserError& e) {
     return e.what();
   }
   return "";

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/emulate/cma_es.hpp"
 #include "studies/emulate/cma_transform.hpp"
 #include "support.hpp"

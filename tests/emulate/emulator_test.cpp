@@ -1,7 +1,7 @@
 // The emulator against functions that are known.
 #include <catch2/catch.hpp>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/emulate/process.hpp"
 #include "support.hpp"
 
@@ -168,7 +168,7 @@ TEST_CASE("training that teaches nothing is refused with the reason") {
   const auto refusal = [&](const Training& t) {
     try {
       Emulator::fit(box, t);
-    } catch (const millscope::config::UserError& error) {
+    } catch (const millscope::base::UserError& error) {
       return std::string(error.what());
     }
     return std::string("accepted");

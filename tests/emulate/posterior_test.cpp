@@ -2,7 +2,7 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "studies/emulate/posterior.hpp"
 #include "support.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "inspect/synthetic.hpp"
-#include "kernel/run/random.hpp"
+#include "millscope/random.hpp"
 #include "studies/inspect/report.hpp"
 
 using namespace millscope;
@@ -42,7 +42,7 @@ TEST_CASE("a single point, two points and a moment support nothing, and say so")
 
 TEST_CASE("a tracer at rest supports nothing but its noise") {
   Recording recording = make_recording(test::SyntheticMill{});
-  run::Random random(3);
+  Random random(3);
   for (auto& component : recording.runs[0].position) {
     for (double& x : component) x = 0.1 + 1e-3 * (random.uniform() - 0.5);
   }
@@ -55,7 +55,7 @@ TEST_CASE("a tracer at rest supports nothing but its noise") {
 
 TEST_CASE("points without order are no mill") {
   Recording recording = make_recording(test::SyntheticMill{});
-  run::Random random(3);
+  Random random(3);
   for (auto& component : recording.runs[0].position) {
     for (double& x : component) x = 0.3 * (random.uniform() - 0.5);
   }

@@ -3,14 +3,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernel/run/random.hpp"
+#include "millscope/random.hpp"
 
 namespace millscope::test {
 namespace {
 
 using std::numbers::pi;
 
-double normal(run::Random& random) {
+double normal(Random& random) {
   const double u = 1 - random.uniform(), v = random.uniform();
   return std::sqrt(-2 * std::log(u)) * std::cos(2 * pi * v);
 }
@@ -22,7 +22,7 @@ struct State {
 /// In the frame of the axis, gravity along −y. The angle of a ride is counted from 6 o'clock in the turning sense.
 class Bead {
  public:
-  Bead(const SyntheticMill& mill, run::Random& random) : mill_(mill), random_(random), sense_(mill.angular_velocity > 0 ? 1 : -1) {
+  Bead(const SyntheticMill& mill, Random& random) : mill_(mill), random_(random), sense_(mill.angular_velocity > 0 ? 1 : -1) {
     begin_ride(-0.3);
   }
 
@@ -78,7 +78,7 @@ class Bead {
   }
 
   const SyntheticMill& mill_;
-  run::Random& random_;
+  Random& random_;
   int sense_;
   bool flying_ = false;
   double start_ = 0, end_ = 0, radius_ = 0, speed_ = 0, angle_ = 0;
@@ -103,7 +103,7 @@ studies::Recording wrap(studies::Run run) {
 }  // namespace
 
 studies::Recording make_recording(const SyntheticMill& mill) {
-  run::Random random(mill.seed);
+  Random random(mill.seed);
   Bead bead(mill, random);
   studies::Run run;
   const double turn = mill.gravity_degrees * pi / 180, cosine = std::cos(turn), sine = std::sin(turn);
@@ -121,7 +121,7 @@ studies::Recording make_recording(const SyntheticMill& mill) {
 }
 
 studies::Recording make_recording(const SyntheticRotor& rotor) {
-  run::Random random(5);
+  Random random(5);
   studies::Run run;
   const auto& a = rotor.axis;
   const double length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);

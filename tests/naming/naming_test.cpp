@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "made_up_bank.hpp"
 #include "studies/diagnose/naming/pseudo_data.hpp"
 #include "studies/diagnose/naming/surrogate.hpp"
@@ -323,5 +323,5 @@ TEST_CASE("a bank that is too small is refused with the remedy") {
   MadeUp mill;
   mill.runs = 6, mill.each = 2;
   const Problem p = made_up_problem(mill, point(0, 0, 0), {0, 0, 0}, 7);
-  CHECK_THROWS_AS(name_physics(p, quick()), config::UserError);
+  CHECK_THROWS_AS(name_physics(p, quick()), base::UserError);
 }

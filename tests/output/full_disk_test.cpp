@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/output/archive.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/frames.hpp"
@@ -149,7 +149,7 @@ TEST_CASE("other reasons why a file cannot be written") {
   CHECK_THAT(refusal([] { AtomicFile file("/nowhere/at/all.json"); }), Contains("cannot be written (No such file or directory)"));
   try {
     throw_write_error("/nowhere/x", EACCES);
-  } catch (const millscope::config::UserError& e) {
+  } catch (const millscope::base::UserError& e) {
     CHECK(e.exit_code() == kExitDisk);
     CHECK_THAT(e.what(), Contains("Permission denied") && Contains("-o"));
   }

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "dem/support.hpp"
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 #include "kernel/host/registry.hpp"
 
 using namespace dem_test;

@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "dem/support.hpp"
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 using namespace dem_test;
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "dem/support.hpp"
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 using namespace dem_test;
 
@@ -228,7 +228,7 @@ TEST_CASE("what does not fit is refused with both numbers") {
   const auto refusal = [](const Setup& s) -> std::string {
     try {
       filled(s);
-    } catch (const config::UserError& e) {
+    } catch (const base::UserError& e) {
       return e.what();
     }
     return "";

@@ -6,9 +6,10 @@
 #include <numbers>
 #include <vector>
 
-#include "kernel/run/random.hpp"
 #include "kernel/run/statistics.hpp"
+#include "millscope/random.hpp"
 
+using millscope::Random;
 using namespace millscope::run;
 
 namespace {

@@ -131,14 +131,15 @@ struct DescriptorList {
   const Descriptor* const* items;
 };
 
-/// FNV-1a over numbers known at compile time.
+/// FNV-1a of 64 bits (Fowler, Noll & Vo 1991): where it starts, and one step.
+inline constexpr std::uint64_t kHashStart = 0xcbf29ce484222325ULL;
+constexpr std::uint64_t hash_step(std::uint64_t hash, std::uint64_t next) { return (hash ^ next) * 0x100000001b3ULL; }
+
+/// Over numbers known at compile time, byte by byte.
 constexpr std::uint64_t hash_numbers(std::initializer_list<std::uint64_t> numbers) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  std::uint64_t hash = kHashStart;
   for (const std::uint64_t number : numbers) {
-    for (int byte = 0; byte < 8; ++byte) {
-      hash ^= (number >> (8 * byte)) & 0xffU;
-      hash *= 0x100000001b3ULL;
-    }
+    for (int byte = 0; byte < 8; ++byte) hash = hash_step(hash, (number >> (8 * byte)) & 0xffU);
   }
   return hash;
 }

@@ -7,11 +7,11 @@
 //   constexpr ObservationTable table = make_observation_table<MyNoise>();
 #pragma once
 
-#include <cmath>
 #include <vector>
 
 #include "millscope/observation.hpp"
 #include "millscope/parameters.hpp"
+#include "millscope/random.hpp"
 
 namespace millscope {
 
@@ -29,28 +29,6 @@ using Track = std::vector<TrackSample>;
 inline TrackSample sample_at(const TrackView& view, std::int64_t i) {
   return {view.time[i], {view.position[0][i], view.position[1][i], view.position[2][i]}, view.weight[i], view.visible[i] != 0};
 }
-
-/// Random numbers that are the same on every machine (SplitMix64; Box–Muller).
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-
-  std::uint64_t bits() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return z ^ (z >> 31);
-  }
-  double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  ///< [0, 1)
-  double exponential() { return -std::log(1.0 - uniform()); }               ///< mean 1
-  double normal() {                                                         ///< mean 0, variance 1
-    const double radius = std::sqrt(2.0 * exponential());
-    return radius * std::cos(6.283185307179586 * uniform());
-  }
-
- private:
-  std::uint64_t state_;
-};
 
 namespace detail {
 

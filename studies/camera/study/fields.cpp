@@ -56,7 +56,7 @@ struct Bias {
 
 const ResultArray& field(const ResultSet& results, const std::string& name) {
   const ResultArray* found = results.find("pept_grid", name);
-  if (found == nullptr) throw config::UserError(fmt::format("pept_grid gives no '{}'", name));
+  if (found == nullptr) throw base::UserError(fmt::format("pept_grid gives no '{}'", name));
   return *found;
 }
 

@@ -17,8 +17,7 @@ namespace fs = std::filesystem;
 
 Workplace::Workplace() {
   std::string name = (fs::temp_directory_path() / "millscope-camera-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr)
-    throw config::UserError(fmt::format("{}: cannot be made; set TMPDIR to a directory with room", name));
+  if (mkdtemp(name.data()) == nullptr) throw base::UserError(fmt::format("{}: cannot be made; set TMPDIR to a directory with room", name));
   path_ = name;
 }
 
@@ -49,7 +48,7 @@ fs::path record(const SimulatedBeads& beads, const Camera& camera, const std::ve
                 std::uint64_t seed) {
   for (const CameraLink& link : camera.links()) {
     if (link.plugin.name() == "frame_error")
-      throw config::UserError("the study needs a camera whose frame is the mill's: remove frame_error");
+      throw base::UserError("the study needs a camera whose frame is the mill's: remove frame_error");
   }
   SynthesisRequest request;
   request.file = folder / "seen.a";

@@ -8,7 +8,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "studies/analysis/parallel.hpp"
+#include "kernel/base/hash.hpp"
+#include "kernel/base/parallel.hpp"
 #include "studies/calibrate/observe.hpp"
 #include "studies/doe/doe.hpp"
 
@@ -18,14 +19,7 @@ namespace {
 constexpr double kLeastShare = 0.1;
 constexpr int kAgain = 8;               // parameter sets: eight degrees of freedom of each of about 70 observables
 constexpr std::size_t kSpareApart = 2;  // runs beyond the coefficients of a nuisance apart: linear, square, × every parameter
-constexpr int kSeedBits = 53;           // of a run's seed: as many as a whole number of a case may have, so that no two runs share one
 constexpr std::uint64_t kOffsets = 16;  // blocks of Sobol's sequence among which groups are spread, of as many points
-
-std::uint64_t hash(const std::string& text) {
-  std::uint64_t h = 0xcbf29ce484222325ULL;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  return h;
-}
 
 /// Sobol' points in the unit cube.
 MatrixXd unit_points(Index points, Index dimensions) {
@@ -111,7 +105,7 @@ void check_apart(const Question& q, const BankData& data) {
         data.rows.begin(), data.rows.end(), [&](const BankRow& row) { return row.effects.empty() && row.theta[group.apart] != *c.usual; }));
     const std::size_t least = 2 + q.study.parameters.size() + kSpareApart;
     if (varied < least)
-      throw config::UserError(fmt::format(
+      throw base::UserError(fmt::format(
           "{} finished simulations of the bank without a candidate vary the nuisance '{}', {} are needed; raise bank.base, or leave "
           "the nuisance out",
           varied, c.name, least));
@@ -132,7 +126,7 @@ std::vector<Group> groups_apart(const Question& q) {
 std::vector<BankPoint> plan_group(const Question& q, const Group& of, int count) {
   const bool effect = of.candidate >= 0;
   const std::string group = name_of(q, of);
-  const auto offset = of.base() ? 0 : static_cast<Index>(kOffsets * (hash(group) % kOffsets));
+  const auto offset = of.base() ? 0 : static_cast<Index>(kOffsets * (base::Hash().add(group).value() % kOffsets));
   const auto d = static_cast<Index>(q.dimensions() - groups_apart(q).size());
   const MatrixXd unit = unit_points(offset + count, d + (of.base() ? 0 : 1));
   std::vector<BankPoint> points;
@@ -202,7 +196,8 @@ std::vector<BankPoint> plan_bank(const Question& q) {
 campaign::Simulation simulation_of(const Question& q, const BankPoint& point, std::size_t condition) {
   const std::string& name = q.study.conditions[condition].name;
   campaign::Simulation s = simulation(q, point.theta, point.effects, condition);
-  s.settings.push_back(fmt::format("seed={}", hash(fmt::format("{}/{}/{}", point.group, name, point.index)) >> (64 - kSeedBits)));
+  s.settings.push_back(
+      fmt::format("seed={}", 1 + base::Hash().add(point.group + "/" + name).value() % 1000000 + static_cast<std::uint64_t>(point.index)));
   s.label = fmt::format("{}_{}_{}", point.group, point.index, name);
   return s;
 }
@@ -217,7 +212,7 @@ campaign::Simulation simulation_at(const Question& q, const VectorXd& theta, con
 
 calibrate::Observation Workshop::look(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
                                       const VectorXd& theta) const {
-  if (outcome.state == campaign::State::failed) throw config::UserError(outcome.message);
+  if (outcome.state == campaign::State::failed) throw base::UserError(outcome.message);
   calibrate::Observation o = observe(condition, outcome, question.camera(theta));
   if (!readings.empty()) add_readings(question, readings[condition], theta, o);
   if (!without.empty()) calibrate::leave_out(o, without[condition]);
@@ -238,11 +233,11 @@ Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoin
   bank.seen.assign(bank.points.size(), std::vector<std::optional<calibrate::Observation>>(per_point));
   std::vector<std::string> failures(outcomes.size());
   // Whole simulations side by side: looking at one is half of it a single thread's work.
-  studies::for_each_item(outcomes.size(), studies::worker_count(0, outcomes.size()), [&](std::size_t i, std::size_t) {
+  base::for_each_item(outcomes.size(), base::worker_count(0, outcomes.size()), [&](std::size_t i, std::size_t) {
     try {
       bank.seen[i / per_point][i % per_point] =
           workshop.look(q, bank.conditions[i % per_point], outcomes[i], bank.points[i / per_point].theta);
-    } catch (const config::UserError& e) {
+    } catch (const base::UserError& e) {
       failures[i] = fmt::format("{}: {}", simulations[i].label, e.what());
     }
   });
@@ -277,8 +272,8 @@ BankData data_of(const Question& q, const Bank& bank, const std::vector<std::siz
     data.left_out.insert(data.left_out.begin(), fmt::format("{} simulations of the bank failed and are left out, the first: {}",
                                                             bank.failures.size(), bank.failures.front()));
   if (values.empty()) {
-    throw config::UserError(fmt::format("no simulation of the bank has come to its end{}{}; correct the base case or the ranges",
-                                        bank.failures.empty() ? "" : "; the first: ", bank.failures.empty() ? "" : bank.failures.front()));
+    throw base::UserError(fmt::format("no simulation of the bank has come to its end{}{}; correct the base case or the ranges",
+                                      bank.failures.empty() ? "" : "; the first: ", bank.failures.empty() ? "" : bank.failures.front()));
   }
   data.value.resize(static_cast<Index>(values.size()), values.front().size());
   for (std::size_t r = 0; r < values.size(); ++r) data.value.row(static_cast<Index>(r)) = values[r].transpose();

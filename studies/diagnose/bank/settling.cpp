@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "kernel/base/parallel.hpp"
 #include "kernel/output/series.hpp"
-#include "studies/analysis/parallel.hpp"
 #include "studies/diagnose/bank/bank.hpp"
 
 namespace millscope::diagnose {
@@ -86,7 +86,7 @@ std::optional<Parts> parts_of(const fs::path& run) {
       if (!std::isfinite(parts.first[q]) || !std::isfinite(parts.later[q])) return {};
     }
     return parts;
-  } catch (const config::UserError&) {
+  } catch (const base::UserError&) {
     return {};
   }
 }
@@ -129,7 +129,7 @@ std::vector<std::string> unsettled(const Question& q, const Bank& bank, const st
   for (const std::size_t condition : conditions) {
     const auto k = static_cast<std::size_t>(std::find(bank.conditions.begin(), bank.conditions.end(), condition) - bank.conditions.begin());
     std::vector<std::optional<Parts>> of_point(bank.points.size());
-    studies::for_each_item(of_point.size(), studies::worker_count(0, of_point.size()), [&](std::size_t p, std::size_t) {
+    base::for_each_item(of_point.size(), base::worker_count(0, of_point.size()), [&](std::size_t p, std::size_t) {
       if (bank.points[p].effects.empty() && bank.seen[p][k]) of_point[p] = parts_of(bank.runs[p][k]);
     });
     std::vector<Parts> runs;

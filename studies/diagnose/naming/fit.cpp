@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::diagnose {
 namespace {
@@ -26,7 +26,7 @@ constexpr int kLevels = 3;  // of the grid of starting points, for each flat coo
 MatrixXd factor(const MatrixXd& covariance) {
   const Eigen::LLT<MatrixXd> llt(covariance);
   if (llt.info() != Eigen::Success) {
-    throw config::UserError(
+    throw base::UserError(
         "the covariance of the observables is not positive definite; lengthen the recording or leave groups out (objective.without)");
   }
   return llt.matrixL();

@@ -19,7 +19,7 @@
 
 namespace millscope::diagnose {
 
-/// Lower triangular L⁻¹ with Σ = L Lᵀ. Throws config::UserError when Σ is not positive definite.
+/// Lower triangular L⁻¹ with Σ = L Lᵀ. Throws base::UserError when Σ is not positive definite.
 MatrixXd whitener(const MatrixXd& covariance);
 /// L itself.
 MatrixXd factor(const MatrixXd& covariance);

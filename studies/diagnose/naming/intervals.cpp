@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "studies/analysis/parallel.hpp"
+#include "kernel/base/parallel.hpp"
 #include "studies/diagnose/naming/pseudo_data.hpp"
 
 namespace millscope::diagnose {
@@ -72,7 +72,7 @@ std::vector<Interval> PseudoData::intervals(const Choice& choice, const FitResul
   const Model fitted = model(*surrogate_, choice);
   const VectorXd found = coordinates_of(fit.coded, fit.shares);
   std::vector<Interval> out(static_cast<std::size_t>(found.size()));
-  studies::for_each_item(out.size(), studies::worker_count(options_.threads, out.size()), [&](std::size_t k, std::size_t) {
+  base::for_each_item(out.size(), base::worker_count(options_.threads, out.size()), [&](std::size_t k, std::size_t) {
     const auto i = static_cast<Index>(k);
     const double most = fit.q + allowed(drawn, fitted, i);
     const auto inside = [&](double v) { return fitted.fit_holding(i, v, problem_.observed).q <= most; };

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <optional>
 
-#include "kernel/config/error.hpp"
-#include "studies/analysis/parallel.hpp"
+#include "kernel/base/error.hpp"
+#include "kernel/base/parallel.hpp"
 
 namespace millscope::diagnose {
 namespace {
@@ -69,7 +69,7 @@ PseudoData::PseudoData(const Problem& problem, const NamingOptions& options)
     left_out_.push_back(std::move(left));
   }
   if (base < kLeastBase)
-    throw config::UserError(
+    throw base::UserError(
         fmt::format("the bank has {} finished runs without an effect, the null needs {}; raise bank.base", base, kLeastBase));
 }
 
@@ -191,8 +191,8 @@ std::vector<PseudoData::Drawn> PseudoData::draw(const Truth& truth, const std::v
   std::vector<Refit> refits;
   for (const LeftOut* left : runs_for(truth, how.for_intervals)) refits.push_back(refit(*left, truth, choices));
   std::vector<Drawn> out(static_cast<std::size_t>(how.count));
-  studies::for_each_item(out.size(), studies::worker_count(options_.threads, out.size()),
-                         [&](std::size_t b, std::size_t) { out[b] = drawn(refits[b / laws() % refits.size()], truth, how, b); });
+  base::for_each_item(out.size(), base::worker_count(options_.threads, out.size()),
+                      [&](std::size_t b, std::size_t) { out[b] = drawn(refits[b / laws() % refits.size()], truth, how, b); });
   return out;
 }
 

@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 namespace millscope::diagnose {
 namespace {
@@ -218,7 +218,7 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
   const auto rows = static_cast<Index>(std::count(used.begin(), used.end(), true));
   const std::vector<std::vector<Index>> points = points_of(data, used);
   if (static_cast<Index>(points.size()) <= features_.size()) {
-    throw config::UserError(
+    throw base::UserError(
         fmt::format("the bank has finished runs at {} points, its model {} coefficients; extend the bank (bank.base, "
                     "bank.each){}{}",
                     points.size(), features_.size(), data.left_out.empty() ? "" : "; ", fmt::join(data.left_out, "; ")));

@@ -40,7 +40,7 @@ class Features {
 
 class Surrogate {
  public:
-  /// Least squares on the rows where `used` is true. Throws config::UserError when they are fewer than the coefficients.
+  /// Least squares on the rows where `used` is true. Throws base::UserError when they are fewer than the coefficients.
   Surrogate(const BankData& data, Features features, const std::vector<bool>& used);
   /// On all rows, with all features that they support.
   explicit Surrogate(const BankData& data);

@@ -33,7 +33,7 @@ std::string choices_text(const Question& q) {
 std::vector<std::string> base_speeds(const fs::path& base) {
   try {
     return speeds_settled(config::read_case(base.string()));
-  } catch (const config::UserError&) {
+  } catch (const base::UserError&) {
     return {};
   }
 }

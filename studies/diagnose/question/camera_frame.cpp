@@ -38,8 +38,8 @@ std::string camera_frame_text(const std::vector<std::pair<const Nuisance*, doubl
 void check_camera_frame(const Nuisance& n, const host::Registry& registry) {
   try {
     for (const double end : {n.low, n.high}) studies::parse_camera(camera_frame_text({{&n, end}}), "its camera", registry);
-  } catch (const config::UserError& e) {
-    throw config::UserError(n.where, fmt::format("nuisance '{}': {}", n.name, e.what()));
+  } catch (const base::UserError& e) {
+    throw base::UserError(n.where, fmt::format("nuisance '{}': {}", n.name, e.what()));
   }
 }
 
@@ -49,18 +49,17 @@ void check_recorded_frames(const Question& q, const calibrate::Observer& observe
     for (std::size_t c = 0; c < q.study.conditions.size(); ++c) {
       const calibrate::Condition& condition = q.study.conditions[c];
       if (!observer.recorded(c).of_tracks())
-        throw config::UserError(n.where, fmt::format("nuisance '{}': no camera saw {}, it is a velocity profile; leave the nuisance out",
-                                                     n.name, condition.recording.string()));
+        throw base::UserError(n.where, fmt::format("nuisance '{}': no camera saw {}, it is a velocity profile; leave the nuisance out",
+                                                   n.name, condition.recording.string()));
       if (observer.turns_other_way(c))
-        throw config::UserError(n.where,
-                                fmt::format("nuisance '{}' would change its sign in condition '{}': {} turns the other way than the "
-                                            "recording; give its mill.direction as recorded",
-                                            n.name, condition.name, q.study.base.string()));
+        throw base::UserError(n.where, fmt::format("nuisance '{}' would change its sign in condition '{}': {} turns the other way than the "
+                                                   "recording; give its mill.direction as recorded",
+                                                   n.name, condition.name, q.study.base.string()));
       if (camera_frame_parameter(n).starts_with("offset_") && !studies::read_description(condition.recording).frame)
-        throw config::UserError(n.where,
-                                fmt::format("nuisance '{}': {} states no axis that could be doubted, it is found from the points; give "
-                                            "'frame: {{axis: [x, y]}}' there, or leave the nuisance out",
-                                            n.name, condition.recording.string()));
+        throw base::UserError(n.where,
+                              fmt::format("nuisance '{}': {} states no axis that could be doubted, it is found from the points; give "
+                                          "'frame: {{axis: [x, y]}}' there, or leave the nuisance out",
+                                          n.name, condition.recording.string()));
     }
   }
 }

@@ -11,7 +11,7 @@
 
 namespace millscope::diagnose {
 
-/// Unit of camera.frame_error.PARAMETER. Throws config::UserError at `node`, the nuisance, where there is no such parameter.
+/// Unit of camera.frame_error.PARAMETER. Throws base::UserError at `node`, the nuisance, where there is no such parameter.
 std::string camera_frame_unit(const config::Node& node, const std::string& path, const host::Registry& registry);
 
 /// PARAMETER of a nuisance camera.frame_error.PARAMETER; "" of one that is not the camera's.
@@ -20,10 +20,10 @@ std::string camera_frame_parameter(const Nuisance& nuisance);
 /// A camera file with these nuisances at their values.
 std::string camera_frame_text(const std::vector<std::pair<const Nuisance*, double>>& of);
 
-/// Throws config::UserError where both ends of the range are no camera.
+/// Throws base::UserError where both ends of the range are no camera.
 void check_camera_frame(const Nuisance& nuisance, const host::Registry& registry);
 
-/// Before anything is simulated: the recordings must state what the study doubts, and turn as the case does. Throws config::UserError.
+/// Before anything is simulated: the recordings must state what the study doubts, and turn as the case does. Throws base::UserError.
 void check_recorded_frames(const Question& question, const calibrate::Observer& observer);
 
 }  // namespace millscope::diagnose

@@ -109,7 +109,7 @@ Candidate read_candidate(const Node& node, const Library& library) {
   return c;
 }
 
-/// The case with some settings, written out; throws config::UserError where plugins or reader refuse it.
+/// The case with some settings, written out; throws base::UserError where plugins or reader refuse it.
 std::string resolved(const calibrate::Study& study, const std::vector<std::string>& settings, const host::Registry& registry) {
   std::vector<std::string> all = study.conditions[study.with_role(calibrate::Role::fit).front()].settings;
   all.insert(all.end(), settings.begin(), settings.end());
@@ -125,8 +125,8 @@ void check_parameters(const Question& q, const host::Registry& registry) {
     std::vector<std::string> settings;
     for (const calibrate::Parameter& p : q.study.parameters) settings.push_back(fmt::format("{}={:.6g}", p.path, 0.5 * (p.low + p.high)));
     resolved(q.study, settings, registry);
-  } catch (const config::UserError& e) {
-    throw config::UserError(q.study.parameters.front().where, fmt::format("parameters in the middle of their ranges: {}", e.what()));
+  } catch (const base::UserError& e) {
+    throw base::UserError(q.study.parameters.front().where, fmt::format("parameters in the middle of their ranges: {}", e.what()));
   }
 }
 
@@ -135,28 +135,27 @@ bool bank_group(const std::string& name) { return name == "base" || name == "aga
 
 void check_nuisance(const Question& q, const Nuisance& n, const host::Registry& registry) {
   if (bank_group(n.name))
-    throw config::UserError(n.where, fmt::format("nuisance '{}' has the name of a group of the bank; give it another 'name'", n.name));
+    throw base::UserError(n.where, fmt::format("nuisance '{}' has the name of a group of the bank; give it another 'name'", n.name));
   for (const Nuisance& other : q.nuisances) {
     if (&other != &n && other.name == n.name)
-      throw config::UserError(n.where, fmt::format("there are two nuisances '{}'; give one of them another 'name'", n.name));
+      throw base::UserError(n.where, fmt::format("there are two nuisances '{}'; give one of them another 'name'", n.name));
   }
   for (const calibrate::Parameter& p : q.study.parameters) {
     if (p.path == n.path || p.name == n.name)
-      throw config::UserError(n.where,
-                              fmt::format("nuisance '{}' is a parameter, too; keep one of them, or give it another 'name'", n.name));
+      throw base::UserError(n.where, fmt::format("nuisance '{}' is a parameter, too; keep one of them, or give it another 'name'", n.name));
   }
   if (n.of_camera()) return check_camera_frame(n, registry);
   if (n.usual && !(rounded(*n.usual) >= rounded(n.low) && rounded(*n.usual) <= rounded(n.high)))
-    throw config::UserError(n.where, fmt::format("nuisance '{}' is apart, and its range {:.6g} … {:.6g} does not hold {:.6g}, which it is "
-                                                 "in {}; widen the range",
-                                                 n.name, n.low, n.high, *n.usual, q.study.base.string()));
+    throw base::UserError(n.where, fmt::format("nuisance '{}' is apart, and its range {:.6g} … {:.6g} does not hold {:.6g}, which it is "
+                                               "in {}; widen the range",
+                                               n.name, n.low, n.high, *n.usual, q.study.base.string()));
   try {
     const std::string low = resolved(q.study, {fmt::format("{}={:.17g}", n.path, n.low)}, registry);
     if (low != resolved(q.study, {fmt::format("{}={:.17g}", n.path, n.high)}, registry)) return;
-  } catch (const config::UserError& e) {
-    throw config::UserError(n.where, fmt::format("nuisance '{}': {}", n.name, e.what()));
+  } catch (const base::UserError& e) {
+    throw base::UserError(n.where, fmt::format("nuisance '{}': {}", n.name, e.what()));
   }
-  throw config::UserError(
+  throw base::UserError(
       n.where, fmt::format("nuisance '{}' changes nothing in {}: the case overrides it; leave it out", n.path, q.study.base.string()));
 }
 
@@ -173,7 +172,7 @@ std::string refused(const Question& q, const Candidate& c, const host::Registry&
     const std::string without = resolved(q.study, {}, registry);
     if (c.range.low < 0) resolved(q.study, settings_of(c, c.range.low), registry);
     if (resolved(q.study, settings_of(c, 1), registry) == without) return "changes nothing in the base case; leave it out";
-  } catch (const config::UserError& e) {
+  } catch (const base::UserError& e) {
     return e.what();
   }
   return "";
@@ -184,7 +183,7 @@ void read_candidates(const Node& node, const Library& library, const host::Regis
     const Node one = node.at(key);
     q.candidates.push_back(read_candidate(one, library));
     if (const std::string why = refused(q, q.candidates.back(), registry); !why.empty())
-      throw config::UserError(one.where(), fmt::format("hypothesis '{}': {}", key, why));
+      throw base::UserError(one.where(), fmt::format("hypothesis '{}': {}", key, why));
   }
 }
 
@@ -195,9 +194,9 @@ void read_usual(Question& q) {
     for (const calibrate::Condition& c : q.study.conditions) {
       const double value = value_in(config::read_case(q.study.base.string(), c.settings), n.path, n.where);
       if (&c != &q.study.conditions.front() && value != *n.usual)
-        throw config::UserError(n.where, fmt::format("nuisance '{}' is apart, and is {:.6g} in condition '{}', {:.6g} in '{}'; give it one "
-                                                     "value in all",
-                                                     n.name, *n.usual, q.study.conditions.front().name, value, c.name));
+        throw base::UserError(n.where, fmt::format("nuisance '{}' is apart, and is {:.6g} in condition '{}', {:.6g} in '{}'; give it one "
+                                                   "value in all",
+                                                   n.name, *n.usual, q.study.conditions.front().name, value, c.name));
       n.usual = value;
     }
   }
@@ -226,12 +225,12 @@ void take_all(const Library& library, const host::Registry& registry, Question& 
 
 }  // namespace
 
-double value_in(const config::Case& c, const std::string& path, const config::Location& where) {
+double value_in(const config::Case& c, const std::string& path, const base::Location& where) {
   Node node = c.root;
   for (std::size_t begin = 0; begin <= path.size();) {
     const std::size_t end = std::min(path.find('.', begin), path.size());
     const auto found = node.is_map() ? node.find(path.substr(begin, end - begin)) : std::nullopt;
-    if (!found) throw config::UserError(where, fmt::format("'{}' is not in {}; write there what it is", path, c.root.where().file));
+    if (!found) throw base::UserError(where, fmt::format("'{}' is not in {}; write there what it is", path, c.root.where().file));
     node = *found;
     begin = end + 1;
   }

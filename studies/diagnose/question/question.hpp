@@ -28,7 +28,7 @@ struct Nuisance {
   double low = 0, high = 0;  ///< what the bank covers
   double mean = 0, sigma = 0;
   std::optional<double> usual;  ///< varied apart: the case's own value, which all other simulations have
-  config::Location where;
+  base::Location where;
 
   bool of_camera() const { return path.starts_with("camera."); }
 };
@@ -58,14 +58,14 @@ struct Question {
   std::string camera(const VectorXd& theta) const;
 };
 
-/// A number of the case at a path. Throws config::UserError at `where` when the case does not say it.
-double value_in(const config::Case& c, const std::string& path, const config::Location& where);
+/// A number of the case at a path. Throws base::UserError at `where` when the case does not say it.
+double value_in(const config::Case& c, const std::string& path, const base::Location& where);
 
 /// "path=… rad/s" for every speed that a case gives in % of critical: of the mill and of parts that turn by themselves. The critical speed
 /// depends on the largest bead, which a candidate may change; a recorded mill turned as it did.
 std::vector<std::string> speeds_settled(const config::Case& c);
 
-/// Throws config::UserError with file:line: unknown keys, hypotheses that no loaded plugin has, a prior outside the range.
+/// Throws base::UserError with file:line: unknown keys, hypotheses that no loaded plugin has, a prior outside the range.
 Question read_question(const std::filesystem::path& file, const std::vector<std::string>& overrides, const host::Registry& registry);
 
 }  // namespace millscope::diagnose

@@ -30,7 +30,7 @@ Prediction simulate(const HeldOutRequest& r, const VectorXd& coded, const std::v
     calibrate::Observation o;
     try {
       o = r.workshop.look(r.question, condition, outcome, theta);
-    } catch (const config::UserError& e) {
+    } catch (const base::UserError& e) {
       message = e.what();
       continue;
     }

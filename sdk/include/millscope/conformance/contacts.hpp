@@ -71,7 +71,7 @@ struct Contacts {
   }
 };
 
-inline std::array<double, 3> random_unit(Numbers& numbers) {
+inline std::array<double, 3> random_unit(Random& numbers) {
   for (;;) {
     const double x = numbers.between(-1, 1), y = numbers.between(-1, 1), z = numbers.between(-1, 1);
     const double square = x * x + y * y + z * z;
@@ -81,7 +81,7 @@ inline std::array<double, 3> random_unit(Numbers& numbers) {
 
 /// Contacts with overlaps up to the typical one, closing, opening and sliding in all directions; every seventh is a gap.
 inline Contacts random_contacts(const Setting& setting, std::size_t n = 61, std::uint64_t seed = 7) {
-  Numbers numbers(seed);
+  Random numbers(seed);
   Contacts c(n);
   const double largest = typical_overlap(setting.pair), speed = setting.pair.typical_speed;
   for (std::size_t s = 0; s < n; ++s) {

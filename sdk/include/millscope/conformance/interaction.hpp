@@ -11,7 +11,7 @@ namespace millscope::conformance {
 /// n pairs of one interaction with its results, padded as the host pads them.
 struct Pairs {
   explicit Pairs(const Setting& setting, std::size_t n = 61) : base(random_contacts(setting, n)) {
-    Numbers numbers(11);
+    Random numbers(11);
     for (Column* c : {&radius_i, &radius_j, &added_force, &added_cap}) c->assign(base.slots, 0.0);
     for (Columns* c : {&spin_i, &spin_j, &moment_i, &moment_j}) {
       for (Column& axis : *c) axis.assign(base.slots, 0.0);

@@ -9,6 +9,7 @@
 
 #include "millscope/contact_law.hpp"
 #include "millscope/parameters.hpp"
+#include "millscope/random.hpp"
 
 namespace millscope::conformance {
 
@@ -129,21 +130,6 @@ class Held {
  private:
   const Table* table_;
   void* self_ = nullptr;
-};
-
-/// Numbers that are the same on every machine.
-class Numbers {
- public:
-  explicit Numbers(std::uint64_t seed = 1) : state_(seed) {}
-  double between(double low, double high) {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return low + (high - low) * (static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53);
-  }
-
- private:
-  std::uint64_t state_;
 };
 
 /// A rotation by 0.9 rad about (1, 2, 2)/3, for frame indifference.

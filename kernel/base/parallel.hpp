@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace millscope::studies {
+namespace millscope::base {
 
 /// Threads to use for `items` items; `wished` 0: all cores.
 inline std::size_t worker_count(int wished, std::size_t items) {
@@ -44,4 +44,4 @@ void for_each_item(std::size_t count, std::size_t workers, Work&& work) {
   if (error) std::rethrow_exception(error);
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::base

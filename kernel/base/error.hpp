@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace millscope::config {
+namespace millscope::base {
 
 /// Exit codes of the `millscope` command that a UserError may carry.
 inline constexpr int kExitBadInput = 2;
@@ -30,4 +30,4 @@ class UserError : public std::runtime_error {
   int exit_code_;
 };
 
-}  // namespace millscope::config
+}  // namespace millscope::base

@@ -1,8 +1,8 @@
-#include "kernel/config/error.hpp"
+#include "kernel/base/error.hpp"
 
 #include <fmt/format.h>
 
-namespace millscope::config {
+namespace millscope::base {
 
 std::string Location::text() const { return line > 0 ? fmt::format("{}:{}", file, line) : file; }
 
@@ -11,4 +11,4 @@ UserError::UserError(const std::string& message, int exit_code) : std::runtime_e
 UserError::UserError(const Location& where, const std::string& message, int exit_code)
     : UserError(where.text() + ": " + message, exit_code) {}
 
-}  // namespace millscope::config
+}  // namespace millscope::base
