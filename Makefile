@@ -6,7 +6,7 @@ CMAKE_OPTIONS ?=
 SOURCES = $(shell git ls-files '*.cpp' '*.hpp')
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench verify docs install format tidy asan tsan clean packages packages-test binary
+.PHONY: help demo test bench figures verify docs install format tidy asan tsan clean packages packages-test binary
 
 help: ## list these targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -23,6 +23,12 @@ test: packages-test ## install what is missing, build, run every test
 bench: packages-test binary ## time against LIGGGHTS on the cross-check case (20 minutes on a quiet machine)
 	cmake --build --preset release -j $(JOBS) --target millscope_bench
 	bench/run.sh $(BUILD) $(BENCH_OPTIONS)
+
+figures: packages-test ## tables that tests print for docs/analysis.md and docs/analyzers.md (minutes on a quiet machine)
+	cmake --preset release -DMILLSCOPE_TESTS=ON $(CMAKE_OPTIONS)
+	cmake --build --preset release -j $(JOBS) --target test_analysis analyzers_fields_test
+	$(BUILD)/bin/test_analysis "[.coverage]"
+	$(BUILD)/bin/analyzers_fields_test "[.speed]"
 
 verify: packages-test binary ## the long checks (hours), written to docs/validation.md; VERIFY="crosscheck memory" for some
 	tools/verify.py --build $(BUILD) $(VERIFY)

@@ -1,4 +1,4 @@
-// Not run with the others: analyzers_fields_test "[speed]" prints how fast each analyzer takes frames of the study's whole mill.
+// Not run with the others: `make figures` prints how fast each analyzer takes frames of the study's whole mill.
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cstdio>

@@ -1,17 +1,15 @@
 // Features, circulation and flights of real and realistic recordings, where these are present.
 #include <catch2/catch.hpp>
-#include <filesystem>
 
 #include "analyzers_motion/motions.hpp"
 #include "studies/trajectory/trajectory.hpp"
+#include "tests/skip.hpp"
 
 using namespace analyzers_test;
 using namespace millscope::studies;
 using Catch::Matchers::WithinAbs;
 
 namespace {
-
-const std::filesystem::path kFolder = std::filesystem::path(MILLSCOPE_SOURCE_DIR) / "../shared/recordings";
 
 /// Splined samples of a recording as blocks, with its measured points.
 struct Recorded {
@@ -21,7 +19,7 @@ struct Recorded {
   std::vector<std::int64_t> location_id;
 
   Recorded(const std::string& file, std::array<double, 2> axis, double omega) {
-    const Recording recording = read_recording(kFolder / file);
+    const Recording recording = read_recording(testing::recording(file));
     TrajectoryOptions options;
     options.axis = axis;
     options.step = 2e-3;
@@ -68,16 +66,10 @@ AnalyzerContext recorded_mill(double radius, double bead_radius, double omega) {
   return c;
 }
 
-bool present(const std::string& file) {
-  if (std::filesystem::exists(kFolder / file)) return true;
-  WARN("skipped: " << file << " is not there");
-  return false;
-}
-
 }  // namespace
 
 TEST_CASE("shoulder, toe, eye and cataract of a real mill are found, and both halves of the recording agree") {
-  if (!present("uct_mill_part1.a")) return;
+  if (testing::absent("uct_mill_part1.a")) return;
   // 230 mm: radius of the tracer's centre next to the shell; clockwise, 36 rpm.
   const double omega = -3.75;
   const Recorded recorded("uct_mill_part1.a", {-0.002, 0.013}, omega);
@@ -112,7 +104,7 @@ TEST_CASE("features of five tracer runs of one mill agree") {
   std::vector<double> shoulder, toe;
   for (int run = 1; run <= 5; ++run) {
     const std::string file = "mill10_A_75_" + std::to_string(run) + ".a";
-    if (!present(file)) return;
+    if (testing::absent(file)) return;
     const Recorded recorded(file, {0.0014, -0.0009}, -6.17);
     const Outcome o = Analyzer("charge_features", recorded_mill(0.15, 0.005, -6.17)).of(recorded.block());
     shoulder.push_back(number(o, "departure_shoulder"));

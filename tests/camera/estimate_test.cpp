@@ -8,6 +8,7 @@
 #include "studies/camera/estimate_camera.hpp"
 #include "studies/camera/estimate_parts.hpp"
 #include "support.hpp"
+#include "tests/skip.hpp"
 
 using namespace camera_test;
 using Catch::Contains;
@@ -265,12 +266,8 @@ TEST_CASE("an .a file reads back as it was written") {
 }
 
 TEST_CASE("the camera of a known recording is found") {
-  const fs::path file = fs::path(MILLSCOPE_SOURCE_DIR) / "../shared/recordings/mill10_A_75_1.a";
-  if (!fs::exists(file)) {
-    WARN("no recordings beside the source: left out");
-    return;
-  }
-  const CameraEstimate e = estimate_camera(read_recording(file));
+  if (testing::absent("mill10_A_75_1.a")) return;
+  const CameraEstimate e = estimate_camera(read_recording(testing::recording("mill10_A_75_1.a")));
   CHECK(std::fabs(e.sampling.rate.value - 220) < 25);  // "about 220 locations/s before losses"
   CHECK(e.noise.total_near.value > 0.45e-3);           // "0.5 to 1 mm, growing with distance"
   CHECK(e.noise.total_near.value < 0.7e-3);

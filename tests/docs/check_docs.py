@@ -5,7 +5,8 @@
 - every `millscope COMMAND ACTION --option` is one that the command's own --help knows;
 - every command has its row in docs/commands.md;
 - every configs/… path is there, or a page writes it with -o;
-- every page of docs/ is in the navigation of mkdocs.yml, and nothing else is.
+- every page of docs/ is in the navigation of mkdocs.yml, and nothing else is;
+- every folder of tests/ has its place in the table of CONTRIBUTING.md, and nothing else has.
 """
 
 import argparse
@@ -220,6 +221,18 @@ def check_listed(root, help_pages):
             yield f"docs/commands.md: 'millscope {command}' has no row in the table; add one"
 
 
+def check_areas(root):
+    """The table of tests names every area, one or more in a row."""
+    page = root / "CONTRIBUTING.md"
+    rows = [line for line in page.read_text(encoding="utf-8").splitlines() if line.startswith("|")] if page.exists() else []
+    listed = {area for row in rows for area in re.findall(r"`tests/(\w+)`", row)}
+    there = {p.parent.name for p in (root / "tests").glob("*/CMakeLists.txt")}
+    for area in sorted(there - listed):
+        yield f"CONTRIBUTING.md: tests/{area} is not in the table of tests; say there what it is about"
+    for area in sorted(listed - there):
+        yield f"CONTRIBUTING.md: the table of tests has tests/{area}, which is not there"
+
+
 def pages_of(root):
     named = [root / n for n in ("README.md", "CONTRIBUTING.md", "configs/README.md")]
     return [p for p in named if p.exists()] + sorted((root / "docs").rglob("*.md"))
@@ -236,6 +249,7 @@ def check_all(root, help_pages):
         yield from check_configs(root, name, text, written)
     yield from check_navigation(root)
     yield from check_listed(root, help_pages)
+    yield from check_areas(root)
 
 
 def main():

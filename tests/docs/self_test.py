@@ -30,6 +30,9 @@ SOUND = {
                      "`configs/made.stl` and `millscope frames`.\n\n```yaml\n# no heading\na: 1\n```\n",
     "docs/commands.md": "# Commands\n\n| `run CASE` |\n| `geometry export`, `geometry report` |\n| `pept inspect` |\n| `completion` |\n",
     "configs/demo.yaml": "a: 1\n",
+    "CONTRIBUTING.md": "| `tests/dem`, `tests/run` | motion |\n",
+    "tests/dem/CMakeLists.txt": "",
+    "tests/run/CMakeLists.txt": "",
     "configs/other.yaml": "a: 1\n",
     "mkdocs.yml": "nav:\n  - Cases: cases.md\n  - Commands: commands.md\n",
 }
@@ -54,6 +57,8 @@ WRONG = [
     ("docs/cases.md", "| `pept camera FILE` | `--json` |\n", "'millscope pept' has no --json"),
     ("docs/cases.md", "See `configs/gone.yaml`.\n", "there is no configs/gone.yaml"),
     ("docs/cases.md", "See `configs/{demo,gone}.yaml`.\n", "there is no configs/gone.yaml"),
+    ("CONTRIBUTING.md", "| `tests/gone` | gone |\n", "the table of tests has tests/gone, which is not there"),
+    ("tests/new/CMakeLists.txt", "add_test()\n", "tests/new is not in the table of tests"),
     ("docs/lost.md", "# Lost\n", "docs/lost.md is not in nav"),
     ("mkdocs.yml", "  - Gone: gone.md\n", "nav has gone.md"),
 ]

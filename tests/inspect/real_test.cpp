@@ -6,31 +6,26 @@
 #include <numbers>
 
 #include "studies/inspect/inspect.hpp"
+#include "tests/skip.hpp"
 
 using namespace millscope;
 using namespace millscope::studies;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
+using testing::absent;
+using testing::recording;
 
 namespace {
 
-const std::filesystem::path kRecordings = std::filesystem::path(MILLSCOPE_SOURCE_DIR) / "../shared/recordings";
 constexpr double kRpm = 30 / std::numbers::pi;
-
-bool absent(const std::filesystem::path& file) {
-  if (std::filesystem::exists(file)) return false;
-  WARN("skipped: " << file << " is not there");
-  return true;
-}
 
 bool holds(const Finding& f, double truth) { return f.estimate && f.estimate->low <= truth && truth <= f.estimate->high; }
 
 }  // namespace
 
 TEST_CASE("real rotor: radius and plateaus") {
-  const auto file = kRecordings / "rotor_calibration.a";
-  if (absent(file)) return;
-  const auto rotor = recognise_rotor(read_recording(file));
+  if (absent("rotor_calibration.a")) return;
+  const auto rotor = recognise_rotor(read_recording(recording("rotor_calibration.a")));
   REQUIRE(rotor);
   CHECK_THAT(rotor->radius.value, WithinAbs(26.6e-3, 0.15e-3));
   CHECK(rotor->radius.low < 26.6e-3);
@@ -41,9 +36,8 @@ TEST_CASE("real rotor: radius and plateaus") {
 }
 
 TEST_CASE("real mill: axis, sense, speed, radius and vertical") {
-  const auto file = kRecordings / "uct_mill_part1.a";
-  if (absent(file)) return;
-  const Inspection i = inspect(read_recording(file));
+  if (absent("uct_mill_part1.a")) return;
+  const Inspection i = inspect(read_recording(recording("uct_mill_part1.a")));
   CHECK_FALSE(i.rotor);
   CHECK(i.motion.sense == -1);
   CHECK_THAT(i.motion.speed.estimate->value * kRpm, WithinAbs(36, 0.5));
@@ -58,13 +52,13 @@ TEST_CASE("real mill: axis, sense, speed, radius and vertical") {
 }
 
 TEST_CASE("known mill: the intervals over thirty recordings hold the truth") {
-  if (absent(kRecordings / "mill10_A_75_1.a")) return;
+  if (absent("mill10_A_75_1.a")) return;
   int said = 0, inside[4] = {}, axis = 0, all = 0;
   for (const char set : {'A', 'B'}) {
     for (const int percent : {75, 60, 50}) {
       const double speed = 42.3 / std::sqrt(0.290) * percent / 100 / kRpm;
       for (int run = 1; run <= 5; ++run) {
-        const MillMotion m = estimate_motion(read_recording(kRecordings / fmt::format("mill10_{}_{}_{}.a", set, percent, run)));
+        const MillMotion m = estimate_motion(read_recording(recording(fmt::format("mill10_{}_{}_{}.a", set, percent, run))));
         REQUIRE(m.sense == -1);
         ++all;
         axis += holds(m.axis[0], 1.4e-3) && holds(m.axis[1], -0.9e-3);

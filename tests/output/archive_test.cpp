@@ -1,7 +1,6 @@
 #include "kernel/output/archive.hpp"
 
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -126,16 +125,4 @@ TEST_CASE("the last two checkpoints are kept") {
   CHECK(ArchiveReader(newest_checkpoint(scratch.path)).read_value<double>("x") == 3);
   std::filesystem::remove(checkpoint_path(scratch.path));
   CHECK(newest_checkpoint(scratch.path) == previous_checkpoint_path(scratch.path));
-}
-
-TEST_CASE("large archives are quick", "[.][bench]") {
-  const Scratch scratch;
-  const std::vector<double> values(12'500'000, 0.1);
-  const auto start = std::chrono::steady_clock::now();
-  ArchiveWriter writer(scratch / "big.h5");
-  writer.write("x", values);
-  writer.commit();
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-  WARN("100 MB written in " << spent.count() << " s");
-  CHECK(ArchiveReader(scratch / "big.h5").read<double>("x") == values);
 }

@@ -7,6 +7,7 @@
 
 #include "kernel/output/archive.hpp"
 #include "output/support.hpp"
+#include "tests/skip.hpp"
 
 using namespace millscope::output;
 using namespace output_test;
@@ -91,8 +92,19 @@ TEST_CASE("places where nothing can be written, and disks that are too small") {
   CHECK_THAT(opens("/proc/nothing/out", Mode::fresh), Contains("/proc/nothing: cannot be written"));
   spill(scratch / "file", "");
   CHECK_FALSE(opens(scratch / "file/out", Mode::fresh).empty());
-  if (::geteuid() == 0) return;  // root may write anywhere
+}
+
+TEST_CASE("a folder that its owner has closed") {
+  const Scratch scratch;
   fs::create_directory(scratch / "closed");
-  ::chmod((scratch / "closed").c_str(), 0500);
-  CHECK_THAT(opens(scratch / "closed/out", Mode::fresh), Contains("Permission denied"));
+  REQUIRE(::chmod((scratch / "closed").c_str(), 0500) == 0);
+  const bool root = ::geteuid() == 0;  // who may write anywhere: so this is asked as nobody, who owns the folders
+  constexpr uid_t kNobody = 65534;
+  if (root) {
+    for (const fs::path& path : {scratch.path, scratch / "closed"}) REQUIRE(::chown(path.c_str(), kNobody, 0) == 0);
+    if (::seteuid(kNobody) != 0) return testing::skip("root cannot be somebody else here");
+  }
+  const std::string message = opens(scratch / "closed/out", Mode::fresh);
+  if (root) REQUIRE(::seteuid(0) == 0);
+  CHECK_THAT(message, Contains("closed") && Contains("cannot be written (Permission denied)"));
 }

@@ -1,29 +1,17 @@
 // Real recordings beside the sources, where there are any.
 #include <catch2/catch.hpp>
 
-#include <filesystem>
-
 #include "recording/support.hpp"
 #include "studies/trajectory/trajectory.hpp"
+#include "tests/skip.hpp"
 
 using namespace millscope::studies;
 using namespace recording_test;
-
-namespace {
-
-std::filesystem::path real(const std::string& name) { return std::filesystem::path(MILLSCOPE_SOURCE_DIR) / "../shared/recordings" / name; }
-
-bool absent(const std::string& name) {
-  if (std::filesystem::exists(real(name))) return false;
-  WARN(name << " is not here; this test is skipped");
-  return true;
-}
-
-}  // namespace
+using testing::absent;
 
 TEST_CASE("a real rotor recording: the cut last line and the points metres away are counted") {
   if (absent("rotor_calibration.a")) return;
-  const Recording recording = read_recording(real("rotor_calibration.a"));
+  const Recording recording = read_recording(testing::recording("rotor_calibration.a"));
   REQUIRE(recording.runs.size() == 1);
   const Run& run = recording.runs[0];
   CHECK(run.report.rows == 30611);
@@ -41,7 +29,7 @@ TEST_CASE("a real rotor recording: the cut last line and the points metres away 
 
 TEST_CASE("a real mill recording: all points are used and its long gaps are found") {
   if (absent("uct_mill_part1.a")) return;
-  const Recording recording = read_recording(real("uct_mill_part1.a"));
+  const Recording recording = read_recording(testing::recording("uct_mill_part1.a"));
   const Run& run = recording.runs[0];
   CHECK(run.report.rows == 16398);
   CHECK(run.report.unreadable == 0);
@@ -55,8 +43,8 @@ TEST_CASE("a real mill recording: all points are used and its long gaps are foun
 TEST_CASE("another code's recordings of one mill: five runs, duplicates, outliers, noise as stated") {
   if (absent("mill10_A_75_1.a")) return;
   const Scratch scratch;
-  const Recording recording = read_recording(
-      scratch.file("r.yaml", "files: \"" + std::filesystem::canonical(real(".")).string() + "/mill10_A_75_?.a\"\nformat: ctrack\n"));
+  const Recording recording =
+      read_recording(scratch.file("r.yaml", "files: \"" + testing::recording().string() + "mill10_A_75_?.a\"\nformat: ctrack\n"));
   REQUIRE(recording.runs.size() == 5);
   std::uint64_t rows = 0, dropped = 0, duplicates = 0;
   for (const Run& run : recording.runs) {
@@ -73,7 +61,7 @@ TEST_CASE("another code's recordings of one mill: five runs, duplicates, outlier
 
 TEST_CASE("a gzipped recording") {
   if (absent("mill10_long/mill10_A_75_01.a.gz")) return;
-  const Recording recording = read_recording(real("mill10_long/mill10_A_75_01.a.gz"));
+  const Recording recording = read_recording(testing::recording("mill10_long/mill10_A_75_01.a.gz"));
   CHECK(recording.runs[0].name == "mill10_A_75_01");
   CHECK(recording.runs[0].report.rows == 3032);
 }

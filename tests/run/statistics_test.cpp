@@ -61,7 +61,7 @@ TEST_CASE("means of constant, tiny and alternating series") {
   for (int k = 0; k < 100; ++k) alternating.push_back(k % 2);
   const Mean m = correlated_mean(alternating);
   CHECK(m.value == Approx(0.5));
-  CHECK(m.standard_error >= 0);
+  CHECK(m.standard_error == Approx(0.5 / 10));  // neighbours that undo each other: no more certain than independent ones
 }
 
 TEST_CASE("a drift is flagged, a stationary window is accepted") {

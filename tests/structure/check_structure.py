@@ -35,6 +35,7 @@ TEXT = CODE | {".md", ".yaml", ".yml", ".txt", ".cmake", ".json", ""}
 MACHINE_PATH = re.compile(r"(?<![\w.$}>)])/(home|root|work|Users|mnt)/\w")
 MARKER = re.compile(r"\b(" + "TO" + "DO|FIX" + r"ME|XX" + r"X)\b")
 TEST_CASE = re.compile(r'\bTEST_CASE\s*\(\s*((?:"(?:[^"\\\n]|\\.)*"\s*)+)')  # the name may be several literals
+HIDDEN = re.compile(r'"(?:\[[^\]"]*\])*(\[\.[^\]"]*\])')
 LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 
 
@@ -97,10 +98,20 @@ def check_names(relative, text):
         yield "%s:%d: the test '%s' would never run: %s; write it otherwise" % (relative, line, name, why)
 
 
+def check_hidden(relative, text, makefile):
+    """Tests that ctest does not see; what nobody runs cannot fail."""
+    if relative.startswith("tests/") and relative.endswith(".cpp"):
+        for found in HIDDEN.finditer(text):
+            if '"%s"' % found.group(1) not in makefile:
+                line = text.count("\n", 0, found.start()) + 1
+                yield "%s:%d: ctest does not see a test of %s, and no target of the Makefile runs it" % (relative, line, found.group(1))
+
+
 def check_tree(root):
     root = root.resolve()
     yield from include_graph.faults_of(root)
     libraries, long = kernel_libraries(root), {}
+    makefile = (root / "Makefile").read_text(encoding="utf-8") if (root / "Makefile").exists() else ""
     for path in include_graph.files_of(root):
         if path.suffix not in TEXT:
             continue
@@ -111,6 +122,7 @@ def check_tree(root):
             continue
         yield from check_links(relative, text, libraries)
         yield from check_names(relative, text)
+        yield from check_hidden(relative, text, makefile)
         yield from check_text(relative, path, text)
         long.update(long_functions(relative, text))
     yield from check_functions(long)

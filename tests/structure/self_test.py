@@ -50,7 +50,8 @@ SOUND = {
     "studies/compare/study/study.cpp": "#include \"studies/compare/compare.hpp\"\n",
     "studies/diagnose/diagnosis.cpp": "#include \"naming/naming.hpp\"\n#include \"studies/compare/compare.hpp\"\n",
     "studies/diagnose/naming/naming.hpp": "#include <Eigen/Dense>\n",
-    "tests/mine_test.cpp": 'TEST_CASE("one, a \\"two\\" (three: [4, 5]),") { f("a; b ["); }\nTEST_CASE("long: "\n          "two lines", "[.slow]") {}\n',
+    "tests/mine_test.cpp": 'TEST_CASE("one, a \\"two\\" (three: [4, 5]),") { f("a; b ["); }\nTEST_CASE("long: "\n          "two lines", "[x][.slow]") {}\n',
+    "Makefile": 'figures:\n\tmine_test "[.slow]"\n',
     "app/main.cpp": "#include <boost/program_options.hpp>\n#include \"studies/compare/compare.hpp\"\n"
                     "#include \"studies/diagnose/outputs.hpp\"\n",
 }
@@ -97,6 +98,7 @@ WRONG = [
     ("tests/d_test.cpp", 'TEST_CASE("from 0, 1] on") {}\n', "an unbalanced [ or ]"),
     ("tests/e_test.cpp", 'TEST_CASE("a \\\\ b", "[.slow]") {}\n', "a backslash"),
     ("tests/f_test.cpp", 'TEST_CASE("~ about") {}\n', "~ means every other"),
+    ("tests/g_test.cpp", 'TEST_CASE("a", "[.quick]") {}\n', "no target of the Makefile runs it"),
     ("app/a.cpp", "// TO" + "DO later\n", "a marker"),
     ("app/b.cpp", "int f(int x) {\n" + "  ++x;\n" * 59 + "}\n", "app/b.cpp:1: f has 61 lines"),
     ("app/long.cpp", "int x;\n" * 401, "401 lines"),

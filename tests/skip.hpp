@@ -1,0 +1,25 @@
+// Tests that cannot run everywhere: they say so and return, and ctest reports them as skipped, not as passed.
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
+
+namespace testing {
+
+/// Says that this test does not run here; it returns then. tests/CMakeLists.txt tells ctest the words.
+inline void skip(const std::string& why) { WARN("this test is skipped: " << why); }
+
+/// A recording, or the folder of all; they are large and lie beside the repository, where they are there at all.
+inline std::filesystem::path recording(const std::string& name = "") {
+  return std::filesystem::path(MILLSCOPE_SOURCE_DIR).parent_path() / "shared/recordings" / name;
+}
+
+/// Whether a recording is not there, which skips the test.
+inline bool absent(const std::string& name) {
+  if (std::filesystem::exists(recording(name))) return false;
+  skip(recording(name).string() + " is not there");
+  return true;
+}
+
+}  // namespace testing
