@@ -1,32 +1,21 @@
 #include "studies/picture/color.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
+
+#include "studies/picture/palette.hpp"
 
 namespace millscope::studies {
 namespace {
-
-constexpr std::size_t kKnots = 33;
-using Table = std::array<std::uint32_t, kKnots>;
-
-// Every eighth entry of the published tables; straight lines between them differ from the tables by less than 3/255.
-constexpr Table kViridis{0x440154, 0x470d60, 0x48186a, 0x482374, 0x472d7b, 0x453781, 0x424086, 0x3e4989, 0x3b528b, 0x375b8d, 0x33638d,
-                         0x2f6b8e, 0x2c728e, 0x297a8e, 0x26828e, 0x23898e, 0x21918c, 0x1f988b, 0x1fa088, 0x22a785, 0x28ae80, 0x32b67a,
-                         0x3fbc73, 0x4ec36b, 0x5ec962, 0x70cf57, 0x84d44b, 0x98d83e, 0xaddc30, 0xc2df23, 0xd8e219, 0xece51b, 0xfde725};
-constexpr Table kCoolWarm{0x3b4cc0, 0x445acc, 0x4e68d8, 0x5875e1, 0x6282ea, 0x6c8ff1, 0x779af7, 0x82a6fb, 0x8db0fe, 0x98b9ff, 0xa3c2fe,
-                          0xaec9fc, 0xb9d0f9, 0xc3d5f4, 0xccd9ed, 0xd5dbe5, 0xdddcdc, 0xe5d8d1, 0xecd3c5, 0xf1ccb8, 0xf5c4ac, 0xf7ba9f,
-                          0xf7b093, 0xf6a586, 0xf4987a, 0xf08b6e, 0xeb7d62, 0xe46e56, 0xdd5f4b, 0xd44e41, 0xca3b37, 0xbe242e, 0xb40426};
-constexpr std::array<std::uint32_t, 7> kOkabeIto{0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0x000000, 0x56b4e9, 0xe69f00};
 
 Color from_hex(std::uint32_t rgb) {
   return {static_cast<double>(rgb >> 16) / 255, static_cast<double>((rgb >> 8) & 255) / 255, static_cast<double>(rgb & 255) / 255, 1};
 }
 
-Color interpolate(const Table& table, double fraction) {
-  const double place = std::clamp(fraction, 0.0, 1.0) * (kKnots - 1);
-  const std::size_t knot = std::min(static_cast<std::size_t>(place), kKnots - 2);
+template <std::size_t knots>
+Color interpolate(const std::array<std::uint32_t, knots>& table, double fraction) {
+  const double place = std::clamp(fraction, 0.0, 1.0) * (knots - 1);
+  const std::size_t knot = std::min(static_cast<std::size_t>(place), knots - 2);
   const double part = place - static_cast<double>(knot);
   const Color a = from_hex(table[knot]), b = from_hex(table[knot + 1]);
   return {std::lerp(a.red, b.red, part), std::lerp(a.green, b.green, part), std::lerp(a.blue, b.blue, part), 1};
@@ -34,10 +23,10 @@ Color interpolate(const Table& table, double fraction) {
 
 }  // namespace
 
-Color sequential_color(double fraction) { return interpolate(kViridis, fraction); }
+Color sequential_color(double fraction) { return interpolate(kSequential, fraction); }
 
-Color diverging_color(double fraction) { return interpolate(kCoolWarm, fraction); }
+Color diverging_color(double fraction) { return interpolate(kDiverging, fraction); }
 
-Color distinct_color(std::size_t index) { return from_hex(kOkabeIto[index % kOkabeIto.size()]); }
+Color distinct_color(std::size_t index) { return from_hex(kDistinct[index % kDistinct.size()]); }
 
 }  // namespace millscope::studies

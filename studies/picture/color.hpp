@@ -10,13 +10,13 @@ struct Color {
   double red = 0, green = 0, blue = 0, alpha = 1;
 };
 
-/// viridis (Smith, van der Walt and Firing 2015): fraction 0 dark, 1 bright; outside it is held at the end.
+/// viridis: fraction 0 dark, 1 bright; outside it is held at the end.
 Color sequential_color(double fraction);
 
-/// Cool to warm through light grey (Moreland, Diverging Color Maps for Scientific Visualization, 2009): 0 blue, ½ neutral, 1 red.
+/// Cool to warm through light grey: 0 blue, ½ neutral, 1 red.
 Color diverging_color(double fraction);
 
-/// Unlike colours for curves (Okabe and Ito 2008), without their yellow, which is lost on white; repeats after seven.
+/// Unlike colours for curves and names; repeats after eight.
 Color distinct_color(std::size_t index);
 
 }  // namespace millscope::studies

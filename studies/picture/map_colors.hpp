@@ -1,4 +1,4 @@
-// Which colour a value of a map has.
+// Which colour a value of a map has. The page has the same rule in page/src/colours.js; tests/picture/colours.json holds both.
 #pragma once
 
 #include <cmath>

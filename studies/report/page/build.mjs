@@ -38,10 +38,19 @@ function licences(inputs) {
   }).join("\n");
 }
 
+/** Tables of palette.hpp, the header of the pictures, for src/colours.js. */
+function writePalette() {
+  const header = readFileSync(join(here, "palette.hpp"), "utf8");
+  const tables = [...header.matchAll(/> k(\w+)\{([^}]*)\};/g)].map(([, name, body]) => [name.toUpperCase(), body.match(/0x[0-9a-f]{6}/g).map((hex) => `#${hex.slice(2)}`)]);
+  if (tables.map(([name]) => name).join() !== "SEQUENTIAL,DIVERGING,DISTINCT") fail("palette.hpp has not the tables Sequential, Diverging and Distinct");
+  writeFileSync(join(here, "src/palette.js"), tables.map(([name, colours]) => `export const ${name} = ${JSON.stringify(colours)};\n`).join(""));
+}
+
 async function main() {
   const out = process.argv[2];
   if (!out || process.argv.length > 3) fail("usage: node build.mjs OUTDIR");
   if (!existsSync(join(here, "node_modules"))) fail(`there is no node_modules in ${here}: run npm ci there first`);
+  writePalette();
   const { build } = await import("esbuild");
   const common = { bundle: true, minify: true, write: false, target: "es2020", charset: "utf8", legalComments: "none", logLevel: "error" };
   const code = await build({ ...common, entryPoints: [join(here, "src/main.js")], format: "iife", metafile: true,

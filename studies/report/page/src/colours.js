@@ -1,13 +1,8 @@
-// Colours that colour-blind readers can tell apart: Okabe & Ito 2008 for lines, viridis (van der Walt & Smith 2015) for amounts, and for
-// signed values blue – grey – orange, whose brightness falls evenly on both sides of zero.
-
-export const LINES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a6d3b", "#7f7f7f"];
-
-const VIRIDIS = ["#440154", "#482475", "#414487", "#355f8d", "#2a788e", "#21918c", "#22a884", "#44bf70", "#7ad151", "#bddf26", "#fde725"];
-const DIVERGING = ["#08306b", "#2166ac", "#4393c3", "#92c5de", "#d1e5f0", "#f0f0f0", "#fde0c5", "#f4a66a", "#d9722b", "#a94a06", "#662506"];
+// The colours of the pictures (palette.js is made of studies/picture/palette.hpp when the page is built), and which of them a value has.
+import { DISTINCT, DIVERGING, SEQUENTIAL } from "./palette.js";
 
 const parse = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
-const SCALES = { viridis: VIRIDIS.map(parse), diverging: DIVERGING.map(parse) };
+const SCALES = { sequential: SEQUENTIAL.map(parse), diverging: DIVERGING.map(parse) };
 
 /** [red, green, blue], 0 … 255, at 0 … 1 of a scale. */
 export function channels(name, share) {
@@ -18,7 +13,28 @@ export function channels(name, share) {
 }
 
 export const colourAt = (name, share) => `rgb(${channels(name, share).join(",")})`;
-export const line = (index) => LINES[index % LINES.length];
+export const line = (index) => DISTINCT[index % DISTINCT.length];
+
+/** Colours of an amount: ends of the bar, and the place of a value on it. Single cells far outside do not set the ends, and zero is no
+ *  value. The rule of studies/picture/map_colors.cpp; tests/picture/colours.json holds both to it. */
+export function colouring(values, { signed } = {}) {
+  const known = values.filter((value) => Number.isFinite(value) && value !== 0).sort((a, b) => a - b);
+  if (known.length === 0) return null;
+  const at = (share) => known[Math.round(share * (known.length - 1))];
+  const [least, most] = [known[0], known[known.length - 1]];
+  let [low, high] = [at(0.01), at(0.99)];
+  const span = Math.max(high - low, 0.5 * Math.max(Math.abs(low), Math.abs(high)));
+  if (most - high < 0.3 * span) high = most;
+  if (low - least < 0.3 * span) low = least;
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  const isSigned = signed ?? (low < -0.05 * size && high > 0.05 * size);
+  if (isSigned) [low, high] = [-size, size];
+  else if (high > 0 && low < 0.5 * high) low = 0; // from zero, unless that would waste more than half of the scale
+  else if (high < 0 && high > 0.5 * low) high = 0;
+  if (!(high > low)) [low, high] = [low - 0.5 * size, high + 0.5 * size];
+  const name = isSigned ? "diverging" : "sequential";
+  return { name, low, high, least, most, colour: (value) => colourAt(name, (value - low) / (high - low)) };
+}
 
 let printing = false;
 /** Paper is white, whatever the screen is. */

@@ -21,36 +21,14 @@ function gridFor({ width, height }, x, y, square) {
     height: height - MARGIN.top - MARGIN.bottom, outerBoundsMode: "none" };
 }
 
-/** Colours of an amount: ends of the bar, and the place of a value on it. Single cells far outside do not set the ends. */
-export function colouring(values, { signed } = {}) {
-  const known = values.filter(Number.isFinite).sort((a, b) => a - b);
-  if (known.length === 0) return null;
-  const at = (share) => known[Math.min(known.length - 1, Math.floor(share * known.length))];
-  const most = known[known.length - 1];
-  const least = known[0] < 0 && -known[0] < 1e-6 * most ? 0 : known[0]; // what rounding leaves below zero is no amount
-  const isSigned = signed ?? (least < 0 && most > 0 && -least > 0.02 * most);
-  let low = Math.min(0, least);
-  let high = most;
-  if (isSigned) {
-    const common = Math.max(-at(0.01), at(0.99));
-    high = Math.max(-least, most) > 2 * common && common > 0 ? common : Math.max(-least, most);
-    low = -high;
-  } else {
-    low = least >= 0 && least > 0.5 * most ? least : low;
-    if (most > 2.5 * at(0.99) && at(0.99) > 0) high = at(0.99);
-  }
-  if (high === low) high = low + (Math.abs(low) || 1);
-  const name = isSigned ? "diverging" : "viridis";
-  return { name, low, high, least, most, colour: (value) => colourAt(name, (value - low) / (high - low)) };
-}
-
 /** The bar below a map that says what the colours mean; prints as it is. */
 export function colourBar(scale, { name, unit }) {
   if (!scale) return null;
   const id = freshId("ramp");
   const stops = [...Array(11).keys()].map((step) =>
     svg("stop", { offset: `${step * 10}%`, "stop-color": colourAt(scale.name, step / 10) }));
-  const beyond = scale.most > scale.high || scale.least < scale.low
+  const rounding = 1e-9 * (scale.high - scale.low);
+  const beyond = scale.most > scale.high + rounding || scale.least < scale.low - rounding
     ? ` (single values from ${number(scale.least, 3)} to ${number(scale.most, 3)})` : "";
   const ends = [scale.low, (scale.low + scale.high) / 2, scale.high].map((value) => element("span", null, number(value, 3)));
   return element("div", { class: "colour-bar" },

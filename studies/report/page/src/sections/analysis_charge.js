@@ -1,12 +1,12 @@
 // The charge's outline on the map of where its beads are.
 import { block, element, figure, table } from "../dom.js";
-import { LINES } from "../colours.js";
+import { line } from "../colours.js";
 import { among, interval, isNumber, scale } from "../numbers.js";
 import { drawMap, isMap } from "./analysis_maps.js";
 
 // Angles of charge_features, degrees from 6 o'clock in the turning sense.
-const ANGLES = [["departure_shoulder", "shoulder", LINES[1]], ["bulk_toe", "toe", LINES[4]], ["impact_toe", "impact toe", LINES[3]], ["head_angle", "head", LINES[5]]];
-const PLACES = [["centre_of_circulation", "centre of circulation", LINES[1]], ["centre_of_mass", "centre of mass", LINES[4]]];
+const ANGLES = [["departure_shoulder", "shoulder", line(1)], ["bulk_toe", "toe", line(4)], ["impact_toe", "impact toe", line(3)], ["head_angle", "head", line(5)]];
+const PLACES = [["centre_of_circulation", "centre of circulation", line(1)], ["centre_of_mass", "centre of mass", line(4)]];
 const TABLE = [["departure_shoulder", "shoulder: the flow begins to leave the shell"], ["departure_median", "half of the flow has left the shell"], ["head_angle", "head: highest part of the charge"],
   ["bulk_toe", "toe of the bulk: half of the flow is back"], ["farthest_toe", "farthest toe"], ["impact_toe", "impact toe: median of the flights' ends"],
   ["free_surface_angle", "free surface, from the horizontal"], ["centre_of_circulation_x", "centre of circulation, x"], ["centre_of_circulation_y", "centre of circulation, y"],

@@ -1,10 +1,11 @@
 // Results with two dimensions as coloured maps.
 import { element, figure } from "../dom.js";
-import { LINES } from "../colours.js";
+import { colouring, line } from "../colours.js";
 import { capital, interval, isNumber, number, readable, scale, words } from "../numbers.js";
-import { colourBar, colouring, colourKey, map } from "../plots/map.js";
+import { colourBar, colourKey, map } from "../plots/map.js";
 
-const NAMES = ["transparent", LINES[0], LINES[5], LINES[4], LINES[3], LINES[2], LINES[1], LINES[7]];
+const MOST_NAMES = 8;
+const colourOfName = (value) => (value === 0 ? "transparent" : line(value - 1));
 
 export const axisName = (axis) => words(axis.name.replace(/_?(edges|centres|centers)/, "").replace(/_(deg|m|s)$/, "")) || "place";
 const along = (axis, letter) => Boolean(axis) && new RegExp(`^${letter}(_|$)`).test(axis.name);
@@ -24,7 +25,7 @@ export function edgesOf(values, count) {
 /** [[number, name] …] of a map of names: "0 nothing, 1 en masse, …". */
 function namesIn(result) {
   const found = [...(result.doc ?? "").matchAll(/(?:^|[,;] )(\d) ([a-z][a-z ]*)/g)].map((one) => [Number(one[1]), one[2].trim()]);
-  const whole = result.value.every((value) => value === null || (Number.isInteger(value) && value >= 0 && value < NAMES.length));
+  const whole = result.value.every((value) => value === null || (Number.isInteger(value) && value >= 0 && value <= MOST_NAMES));
   return found.length > 1 && found[0][0] === 0 && whole ? found : null;
 }
 
@@ -70,14 +71,14 @@ export function drawMap(key, result, shell, more = {}) {
   const [x, y] = found.axes;
   const names = namesIn(result);
   const colours = names ? null : colouring(found.values);
-  const colour = names ? (value) => NAMES[value] ?? "#888888" : colours?.colour;
+  const colour = names ? colourOfName : colours?.colour;
   const title = capital(words(result.name));
   const tell = names ? (index) => [[found.tell(index)[0][0], names.find(([number_]) => number_ === found.values[index])?.[1] ?? String(found.values[index])]] : found.tell;
   const ends = (axis) => ({ name: axis.name, unit: axis.unit, min: axis.edges[0], max: axis.edges[axis.edges.length - 1] });
   const known = found.values.filter(Number.isFinite).length;
   const drawn = map(key, { label: `${title}: map of ${known} cells. ${more.label ?? result.doc ?? ""}`, x: ends(x), y: ends(y), square: found.square,
     cells: { edgesX: x.edges, edgesY: y.edges, values: found.values, tell }, colour: colour ?? (() => "transparent"), shell: found.shell, marks: more.marks ?? [], title });
-  const below = names ? colourKey(names.filter(([value]) => value > 0).map(([value, name]) => [NAMES[value], name])) : colourBar(colours, { name: words(result.name), unit: found.unit });
+  const below = names ? colourKey(names.filter(([value]) => value > 0).map(([value, name]) => [colourOfName(value), name])) : colourBar(colours, { name: words(result.name), unit: found.unit });
   return [drawn, below];
 }
 

@@ -2,7 +2,8 @@
 import { block, disclosure, element, figure, table } from "../dom.js";
 import { isNumber, number, words } from "../numbers.js";
 import { lines } from "../plots/lines.js";
-import { colourBar, colouring } from "../plots/map.js";
+import { colouring } from "../colours.js";
+import { colourBar } from "../plots/map.js";
 import { plane } from "../plots/plane.js";
 import { range, roundRange } from "../plots/axes.js";
 import { scaleOf, titleOf } from "./parameters.js";

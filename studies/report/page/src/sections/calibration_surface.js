@@ -1,7 +1,8 @@
 // The quadratic surface of a calibration: contours, the same to be turned in 3-D, coefficients and what the fit is worth.
 import { block, element, figure, list, note, paragraph, table } from "../dom.js";
 import { capital, interval, isNumber, number, percent, probability, words } from "../numbers.js";
-import { colourBar, colouring } from "../plots/map.js";
+import { colouring } from "../colours.js";
+import { colourBar } from "../plots/map.js";
 import { levels, plane } from "../plots/plane.js";
 import { Surface } from "../three/surface.js";
 

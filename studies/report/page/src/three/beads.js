@@ -45,7 +45,7 @@ function outline(sides) {
 
 function ramp() {
   const bytes = new Uint8Array(256 * 4);
-  for (let index = 0; index < 256; index++) bytes.set([...channels("viridis", index / 255), 255], 4 * index);
+  for (let index = 0; index < 256; index++) bytes.set([...channels("sequential", index / 255), 255], 4 * index);
   const texture = new DataTexture(bytes, 256, 1, RGBAFormat, UnsignedByteType);
   texture.needsUpdate = true;
   return texture;

@@ -102,7 +102,7 @@ export class Mill {
 
   drawLegend(top) {
     const id = freshId("speed");
-    const stops = [...Array(11).keys()].map((step) => svg("stop", { offset: `${step * 10}%`, "stop-color": `rgb(${channels("viridis", step / 10).join(",")})` }));
+    const stops = [...Array(11).keys()].map((step) => svg("stop", { offset: `${step * 10}%`, "stop-color": `rgb(${channels("sequential", step / 10).join(",")})` }));
     this.legend.replaceChildren(
       element("div", { class: "ramp" }, svg("svg", { "aria-hidden": "true", width: "100%", height: 12, preserveAspectRatio: "none" },
         svg("defs", null, svg("linearGradient", { id }, stops)), svg("rect", { width: "100%", height: 12, fill: `url(#${id})` }))),

@@ -19,7 +19,7 @@ function sheet({ xs, ys, values }, low, high) {
     const [column, row] = [index % xs.length, Math.floor(index / xs.length)];
     const share = shareOf(values[index], low, high);
     positions.set([place(column / (xs.length - 1), 0), place(share, 1), -place(row / (ys.length - 1), 2)], 3 * index);
-    const [red, green, blue] = channels("viridis", share);
+    const [red, green, blue] = channels("sequential", share);
     colour.setRGB(red / 255, green / 255, blue / 255, SRGBColorSpace);
     colours.set([colour.r, colour.g, colour.b], 3 * index);
     if (column + 1 < xs.length && row + 1 < ys.length) {
