@@ -113,9 +113,9 @@ Bed bed_of(const run::Assembly& a) {
     const dem::PositionLine& x = s.particles.position[i];
     const dem::MotionLine& m = s.particles.motion[i];
     if (x.radius != bed.radius) throw UserError("millscope_bench compares codes with beads of one size; take a case with one");
-    double z = x.z;
+    double z = x.centre[2];
     if (bed.period > 0) z -= bed.period * std::floor((z - s.settings().periodic_low[2]) / bed.period);
-    bed.beads[i] = {{x.x, x.y, z}, {m.v[0], m.v[1], m.v[2]}, {m.w[0], m.w[1], m.w[2]}};
+    bed.beads[i] = {{x.centre[0], x.centre[1], z}, {m.v[0], m.v[1], m.v[2]}, {m.w[0], m.w[1], m.w[2]}};
   }
   return bed;
 }

@@ -2,15 +2,16 @@
 #include <algorithm>
 
 #include "kernel/dem/slab.hpp"
+#include "millscope/pack.hpp"
 
 namespace millscope::dem {
 namespace {
 
-constexpr std::size_t kDoubleArrays = 80;
+static_assert(kPadding == kLanes);
 
 void fill(double* array, std::int64_t count, double value) { std::fill(array, array + count, value); }
 
-InteractionBatch interaction_batch(const BatchRun& run, bool pre, std::int64_t padded, BatchArrays& b) {
+InteractionBatch interaction_batch(const BatchRun& run, bool pre, std::int64_t padded, ContactArrays& b) {
   InteractionBatch r{};
   r.count = padded;
   r.time_step = run.time_step;
@@ -34,7 +35,7 @@ InteractionBatch interaction_batch(const BatchRun& run, bool pre, std::int64_t p
   return r;
 }
 
-ContactBatch contact_batch(const BatchRun& run, std::int64_t padded, BatchArrays& b) {
+ContactBatch contact_batch(const BatchRun& run, std::int64_t padded, ContactArrays& b) {
   ContactBatch r{};
   r.count = padded;
   r.time_step = run.time_step;
@@ -55,7 +56,7 @@ struct Place {
   std::size_t history, channel;
 };
 
-void run_interactions(const BatchRun& run, bool pre, std::int64_t padded, BatchArrays& b, PairLedger& ledger) {
+void run_interactions(const BatchRun& run, bool pre, std::int64_t padded, ContactArrays& b, PairLedger& ledger) {
   Place at{run.physics->law.table->info.history_count, run.physics->law.table->info.channel_count};
   for (const InteractionReference& i : run.physics->interactions) {
     if (i.pre == pre) {
@@ -72,7 +73,7 @@ void run_interactions(const BatchRun& run, bool pre, std::int64_t padded, BatchA
   }
 }
 
-void run_pair_parameters(const BatchRun& run, std::int64_t padded, BatchArrays& b, ContactBatch& contacts) {
+void run_pair_parameters(const BatchRun& run, std::int64_t padded, ContactArrays& b, ContactBatch& contacts) {
   std::size_t history = run.physics->law.table->info.history_count;
   for (const InteractionReference& i : run.physics->interactions) history += i.table->info.history_count;
   for (const PairParameterReference& p : run.physics->pair_parameters) {
@@ -98,8 +99,8 @@ void run_pair_parameters(const BatchRun& run, std::int64_t padded, BatchArrays& 
 
 }  // namespace
 
-void evaluate(const BatchRun& run, BatchArrays& b, PairLedger& ledger) {
-  const std::int64_t padded = (run.count + 7) / 8 * 8;
+void evaluate(const BatchRun& run, ContactArrays& b, PairLedger& ledger) {
+  const std::int64_t padded = padded_count(run.count);
   ContactBatch contacts = contact_batch(run, padded, b);
   if (!run.physics->pair_parameters.empty()) run_pair_parameters(run, padded, b, contacts);
   const bool pre = run.physics->has_pre(), post = run.physics->has_post();
@@ -135,7 +136,7 @@ void evaluate(const BatchRun& run, BatchArrays& b, PairLedger& ledger) {
   }
 }
 
-void count_collisions(std::int64_t count, const BatchArrays& b, PairLedger& ledger) {
+void count_collisions(std::int64_t count, const ContactArrays& b, PairLedger& ledger) {
   for (std::int64_t k = 0; k < count; ++k) {
     if (!b.fresh[k]) continue;
     const double closing = -(b.velocity[0][k] * b.normal[0][k] + b.velocity[1][k] * b.normal[1][k] + b.velocity[2][k] * b.normal[2][k]);
@@ -148,48 +149,8 @@ void count_collisions(std::int64_t count, const BatchArrays& b, PairLedger& ledg
   }
 }
 
-void note_overlap(std::int64_t count, const BatchArrays& b, PairLedger& ledger) {
+void note_overlap(std::int64_t count, const ContactArrays& b, PairLedger& ledger) {
   for (std::int64_t k = 0; k < count; ++k) ledger.largest_overlap = std::max(ledger.largest_overlap, b.overlap[k] / b.radius[k]);
-}
-
-System::Scratch::Scratch(int history_count) {
-  const std::size_t stride = static_cast<std::size_t>(kBatchStride);
-  doubles_.assign((kDoubleArrays + static_cast<std::size_t>(history_count)) * stride, 0.0);
-  double* next = doubles_.data();
-  const auto take = [&next, stride] {
-    double* p = next;
-    next += stride;
-    return p;
-  };
-  for (auto* group : {&batch.difference, &batch.normal, &batch.velocity, &batch.spin_sum, &batch.spin_i, &batch.spin_j, &batch.force,
-                      &batch.torque_i, &batch.torque_j, &batch.moment_i, &batch.moment_j}) {
-    for (double*& p : *group) p = take();
-  }
-  for (double** p :
-       {&batch.overlap, &batch.radius_i, &batch.radius_j, &batch.radius, &batch.mass, &batch.arm_i, &batch.arm_j, &batch.normal_force,
-        &batch.normal_stiffness, &batch.added_force, &batch.added_cap, &batch.restitution, &batch.friction, &query_radius, &wall.overlap}) {
-    *p = take();
-  }
-  for (double*& p : batch.power) p = take();
-  for (double*& p : query_position) p = take();
-  for (double*& p : wall.normal) p = take();
-  for (double*& p : body_arrays) p = take();
-  for (int h = 0; h < history_count; ++h) batch.history[h] = take();
-  integers_.assign(7 * stride, 0);
-  batch.owner = integers_.data();
-  batch.partner = batch.owner + stride;
-  batch.slot = batch.partner + stride;
-  batch.source = batch.slot + stride;
-  wall.feature = batch.source + stride;
-  wall.triangle = wall.feature + stride;
-  wall.material = wall.triangle + stride;
-  bytes_.assign(stride, 0);
-  batch.fresh = bytes_.data();
-  signed_.assign(stride, 0);
-  wall.bead = signed_.data();
-  wall.capacity = kBatch;
-  pair.resize(stride);
-  normal.resize(stride);
 }
 
 }  // namespace millscope::dem

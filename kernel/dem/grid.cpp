@@ -9,14 +9,14 @@
 namespace millscope::dem {
 namespace {
 
-double component(const PositionLine& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
-
 double speed(const MotionLine& m) { return std::sqrt(m.v[0] * m.v[0] + m.v[1] * m.v[1] + m.v[2] * m.v[2]); }
 
 /// The skin is cut by what rounding to single precision may hide of a displacement.
 ReferenceLine reference_of(const PositionLine& x, double skin) {
-  const double hidden = 2e-7 * (std::abs(x.x) + std::abs(x.y) + std::abs(x.z)), allowed = std::max(0.0, skin - hidden);
-  return {static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z), static_cast<float>(allowed * allowed)};
+  const double hidden = 2e-7 * (std::abs(x.centre[0]) + std::abs(x.centre[1]) + std::abs(x.centre[2])),
+               allowed = std::max(0.0, skin - hidden);
+  const auto single = [](double v) { return static_cast<float>(v); };
+  return {{single(x.centre[0]), single(x.centre[1]), single(x.centre[2])}, single(allowed * allowed)};
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ void System::sort_beads() {
     for (std::int64_t i = slab_begin(slab); i < slab_begin(slab + 1); ++i) {
       const std::size_t k = static_cast<std::size_t>(i);
       PositionLine& x = p.position[k];
-      double* c = &x.x;
+      double* c = x.centre;
       for (int a = 0; a < 3; ++a) {
         c[a] = wrapped(settings_, a, c[a]);
         if (!(c[a] >= settings_.low[a] && c[a] <= settings_.high[a])) e.lost = i;
@@ -48,7 +48,7 @@ void System::sort_beads() {
       }
       const double skin = std::min(settings_.skin_cap * largest_radius,
                                    settings_.skin_base * x.radius + settings_.skin_steps * settings_.time_step * speed(p.motion[k]));
-      reaches_[k] = {x.x, x.y, x.z, x.radius + skin + 0.5 * law_reach};
+      reaches_[k] = {{c[0], c[1], c[2]}, x.radius + skin + 0.5 * law_reach};
       p.reference[k] = reference_of(x, skin);
       e.reach = std::max(e.reach, reaches_[k].radius);
     }
@@ -91,7 +91,7 @@ void System::sort_beads() {
   const auto cell_of = [this](const PositionLine& x) {
     std::uint32_t cell = 0;
     for (const int a : grid_.axis) {
-      const int c = std::clamp(static_cast<int>((component(x, a) - grid_.low[a]) * grid_.inverse_edge[a]), 0, grid_.cells[a] - 1);
+      const int c = std::clamp(static_cast<int>((x.centre[a] - grid_.low[a]) * grid_.inverse_edge[a]), 0, grid_.cells[a] - 1);
       cell = cell * static_cast<std::uint32_t>(grid_.cells[a]) + static_cast<std::uint32_t>(c);
     }
     return cell;

@@ -28,6 +28,6 @@ inline double dot(const Row& a, const Row& b) { return a[0] * b[0] + a[1] * b[1]
 
 /// Centre of a bead. Periodic coordinates are wrapped at list rebuilds only: wrapped here, a bead that crosses the boundary would jump away
 /// from the features that were listed for it. A surface must therefore reach a skin beyond the box (mesh: `period`).
-inline Row centre(const PositionLine& x) { return {x.x, x.y, x.z}; }
+inline Row centre(const PositionLine& x) { return {x.centre[0], x.centre[1], x.centre[2]}; }
 
 }  // namespace millscope::dem

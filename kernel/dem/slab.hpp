@@ -1,6 +1,7 @@
 // Scratch and results of slabs and workers; internal to the core.
 #pragma once
 
+#include "kernel/dem/scratch.hpp"
 #include "kernel/dem/system.hpp"
 
 namespace millscope::dem {
@@ -8,7 +9,7 @@ namespace millscope::dem {
 struct SlabState {
   std::vector<PairList> lists;  ///< one per pair of materials (those with a wall stay empty)
   AlignedVector<ForceLine> halo;
-  ForceWindow force{nullptr, -1};       ///< in use during this step
+  ForceWindow force;                    ///< in use during this step
   std::vector<std::uint32_t> frontier;  ///< [batch of the last list]: the first bead that it and earlier ones do not touch
   std::int64_t ring = 0;                ///< lines that a ring needs, a power of two; 0: the slab is no longer than that
   std::vector<WallSlab> walls;          ///< one per body
@@ -22,31 +23,8 @@ struct System::PairSweep {
   int slab;
   std::size_t physics;
   PairListView list;
-  BatchArrays batch;
+  PairBatch batch;
   GatherContext gather;
-};
-
-/// One worker's arrays for a batch, and for the wall query before it.
-struct System::Scratch {
-  explicit Scratch(int history_count);
-
-  BatchArrays batch{};
-  GeometryContacts wall{};
-  std::vector<std::uint32_t> found;
-  double* query_position[3];
-  double* query_radius;
-  std::vector<std::int32_t> pair;             ///< physics of each wall contact
-  std::vector<std::array<double, 3>> normal;  ///< of each wall contact, world frame
-  double* body_arrays[17];                    ///< for BodyForceBatch
-  std::vector<double> added_mass;
-  std::vector<std::uint8_t> fresh;  ///< of each wall contact
-  AlignedVector<ForceLine> ring;    ///< for ForceWindow
-
- private:
-  AlignedVector<double> doubles_;
-  std::vector<std::uint32_t> integers_;
-  std::vector<std::uint8_t> bytes_;
-  std::vector<std::int32_t> signed_;
 };
 
 /// Runs all physics of one pair of materials over a batch whose geometry and histories are filled, and books it.
@@ -56,10 +34,10 @@ struct BatchRun {
   std::int64_t count;
   bool per_contact;  ///< fill batch.power of each contact
 };
-void evaluate(const BatchRun& run, BatchArrays& batch, PairLedger& ledger);
+void evaluate(const BatchRun& run, ContactArrays& batch, PairLedger& ledger);
 
 /// Books first touches and, now and then, the largest overlap.
-void count_collisions(std::int64_t count, const BatchArrays& batch, PairLedger& ledger);
-void note_overlap(std::int64_t count, const BatchArrays& batch, PairLedger& ledger);
+void count_collisions(std::int64_t count, const ContactArrays& batch, PairLedger& ledger);
+void note_overlap(std::int64_t count, const ContactArrays& batch, PairLedger& ledger);
 
 }  // namespace millscope::dem

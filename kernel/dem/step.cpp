@@ -22,7 +22,7 @@ void System::contacts(int slab, int worker, bool finish_too) {
   state.ledger.reset_instant();
   state.result = {false, -1};
   const bool in_ring = finish_too && state.ring > 0;
-  state.force = in_ring ? ForceWindow{scratch.ring.data(), state.ring - 1} : ForceWindow{particles.force.data(), -1};
+  state.force = in_ring ? ForceWindow::ring(scratch.ring.data(), state.ring) : ForceWindow{particles.force.data()};
   const std::int64_t slab_end = slab_begin(slab + 1);
   begin_walls(slab);
   std::int64_t finished = slab_begin(slab);
@@ -32,7 +32,7 @@ void System::contacts(int slab, int worker, bool finish_too) {
     PairListView& list = sweep.list;
     for (std::int64_t first = 0; first < list.count; first += kBatch) {
       const std::int64_t last = std::min(list.count, first + kBatch);
-      list.written += pair_batch(sweep, first, last);
+      pair_batch(sweep, first, last);
       if (p == last_list_ && last < list.count && last % (kTrail * kBatch) == 0) {
         walls(slab, worker, list.owner[last]);
         if (finish_too) finish(slab, worker, {finished, list.owner[last]});
@@ -50,7 +50,7 @@ void System::contacts(int slab, int worker, bool finish_too) {
 System::PairSweep System::begin_pairs(int slab, int worker, std::size_t p) {
   const PairPhysics& physics = physics_[p];
   const Equality& equality = equality_[p];
-  PairSweep sweep{slab, p, slabs_[static_cast<std::size_t>(slab)]->lists[p].view(), scratch_[static_cast<std::size_t>(worker)]->batch, {}};
+  PairSweep sweep{slab, p, slabs_[static_cast<std::size_t>(slab)]->lists[p].view(), scratch_[static_cast<std::size_t>(worker)]->pairs, {}};
   if (equality.equal) {
     // Arrays that hold the same number everywhere, made once.
     sweep.batch.radius = equality.arrays[0]->data();
@@ -84,21 +84,21 @@ void System::look_ahead(PairSweep& sweep, std::int64_t first) const {
   const std::int64_t slab_end = slab_begin(sweep.slab + 1);
   if (gather.ahead >= slab_end) {
     gather.ahead_force = state.halo.data() + (gather.ahead - slab_end);
-  } else if (state.force.mask == -1) {
+  } else if (!state.force.is_ring()) {
     gather.ahead_force = particles.force.data() + gather.ahead;
     gather.ahead_end = std::min(gather.ahead_end, slab_end);
   }
 }
 
-/// Contacts among the list slots [first, last). Returns their number.
-std::int64_t System::pair_batch(PairSweep& sweep, std::int64_t first, std::int64_t last) {
+/// Contacts among the list slots [first, last).
+void System::pair_batch(PairSweep& sweep, std::int64_t first, std::int64_t last) {
   SlabState& state = *slabs_[static_cast<std::size_t>(sweep.slab)];
   const PairPhysics& physics = physics_[sweep.physics];
   PairListView& list = sweep.list;
-  BatchArrays& batch = sweep.batch;
+  PairBatch& batch = sweep.batch;
   look_ahead(sweep, first);
   const std::int64_t count = wide_->search(sweep.gather, list, first, last, batch);
-  if (count == 0) return 0;
+  if (count == 0) return;
   state.lists[sweep.physics].make_room(list);
   wide_->gather(sweep.gather, list, count, batch);
   PairLedger& ledger = state.ledger.pairs[sweep.physics];
@@ -108,7 +108,6 @@ std::int64_t System::pair_batch(PairSweep& sweep, std::int64_t first, std::int64
   evaluate({&physics, settings_.time_step, count, false}, batch, ledger);
   const ScatterContext scatter{state.force, state.halo.data(), slab_begin(sweep.slab + 1), sweep.gather.equal};
   wide_->scatter(scatter, list, count, physics.has_post(), batch);
-  return count;
 }
 
 /// How far each batch reaches, and the length of the ring that serves a slab: the most beads that carry forces at once, in the order in
@@ -182,37 +181,37 @@ void System::add_halos(int slab, BeadRange range) {
 void System::apply_body_forces(int slab, int worker, BeadRange range) {
   SlabState& state = *slabs_[static_cast<std::size_t>(slab)];
   Scratch& scratch = *scratch_[static_cast<std::size_t>(worker)];
-  double* const* array = scratch.body_arrays;
+  const BodyForceArrays& b = scratch.bodies;
   for (std::int64_t begin = range.begin; begin < range.end; begin += kBatch) {
     const std::int64_t count = std::min(kBatch, range.end - begin);
     for (std::int64_t k = 0; k < count; ++k) {
       const std::size_t i = static_cast<std::size_t>(begin + k);
-      const double* x = &particles.position[i].x;
+      const PositionLine& x = particles.position[i];
       const MotionLine& m = particles.motion[i];
       for (int a = 0; a < 3; ++a) {
-        array[a][k] = x[a];
-        array[3 + a][k] = m.v[a];
-        array[6 + a][k] = m.w[a];
-        array[11 + a][k] = array[14 + a][k] = 0.0;
+        b.position[a][k] = x.centre[a];
+        b.velocity[a][k] = m.v[a];
+        b.spin[a][k] = m.w[a];
+        b.force[a][k] = b.moment[a][k] = 0.0;
       }
-      array[9][k] = particles.position[i].radius;
-      array[10][k] = 1.0 / m.inverse_mass;
+      b.radius[k] = x.radius;
+      b.mass[k] = 1.0 / m.inverse_mass;
+      b.added_mass[k] = 0.0;
     }
-    scratch.added_mass.assign(static_cast<std::size_t>(count), 0.0);
     for (std::size_t f = 0; f < body_forces.size(); ++f) {
       double uniform[3];
       if (body_forces[f].table->uniform(body_forces[f].self, time(), uniform)) continue;
       BodyForceBatch batch{count,
                            time(),
                            settings_.time_step,
-                           {array[0], array[1], array[2]},
-                           {array[3], array[4], array[5]},
-                           {array[6], array[7], array[8]},
-                           array[9],
-                           array[10],
-                           {array[11], array[12], array[13]},
-                           {array[14], array[15], array[16]},
-                           scratch.added_mass.data(),
+                           {b.position[0], b.position[1], b.position[2]},
+                           {b.velocity[0], b.velocity[1], b.velocity[2]},
+                           {b.spin[0], b.spin[1], b.spin[2]},
+                           b.radius,
+                           b.mass,
+                           {b.force[0], b.force[1], b.force[2]},
+                           {b.moment[0], b.moment[1], b.moment[2]},
+                           b.added_mass,
                            0.0};
       body_forces[f].table->evaluate(body_forces[f].self, &batch);
       state.ledger.body_force_work[f] += batch.power_sum * settings_.time_step;
@@ -220,13 +219,13 @@ void System::apply_body_forces(int slab, int worker, BeadRange range) {
     for (std::int64_t k = 0; k < count; ++k) {
       ForceLine& line = state.force[begin + k];
       for (int a = 0; a < 3; ++a) {
-        line.f[a] += array[11 + a][k];
-        line.t[a] += array[14 + a][k];
+        line.f[a] += b.force[a][k];
+        line.t[a] += b.moment[a][k];
       }
-      const double added = scratch.added_mass[static_cast<std::size_t>(k)];
+      const double added = b.added_mass[k];
       if (added != 0.0) {
         // (m + m_a) a = ΣF + m g: scale so that the integrator's F/m + g gives that.
-        const double mass = array[10][k], ratio = mass / (mass + added);
+        const double mass = b.mass[k], ratio = mass / (mass + added);
         for (std::size_t a = 0; a < 3; ++a) line.f[a] = ratio * (line.f[a] + mass * acceleration_[a]) - mass * acceleration_[a];
       }
     }
@@ -305,7 +304,7 @@ std::string System::complaint(std::int64_t bead, const char* what) const {
       "at t = %.6g s bead %u %s: centre (%.4g, %.4g, %.4g) m, velocity (%.4g, %.4g, %.4g) m/s. Likely causes, in order: a time step "
       "too long for the stiffness (lower time.step_fraction), beads that overlapped walls or each other at the start, a liner with "
       "an open edge (millscope geometry report)",
-      time(), particles.id[i], what, x.x, x.y, x.z, m.v[0], m.v[1], m.v[2]);
+      time(), particles.id[i], what, x.centre[0], x.centre[1], x.centre[2], m.v[0], m.v[1], m.v[2]);
   return line;
 }
 

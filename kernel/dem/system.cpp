@@ -206,9 +206,7 @@ std::array<double, 3> System::centre_of_mass() const {
   for (std::size_t i = 0; i < particles.position.size(); ++i) {
     const double m = 1.0 / particles.motion[i].inverse_mass;
     const PositionLine& x = particles.position[i];
-    sum[0] += m * x.x;
-    sum[1] += m * x.y;
-    sum[2] += m * x.z;
+    for (std::size_t a = 0; a < 3; ++a) sum[a] += m * x.centre[a];
     mass += m;
   }
   for (double& s : sum) s /= mass;
@@ -258,8 +256,7 @@ std::uint64_t System::state_hash() const {
     hash.add(&particles.id[i], sizeof particles.id[i]);
     const PositionLine& x = particles.position[i];
     // Periodic coordinates are wrapped at rebuilds only: hash them wrapped.
-    const double* c = &x.x;
-    for (int a = 0; a < 3; ++a) add(hash, wrapped(settings_, a, c[a]));
+    for (int a = 0; a < 3; ++a) add(hash, wrapped(settings_, a, x.centre[a]));
     for (int a = 0; a < 3; ++a) add(hash, particles.half[i].v[a]);
     for (int a = 0; a < 3; ++a) add(hash, particles.half[i].w[a]);
   }
@@ -305,24 +302,6 @@ std::uint64_t System::state_hash() const {
     }
   }
   return hash.value();
-}
-
-std::size_t System::memory_bytes() const {
-  const std::size_t n = particles.position.size();
-  std::size_t bytes = n * (2 * sizeof(PositionLine) + 3 * sizeof(MotionLine) + sizeof(AccelerationLine) + sizeof(ReferenceLine) + 13);
-  for (const auto& slab : slabs_) {
-    for (const PairList& list : slab->lists) {
-      bytes += list.owner.capacity() * 9;
-      for (const auto& h : list.history) bytes += 8 * h.capacity();
-      for (const auto& h : list.next) bytes += 8 * h.capacity();
-    }
-    bytes += slab->halo.capacity() * sizeof(ForceLine);
-    for (const WallSlab& wall : slab->walls) {
-      bytes += wall.bead.capacity() * 12 + wall.candidates.capacity() * 4 +
-               wall.active.bead.capacity() * (32 + 8 * wall.active.history.size()) * 2;
-    }
-  }
-  return bytes;
 }
 
 }  // namespace millscope::dem

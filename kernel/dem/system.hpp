@@ -1,7 +1,8 @@
 // The moving charge: beads, lists, walls and the step that advances them.
 //
 // One step, all in a fixed number K of slabs (contiguous ranges of beads in cell order), whatever the number of threads:
-//   A  each slab: its beads at the walls, then the pairs owned by its beads (forces on beads of later slabs go to its halo);
+//   A  each slab: the pairs owned by its beads (forces on beads of later slabs go to its halo); the walls trail a few batches behind, for
+//      the beads that the pairs have passed;
 //   B  each slab: adds the halos of the earlier slabs in slab order, body forces, kick–drift–predict.
 // A pair's owner comes first in the order of cells, so once a slab has been through A nobody but earlier slabs reads or pushes its beads:
 // where these belong to the same worker, B follows at once, while the slab is still in the cache. The arithmetic is the same either way.
@@ -81,7 +82,13 @@ struct Settings {
 /// A coordinate along `axis` brought into the periodic box; as it is where the axis is not periodic.
 double wrapped(const Settings& settings, int axis, double coordinate);
 
+/// Beads one after the other, in cell order.
+struct BeadRange {
+  std::int64_t begin, end;
+};
+
 struct SlabState;  // scratch and results of one slab
+struct Scratch;    // of one worker
 
 /// A bead moved more than half its radius in one step: the state is of no use any more.
 struct Runaway : base::UserError {
@@ -150,6 +157,16 @@ class System {
   std::size_t memory_bytes() const;  ///< of beads, lists and walls
 
  private:
+  /// Time and shape of the state: step, rebuilds, whether one is due; partitions, histories per contact, pairs of materials.
+  std::array<std::int64_t, 6> counters() const;
+  template <class Self, class Visit>
+  static void each_bead_array(Self& self, Visit& visit);
+  template <class Self, class Visit>
+  static void each_list_array(Self& self, Visit& visit);
+  template <class Self, class Visit>
+  static void each_pair_array(Self& self, Visit& visit);
+  template <class Self, class Visit>
+  static void each_wall_array(Self& self, Visit& visit);
   void prepare();
   void rebuild();
   template <class Values>
@@ -163,7 +180,7 @@ class System {
   void contacts(int slab, int worker, bool finish_too);
   PairSweep begin_pairs(int slab, int worker, std::size_t physics);
   void look_ahead(PairSweep& sweep, std::int64_t first) const;
-  std::int64_t pair_batch(PairSweep& sweep, std::int64_t first, std::int64_t last);
+  void pair_batch(PairSweep& sweep, std::int64_t first, std::int64_t last);
   void size_ring(int slab);
   struct WallChunk {
     int slab, worker;
@@ -178,9 +195,6 @@ class System {
   std::int64_t gather_wall_batch(const WallChunk& chunk, std::size_t physics);
   void scatter_wall_batch(const WallChunk& chunk, std::size_t physics, std::int64_t count);
   void end_walls(int slab);
-  struct BeadRange {
-    std::int64_t begin, end;
-  };
   BeadRange beads_of(int slab) const { return {slab_begin(slab), slab_begin(slab + 1)}; }
   void integrate(int slab, BeadRange range);
   void apply_body_forces(int slab, int worker, BeadRange range);
@@ -193,7 +207,6 @@ class System {
   std::string complaint(std::int64_t bead, const char* what) const;
   int pair_index(int a, int b, bool wall) const;
   std::int64_t slab_begin(int slab) const { return slab * particles.count() / settings_.partitions; }
-  friend struct PairEvaluator;
 
   Settings settings_;
   Layout layout_;
@@ -203,7 +216,6 @@ class System {
   const WideTable* wide_;
   std::unique_ptr<Workers> workers_;
   std::vector<std::unique_ptr<SlabState>> slabs_;
-  struct Scratch;
   std::vector<std::unique_ptr<Scratch>> scratch_;
   std::vector<Pose> poses_;
   std::array<double, 3> acceleration_{};

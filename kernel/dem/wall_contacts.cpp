@@ -28,9 +28,9 @@ std::ptrdiff_t take_match(WallContacts& old, std::size_t& cursor, std::uint32_t 
   return best;
 }
 
-/// Contacts [0, count) of a batch are real; what follows up to a multiple of eight is a gap of 1 m at rest.
-void pad_wall_batch(std::int64_t count, std::size_t histories, BatchArrays& b) {
-  for (std::int64_t k = count; k < (count + 7) / 8 * 8; ++k) {
+/// Contacts [0, count) of a batch are real; the padding behind them is a gap of 1 m at rest.
+void pad_wall_batch(std::int64_t count, std::size_t histories, WallBatch& b) {
+  for (std::int64_t k = count; k < padded_count(count); ++k) {
     b.overlap[k] = -1.0;
     b.radius[k] = b.mass[k] = b.radius_i[k] = 1.0;
     b.radius_j[k] = 0.0;
@@ -74,7 +74,7 @@ void System::walls(int slab, int worker, std::int64_t end) {
         if (!physics_[p].wall || (chunk.present >> (p % 64) & 1) == 0) continue;
         const std::int64_t count = gather_wall_batch(chunk, p);
         if (count == 0) continue;
-        BatchArrays& b = scratch_[static_cast<std::size_t>(worker)]->batch;
+        WallBatch& b = scratch_[static_cast<std::size_t>(worker)]->walls;
         PairLedger& ledger = slabs_[static_cast<std::size_t>(slab)]->ledger.pairs[p];
         count_collisions(count, b, ledger);
         if (step_ % 16 == 0) note_overlap(count, b, ledger);
@@ -104,27 +104,26 @@ void System::find_wall_contacts(WallChunk& chunk) {
       wall.first.data() + chunk.begin,
       wall.candidates.data(),
       wall_reach_};
-  GeometryContacts& found = scratch.wall;
+  GeometryContacts& found = scratch.found;
   found.count = 0;
   body.table->contacts(body.self, &query, &found);
 
   chunk.base = wall.next.bead.size();
   wall.next.resize(chunk.base + static_cast<std::size_t>(found.count));
-  scratch.fresh.resize(static_cast<std::size_t>(found.count));
+  scratch.contacts.resize(static_cast<std::size_t>(found.count));
   for (std::int64_t c = 0; c < found.count; ++c) {
     const std::size_t k = static_cast<std::size_t>(c), at = chunk.base + k;
     const std::uint32_t local = static_cast<std::uint32_t>(chunk.begin + found.bead[c]);
     const Row normal{found.normal[0][c], found.normal[1][c], found.normal[2][c]};
-    scratch.normal[k] = to_world(pose, normal);
-    std::int32_t pair = pair_index(particles.material[wall.bead[local]], body.material_of_slot[found.material[c]], true);
-    if (found.overlap[c] + physics_[static_cast<std::size_t>(pair)].reach <= 0) pair = -1;
-    scratch.pair[k] = pair;
-    if (pair >= 0) chunk.present |= std::uint64_t{1} << (pair % 64);
+    int p = pair_index(particles.material[wall.bead[local]], body.material_of_slot[found.material[c]], true);
+    if (found.overlap[c] + physics_[static_cast<std::size_t>(p)].reach <= 0) p = FoundContact::kOutOfReach;
+    const bool acts = p != FoundContact::kOutOfReach;
+    if (acts) chunk.present |= std::uint64_t{1} << (p % 64);
     wall.next.bead[at] = local;
-    wall.next.feature[at] = pair >= 0 ? found.feature[c] : kUsedUp;
+    wall.next.feature[at] = acts ? found.feature[c] : kUsedUp;
     wall.next.normal[at] = normal;
-    const std::ptrdiff_t match = pair < 0 ? -1 : take_match(wall.active, wall.matched, local, found.feature[c], normal);
-    scratch.fresh[k] = match < 0;
+    const std::ptrdiff_t match = !acts ? -1 : take_match(wall.active, wall.matched, local, found.feature[c], normal);
+    scratch.contacts[k] = {p, match < 0, to_world(pose, normal)};
     for (std::size_t h = 0; h < histories; ++h) {
       wall.next.history[h][at] = match < 0 ? 0.0 : wall.active.history[h][static_cast<std::size_t>(match)];
     }
@@ -135,37 +134,37 @@ void System::find_wall_contacts(WallChunk& chunk) {
 std::int64_t System::gather_wall_batch(const WallChunk& chunk, std::size_t physics) {
   const WallSlab& wall = slabs_[static_cast<std::size_t>(chunk.slab)]->walls[chunk.body];
   Scratch& scratch = *scratch_[static_cast<std::size_t>(chunk.worker)];
-  BatchArrays& b = scratch.batch;
+  WallBatch& b = scratch.walls;
   const Pose& pose = poses_[chunk.body];
-  const GeometryContacts& found = scratch.wall;
+  const GeometryContacts& found = scratch.found;
   const std::size_t histories = static_cast<std::size_t>(layout_.history_count());
   std::int64_t m = 0;
   for (std::int64_t c = 0; c < found.count; ++c) {
     const std::size_t k = static_cast<std::size_t>(c);
-    if (scratch.pair[k] != static_cast<std::int32_t>(physics)) continue;
+    if (scratch.contacts[k].physics_index != static_cast<int>(physics)) continue;
     const std::uint32_t bead = wall.bead[wall.next.bead[chunk.base + k]];
     const MotionLine& motion = particles.motion[bead];
     const Row position = centre(particles.position[bead]);
     const double radius = particles.position[bead].radius;
-    const Row& n = scratch.normal[k];
+    const Row& n = scratch.contacts[k].normal;
     const double arm = radius - 0.5 * found.overlap[c];
-    const Row contact{position[0] - arm * n[0] - pose.centre[0], position[1] - arm * n[1] - pose.centre[1],
-                      position[2] - arm * n[2] - pose.centre[2]};
-    const Row turning = cross(pose.omega, contact);
+    const Row lever{position[0] - arm * n[0] - pose.centre[0], position[1] - arm * n[1] - pose.centre[1],
+                    position[2] - arm * n[2] - pose.centre[2]};
+    const Row turning = cross(pose.omega, lever);
     const Row surface = cross({motion.w[0], motion.w[1], motion.w[2]}, n);
-    b.slot[m] = static_cast<std::uint32_t>(c);
-    b.owner[m] = bead;
-    b.fresh[m] = scratch.fresh[k];
+    b.contact[m] = static_cast<std::uint32_t>(c);
+    b.bead[m] = bead;
+    b.fresh[m] = scratch.contacts[k].fresh;
     b.overlap[m] = found.overlap[c];
     b.radius[m] = b.radius_i[m] = radius;
     b.radius_j[m] = 0.0;
     b.mass[m] = 1.0 / motion.inverse_mass;
-    b.arm_i[m] = arm;
+    b.arm[m] = arm;
     for (std::size_t a = 0; a < 3; ++a) {
       b.normal[a][m] = n[a];
-      b.difference[a][m] = contact[a];
-      b.spin_sum[a][m] = pose.velocity[a] + turning[a];  // the wall's velocity here
-      b.velocity[a][m] = motion.v[a] - arm * surface[a] - b.spin_sum[a][m];
+      b.lever[a][m] = lever[a];
+      b.wall_velocity[a][m] = pose.velocity[a] + turning[a];
+      b.velocity[a][m] = motion.v[a] - arm * surface[a] - b.wall_velocity[a][m];
       b.spin_i[a][m] = motion.w[a];
       b.spin_j[a][m] = pose.omega[a];
     }
@@ -181,7 +180,7 @@ void System::scatter_wall_batch(const WallChunk& chunk, std::size_t physics, std
   SlabState& state = *slabs_[static_cast<std::size_t>(chunk.slab)];
   WallSlab& wall = state.walls[chunk.body];
   Scratch& scratch = *scratch_[static_cast<std::size_t>(chunk.worker)];
-  const BatchArrays& b = scratch.batch;
+  const WallBatch& b = scratch.walls;
   const Body& body = bodies[chunk.body];
   const Pose& pose = poses_[chunk.body];
   BodyLedger& book = state.ledger.bodies[chunk.body];
@@ -190,23 +189,23 @@ void System::scatter_wall_batch(const WallChunk& chunk, std::size_t physics, std
   for (std::int64_t k = 0; k < count; ++k) {
     const Row f{b.force[0][k], b.force[1][k], b.force[2][k]};
     const Row n{b.normal[0][k], b.normal[1][k], b.normal[2][k]};
-    const Row contact{b.difference[0][k], b.difference[1][k], b.difference[2][k]};
-    const Row turn = cross(f, n), reaction = cross(contact, f);
-    ForceLine& line = state.force[b.owner[k]];
+    const Row lever{b.lever[0][k], b.lever[1][k], b.lever[2][k]};
+    const Row turn = cross(f, n), reaction = cross(lever, f);
+    ForceLine& line = state.force[b.bead[k]];
     double power = 0;
     for (std::size_t a = 0; a < 3; ++a) {
       const double moment_i = post ? b.moment_i[a][k] : 0.0, moment_j = post ? b.moment_j[a][k] : 0.0;
       line.f[a] += f[a];
-      line.t[a] += b.arm_i[k] * turn[a] + moment_i;
+      line.t[a] += b.arm[k] * turn[a] + moment_i;
       book.force[a] -= f[a];
       book.torque[a] += moment_j - reaction[a];
-      power += f[a] * b.spin_sum[a][k] - moment_j * pose.omega[a];
+      power += f[a] * b.wall_velocity[a][k] - moment_j * pose.omega[a];
     }
     book.power += power;
     book.work += power * dt;
-    const std::size_t c = b.slot[k];
+    const std::size_t c = b.contact[k];
     for (std::size_t h = 0; h < wall.next.history.size(); ++h) wall.next.history[h][chunk.base + c] = b.history[h][k];
-    const std::uint32_t triangle = scratch.wall.triangle[c];
+    const std::uint32_t triangle = scratch.found.triangle[c];
     if (body.per_triangle && triangle < body.triangle_count) {
       for (std::size_t channel = 0; channel < physics_[physics].law.table->info.channel_count; ++channel) {
         auto& kind = normal_channel_[channel] ? state.impact : state.shear;

@@ -10,7 +10,7 @@ namespace {
 inline double root(double a) { return __builtin_sqrt(a); }
 
 template <bool kPeriodic>
-std::int64_t search_slots(const GatherContext& g, PairListView& list, std::int64_t first, std::int64_t last, BatchArrays& b) {
+std::int64_t search_slots(const GatherContext& g, PairListView& list, std::int64_t first, std::int64_t last, PairBatch& b) {
   const Box4 box = box4(g.box);
   const double* __restrict x = reinterpret_cast<const double*>(g.position);
   const std::uint32_t* __restrict owner = list.owner;
@@ -62,13 +62,13 @@ std::int64_t search_slots(const GatherContext& g, PairListView& list, std::int64
   return n;
 }
 
-std::int64_t search(const GatherContext& g, PairListView& list, std::int64_t first, std::int64_t last, BatchArrays& b) {
+std::int64_t search(const GatherContext& g, PairListView& list, std::int64_t first, std::int64_t last, PairBatch& b) {
   return box4(g.box).any ? search_slots<true>(g, list, first, last, b) : search_slots<false>(g, list, first, last, b);
 }
 
 /// Loads the raw differences of four contacts starting at k.
 template <bool kEqual, bool kPeriodic>
-inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k, const BatchArrays& b) {
+inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k, const PairBatch& b) {
   const double* __restrict x = reinterpret_cast<const double*>(g.position);
   const double* __restrict m = reinterpret_cast<const double*>(g.motion);
   Four d[4], v[4], w[4];
@@ -101,7 +101,7 @@ inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k,
   }
 }
 
-void gather_spins(const GatherContext& g, std::int64_t padded, BatchArrays& b) {
+void gather_spins(const GatherContext& g, std::int64_t padded, PairBatch& b) {
   const double* m = reinterpret_cast<const double*>(g.motion);
   for (std::int64_t k = 0; k < padded; k += 4) {
     Four p[4], q[4];
@@ -120,8 +120,8 @@ void gather_spins(const GatherContext& g, std::int64_t padded, BatchArrays& b) {
 
 /// Overlap, normal and the surfaces' relative velocity v_i − v_j − (a_i ω_i + a_j ω_j) × n, a = r − δ/2.
 template <bool kEqual>
-void kinematics(std::int64_t n, double radius, BatchArrays& arrays) {
-  const BatchArrays b = arrays;
+void kinematics(std::int64_t n, double radius, PairBatch& arrays) {
+  const PairBatch b = arrays;
   const double* __restrict dx = b.difference[0];
   const double* __restrict dy = b.difference[1];
   const double* __restrict dz = b.difference[2];
@@ -178,7 +178,7 @@ void kinematics(std::int64_t n, double radius, BatchArrays& arrays) {
   }
 }
 
-void gather_history(const PairListView& list, std::int64_t count, std::int64_t padded, BatchArrays& b) {
+void gather_history(const PairListView& list, std::int64_t count, std::int64_t padded, PairBatch& b) {
   for (std::int32_t h = 0; h < list.history_count; ++h) {
     const double* __restrict from = list.history[h];
     double* __restrict to = b.history[h];
@@ -190,7 +190,7 @@ void gather_history(const PairListView& list, std::int64_t count, std::int64_t p
 }
 
 /// Padding: a gap of 1 m, at rest; R* and m* are those of the last contact.
-void pad(std::int64_t count, std::int64_t padded, BatchArrays& b) {
+void pad(std::int64_t count, std::int64_t padded, PairBatch& b) {
   for (std::int64_t k = count; k < padded; ++k) {
     b.overlap[k] = -1.0;
     for (int a = 0; a < 3; ++a) {
@@ -200,9 +200,9 @@ void pad(std::int64_t count, std::int64_t padded, BatchArrays& b) {
   }
 }
 
-void gather(const GatherContext& g, const PairListView& list, std::int64_t count, BatchArrays& b) {
+void gather(const GatherContext& g, const PairListView& list, std::int64_t count, PairBatch& b) {
   const Box4 box = box4(g.box);
-  const std::int64_t padded = (count + 7) / 8 * 8;
+  const std::int64_t padded = padded_count(count);
   std::uint32_t* __restrict owner = b.owner;
   std::uint32_t* __restrict partner = b.partner;
   const std::uint32_t* __restrict slot = b.slot;
@@ -215,7 +215,7 @@ void gather(const GatherContext& g, const PairListView& list, std::int64_t count
     partner[k] = partner[count - 1];
   }
   if (g.spins || !g.equal) gather_spins(g, padded, b);
-  const BatchArrays local = b;
+  const PairBatch local = b;
   if (g.equal) {
     if (box.any) {
       for (std::int64_t k = 0; k < padded; k += 4) gather_four<true, true>(g, box, k, local);
@@ -239,8 +239,8 @@ void gather(const GatherContext& g, const PairListView& list, std::int64_t count
 }
 
 /// Torque on either bead: a (F × n); unequal beads have their own arms.
-void torques(std::int64_t n, bool equal, bool with_moments, BatchArrays& arrays) {
-  const BatchArrays b = arrays;
+void torques(std::int64_t n, bool equal, bool with_moments, PairBatch& arrays) {
+  const PairBatch b = arrays;
   for (int a = 0; a < 3; ++a) {
     const int p = (a + 1) % 3, q = (a + 2) % 3;
     const double* __restrict fp = b.force[p];
@@ -273,8 +273,8 @@ void torques(std::int64_t n, bool equal, bool with_moments, BatchArrays& arrays)
 }
 
 template <bool kSame>
-void scatter_lines(const ScatterContext& s, std::int64_t count, const BatchArrays& arrays) {
-  const BatchArrays b = arrays;
+void scatter_lines(const ScatterContext& s, std::int64_t count, const PairBatch& arrays) {
+  const PairBatch b = arrays;
   for (std::int64_t k = 0; k < count; k += 4) {
     Four f[4] = {load4(b.force[0] + k), load4(b.force[1] + k), load4(b.force[2] + k), four(0.0)};
     Four ti[4] = {load4(b.torque_i[0] + k), load4(b.torque_i[1] + k), load4(b.torque_i[2] + k), four(0.0)};
@@ -300,8 +300,8 @@ void scatter_lines(const ScatterContext& s, std::int64_t count, const BatchArray
   }
 }
 
-void scatter(const ScatterContext& s, const PairListView& list, std::int64_t count, bool with_moments, BatchArrays& b) {
-  const std::int64_t padded = (count + 7) / 8 * 8;
+void scatter(const ScatterContext& s, PairListView& list, std::int64_t count, bool with_moments, PairBatch& b) {
+  const std::int64_t padded = padded_count(count);
   torques(padded, s.equal, with_moments, b);
   if (s.equal && !with_moments) {
     scatter_lines<true>(s, count, b);
@@ -313,6 +313,7 @@ void scatter(const ScatterContext& s, const PairListView& list, std::int64_t cou
     double* __restrict to = list.next[h] + list.written;
     for (std::int64_t k = 0; k < count; ++k) to[k] = from[k];
   }
+  list.written += count;
 }
 
 IntegrateResult integrate(const IntegrateContext& c) {
@@ -338,7 +339,7 @@ IntegrateResult integrate(const IntegrateContext& c) {
     const Four w = load4(half.w) + dt * alpha;
     const Four step = dt * v * keep;
     const Four x = load4(&c.position[i]) + step;
-    const Four moved = (x - load4_single(&c.reference[i].x)) * keep;
+    const Four moved = (x - load4_single(c.reference[i].centre)) * keep;
     const Four step2 = step * step, moved2 = moved * moved;
     store4(half.v, v);
     store4(half.w, w);

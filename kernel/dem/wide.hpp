@@ -1,7 +1,7 @@
 // The parts of the contact loop that are built once per instruction set. Plain pointers in and out; the same bits from each build.
 #pragma once
 
-#include "kernel/dem/lines.hpp"
+#include "kernel/dem/batch.hpp"
 
 namespace millscope::dem {
 
@@ -48,12 +48,12 @@ struct IntegrateResult {
 
 struct WideTable {
   const char* name;
-  /// Finds the pairs of slots [first, last) that are within reach; fills slot, source, fresh. Returns their number.
-  std::int64_t (*search)(const GatherContext&, PairListView&, std::int64_t first, std::int64_t last, BatchArrays&);
+  /// Finds the pairs of slots [first, last) that are within reach; fills slot, source, fresh; advances `read`. Returns their number.
+  std::int64_t (*search)(const GatherContext&, PairListView&, std::int64_t first, std::int64_t last, PairBatch&);
   /// Fills overlap, normal, velocity, radius, mass (padded), history.
-  void (*gather)(const GatherContext&, const PairListView&, std::int64_t count, BatchArrays&);
-  /// Adds force × arms (and moments when `with_moments`) to the beads, stores histories.
-  void (*scatter)(const ScatterContext&, const PairListView&, std::int64_t count, bool with_moments, BatchArrays&);
+  void (*gather)(const GatherContext&, const PairListView&, std::int64_t count, PairBatch&);
+  /// Adds force × arms (and moments when `with_moments`) to the beads, stores histories; advances `written`.
+  void (*scatter)(const ScatterContext&, PairListView&, std::int64_t count, bool with_moments, PairBatch&);
   /// Kick, drift, predict; clears the forces.
   IntegrateResult (*integrate)(const IntegrateContext&);
   /// Appends to `found` the j in [first, last) with |x_i − x_j| < reach_i + reach_j (the reaches stand in `radius`). Returns the number.

@@ -191,9 +191,7 @@ void Recorder::gather(const dem::System& system) {
   const dem::Particles& p = system.particles;
   for (std::size_t i = 0; i < p.position.size(); ++i) {
     const std::size_t k = 3 * static_cast<std::size_t>(p.id[i]);
-    position_[k] = p.position[i].x;
-    position_[k + 1] = p.position[i].y;
-    position_[k + 2] = p.position[i].z;
+    std::copy_n(p.position[i].centre, 3, &position_[k]);
     wrap(system.settings(), &position_[k]);
     system.velocity_at_step(static_cast<std::int64_t>(i), &velocity_[k], &spin_[k]);
   }
@@ -235,7 +233,7 @@ void Recorder::write_tracks(const dem::System& system) {
   std::vector<double> position;
   for (const std::uint32_t id : track_ids_) {
     const dem::PositionLine& x = p.position[index_of_id_[id]];
-    double c[3] = {x.x, x.y, x.z};
+    double c[3] = {x.centre[0], x.centre[1], x.centre[2]};
     wrap(system.settings(), c);
     position.insert(position.end(), c, c + 3);
   }

@@ -22,7 +22,6 @@ using base::UserError;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLeastPoints = 30;  // of a bead that the camera saw too little of
-constexpr std::uint64_t kCameraSeed = 20150101;
 
 Json read_json(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -53,11 +52,14 @@ studies::Condition condition_of(const BeadPaths& paths) {
   return condition;
 }
 
+/// Every run is filmed with chance of its own: what all runs shared would be in no scatter between them and pass for missing physics.
+std::uint64_t camera_seed(const std::string& key) { return std::stoull(hash_of({"camera", key}), nullptr, 16); }
+
 /// What the camera makes of the beads, as it would be read from files.
-studies::Recording film(const BeadPaths& paths, const studies::Camera& camera, int threads) {
+studies::Recording film(const BeadPaths& paths, const studies::Camera& camera, std::uint64_t seed, int threads) {
   std::vector<studies::Run> seen(paths.size());
   base::for_each_item(paths.size(), base::worker_count(threads, paths.size()), [&](std::size_t i, std::size_t) {
-    const studies::Run run = studies::observe(paths.path(i), camera, paths.context(i, kCameraSeed));
+    const studies::Run run = studies::observe(paths.path(i), camera, paths.context(i, seed));
     if (run.size() >= kLeastPoints) seen[i] = studies::as_written(run);
   });
   studies::Recording recording;
@@ -100,6 +102,16 @@ void set_power(Observation& o, const PowerFigure& power) {
 
 }  // namespace
 
+namespace {
+
+/// How one run is filmed.
+struct Look {
+  std::string key;     ///< of the run in the cache
+  std::string camera;  ///< text of links before those of the recording's camera; may be empty
+};
+
+}  // namespace
+
 struct Observer::Impl {
   const Study& study;
   const host::Registry& registry;
@@ -117,13 +129,13 @@ struct Observer::Impl {
   }
 
   /// The run's beads through the recording's camera and the same processing, turned to the recording's sense.
-  studies::ResultSet seen(std::size_t condition, const BeadPaths& paths, const std::string& before, const Processing& how) const {
+  studies::ResultSet seen(std::size_t condition, const BeadPaths& paths, const Look& look, const Processing& how) const {
     const RecordedCondition& r = recorded[condition];
     const std::string name = "camera of condition '" + study.conditions[condition].name + "'";
     const bool mirror = paths.mill().context.omega * r.omega < 0;
-    const studies::Camera first = before.empty() ? studies::Camera() : studies::parse_camera(before, name, registry);
+    const studies::Camera first = look.camera.empty() ? studies::Camera() : studies::parse_camera(look.camera, name, registry);
     const studies::Camera camera = first.before(without_frame(studies::parse_camera(r.camera, name, registry)));
-    const studies::Recording recording = film(paths, camera, threads);
+    const studies::Recording recording = film(paths, camera, camera_seed(look.key), threads);
     studies::TrajectoryOptions options;
     options.step = 0.002;
     options.gap_limit = r.gap_limit;
@@ -143,11 +155,11 @@ struct Observer::Impl {
     return o;
   }
 
-  Observation simulated(std::size_t condition, const fs::path& run, const std::string& camera) const {
+  Observation simulated(std::size_t condition, const fs::path& run, const Look& look) const {
     const RecordedCondition& r = recorded[condition];
     if (!r.analyzers.empty()) return profile(r, run);
     const BeadPaths paths(run, study.observing.beads, r.place, registry);
-    const studies::ResultSet results = seen(condition, paths, camera, {study, registry, threads});
+    const studies::ResultSet results = seen(condition, paths, look, {study, registry, threads});
     Observation o = summarise(results, r.summaries);
     o.bead_seconds = paths.seconds() * static_cast<double>(paths.size());
     if (r.measured_power) {
@@ -189,18 +201,18 @@ Observation Observer::simulated(std::size_t condition, const fs::path& run, cons
     const Json known = read_json(file);
     if (!known.is_discarded()) return observation_from(known);
   }
-  const Observation o = impl_->simulated(condition, run, camera);
+  const Observation o = impl_->simulated(condition, run, {key, camera});
   output::write_json(file, to_json(o));
   return o;
 }
 
-studies::ResultSet Observer::results(std::size_t condition, const fs::path& run, const std::string& analyzers,
+studies::ResultSet Observer::results(std::size_t condition, const fs::path& run, const std::string& key, const std::string& analyzers,
                                      const std::string& camera) const {
   const Processing how{impl_->study, impl_->registry, impl_->threads, analyzers};
   const RecordedCondition& r = impl_->recorded[condition];
   if (run.empty()) return results_of_recording(condition, r, how);
   const BeadPaths paths(run, impl_->study.observing.beads, r.place, impl_->registry);
-  return impl_->seen(condition, paths, camera, how);
+  return impl_->seen(condition, paths, {key, camera}, how);
 }
 
 std::vector<std::string> observed_outputs() {

@@ -28,13 +28,13 @@ class Observer {
   bool turns_other_way(std::size_t condition) const;
   /// What the recording of a condition shows.
   const Observation& recorded(std::size_t condition) const;
-  /// What a finished run shows, with exactly the same observables. `key`: of the run's cache entry. `camera`: a camera file's text, whose
-  /// links come before those of the recording's camera; may be empty. A speed where no bead was seen is NaN. May be called from several
-  /// threads. Throws base::UserError.
+  /// What a finished run shows, with exactly the same observables. `key`: of the run's cache entry, from which the camera's chance comes
+  /// too; `camera`: a camera file's text, whose links come before those of the recording's camera; may be empty. A speed where no bead was
+  /// seen is NaN. May be called from several threads. Throws base::UserError.
   Observation simulated(std::size_t condition, const std::filesystem::path& run, const std::string& key,
                         const std::string& camera = {}) const;
   /// Results of other analyzers (as in analysis.yaml): of the recording where `run` is empty, else of a finished run seen in the same way.
-  studies::ResultSet results(std::size_t condition, const std::filesystem::path& run, const std::string& analyzers,
+  studies::ResultSet results(std::size_t condition, const std::filesystem::path& run, const std::string& key, const std::string& analyzers,
                              const std::string& camera = {}) const;
 
  private:

@@ -16,7 +16,7 @@
 
 namespace millscope::calibrate {
 
-inline constexpr const char* kObservations = "observations 5";  ///< grows when what is computed here changes
+inline constexpr const char* kObservations = "observations 6";  ///< grows when what is computed here changes
 
 /// What a recording fixes for every simulation of its condition.
 struct RecordedCondition {

@@ -57,7 +57,7 @@ TEST_CASE("NaN never goes on silently") {
     start(a, {Bead{}, Bead{{0.03, 0, 0}}});
     const double nan = std::numeric_limits<double>::quiet_NaN();
     if (where == 0) {
-      a.system->particles.position[1].y = nan;
+      a.system->particles.position[1].centre[1] = nan;
     } else {
       a.system->particles.half[1].v[1] = nan;
     }

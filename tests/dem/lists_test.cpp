@@ -40,8 +40,8 @@ IdPairs brute(const Assembly& a) {
   IdPairs found;
   for (std::size_t i = 0; i < p.position.size(); ++i) {
     for (std::size_t j = i + 1; j < p.position.size(); ++j) {
-      const double* x = &p.position[i].x;
-      const double* y = &p.position[j].x;
+      const double* x = p.position[i].centre;
+      const double* y = p.position[j].centre;
       double square = 0;
       for (int k = 0; k < 3; ++k) {
         double d = x[k] - y[k];

@@ -125,7 +125,7 @@ std::size_t index_of(const Assembly& a, std::uint32_t id) {
 
 Vector position(const Assembly& a, std::uint32_t id) {
   const dem::PositionLine& x = a.system->particles.position[index_of(a, id)];
-  return {x.x, x.y, x.z};
+  return {x.centre[0], x.centre[1], x.centre[2]};
 }
 
 Vector velocity(const Assembly& a, std::uint32_t id) {

@@ -78,6 +78,26 @@ TEST_CASE("all runs of a bank differ, each has a seed of its own") {
   CHECK(one.back().rfind("seed=", 0) == 0);
 }
 
+TEST_CASE("no two runs of a large bank share a seed, and a case takes each") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  std::set<std::string> seeds;
+  constexpr int kGroups = 100, kRuns = 40;
+  for (int group = 0; group < kGroups; ++group) {
+    for (int index = 0; index < kRuns; ++index) {
+      const BankPoint point{fmt::format("candidate {}", group), index, VectorXd::Constant(static_cast<Index>(q.dimensions()), 0.31), {}};
+      for (std::size_t c = 0; c < q.study.conditions.size(); ++c) seeds.insert(simulation_of(q, point, c).settings.back());
+    }
+  }
+  CHECK(seeds.size() == kGroups * kRuns * q.study.conditions.size());
+  for (const std::string& seed : seeds) {
+    REQUIRE(seed.rfind("seed=", 0) == 0);
+    REQUIRE(std::stoull(seed.substr(5)) < (1ULL << 53));
+  }
+  const std::string largest = fmt::format("seed={}", (1ULL << 53) - 1);
+  CHECK(config::read_case(q.study.base.string(), {largest}).seed == (1ULL << 53) - 1);
+}
+
 TEST_CASE("shares cover what they are meant to, and agree with the rounded values") {
   const Scratch folder;
   const Question q = question_of(folder, kSections);

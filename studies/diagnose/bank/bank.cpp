@@ -19,6 +19,7 @@ namespace {
 constexpr double kLeastShare = 0.1;
 constexpr int kAgain = 8;               // parameter sets: eight degrees of freedom of each of about 70 observables
 constexpr std::size_t kSpareApart = 2;  // runs beyond the coefficients of a nuisance apart: linear, square, × every parameter
+constexpr int kSeedBits = 53;           // of a run's seed: as many as a whole number of a case may have, so that no two runs share one
 constexpr std::uint64_t kOffsets = 16;  // blocks of Sobol's sequence among which groups are spread, of as many points
 
 /// Sobol' points in the unit cube.
@@ -196,8 +197,8 @@ std::vector<BankPoint> plan_bank(const Question& q) {
 campaign::Simulation simulation_of(const Question& q, const BankPoint& point, std::size_t condition) {
   const std::string& name = q.study.conditions[condition].name;
   campaign::Simulation s = simulation(q, point.theta, point.effects, condition);
-  s.settings.push_back(
-      fmt::format("seed={}", 1 + base::Hash().add(point.group + "/" + name).value() % 1000000 + static_cast<std::uint64_t>(point.index)));
+  const std::uint64_t own = base::Hash().add(fmt::format("{}/{}/{}", point.group, name, point.index)).value();
+  s.settings.push_back(fmt::format("seed={}", own >> (64 - kSeedBits)));
   s.label = fmt::format("{}_{}_{}", point.group, point.index, name);
   return s;
 }

@@ -59,8 +59,8 @@ struct Workshop {
   std::function<calibrate::Observation(std::size_t condition, const campaign::Outcome&, const std::string& camera)> observe;
   std::vector<calibrate::Observation> recorded;  ///< of every condition, with the readings
   std::function<void(const std::string&)> say;
-  /// Results of other analyzers, of the recording where `run` is empty; not set: nothing is looked at again.
-  std::function<studies::ResultSet(std::size_t condition, const std::filesystem::path& run, const std::string& analyzers,
+  /// Results of other analyzers, of the recording where the outcome has no folder; not set: nothing is looked at again.
+  std::function<studies::ResultSet(std::size_t condition, const campaign::Outcome&, const std::string& analyzers,
                                    const std::string& camera)>
       results = {};
   std::vector<std::vector<FrameReading>> readings = {};  ///< of every recording's frame; empty: nothing of it is doubted

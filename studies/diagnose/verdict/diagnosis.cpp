@@ -161,8 +161,10 @@ Workshop workshop_of(const Question& question, const host::Registry& registry, c
   const auto seen = [&session](std::size_t condition, const campaign::Outcome& outcome, const std::string& camera) {
     return session.observer().simulated(condition, outcome.folder, outcome.key, camera);
   };
-  const auto again = [&session](std::size_t condition, const std::filesystem::path& run, const std::string& analyzers,
-                                const std::string& camera) { return session.observer().results(condition, run, analyzers, camera); };
+  const auto again = [&session](std::size_t condition, const campaign::Outcome& outcome, const std::string& analyzers,
+                                const std::string& camera) {
+    return session.observer().results(condition, outcome.folder, outcome.key, analyzers, camera);
+  };
   std::vector<calibrate::Observation> recorded;
   for (std::size_t c = 0; c < session.evaluator().study().conditions.size(); ++c) recorded.push_back(session.observer().recorded(c));
   Workshop workshop{m.run, seen, std::move(recorded), std::move(say), again};

@@ -92,7 +92,7 @@ std::vector<MissingForce> missing_force(const HeldOutRequest& r) {
     std::vector<Side> simulated;
     for (const campaign::Outcome& outcome : r.workshop.run(simulations)) {
       if (outcome.state == campaign::State::done)
-        simulated.push_back({r.workshop.results(condition, outcome.folder, kAnalyzers, r.question.camera(theta))});
+        simulated.push_back({r.workshop.results(condition, outcome, kAnalyzers, r.question.camera(theta))});
     }
     if (!simulated.empty())
       out.push_back({condition, recorded.set.meta.context.omega, cells_of(recorded, simulated), by_speed(recorded, simulated)});

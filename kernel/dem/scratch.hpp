@@ -1,0 +1,54 @@
+// One worker's memory: the arrays of a batch, of the wall query before it, and of body forces.
+#pragma once
+
+#include <vector>
+
+#include "kernel/dem/aligned.hpp"
+#include "kernel/dem/batch.hpp"
+#include "kernel/dem/rows.hpp"
+#include "millscope/geometry.hpp"
+
+namespace millscope::dem {
+
+/// What BodyForceBatch is filled from.
+struct BodyForceArrays {
+  double* position[3];
+  double* velocity[3];
+  double* spin[3];
+  double* radius;
+  double* mass;
+  double* force[3];
+  double* moment[3];
+  double* added_mass;
+};
+
+/// What the kernel notes of a contact that the geometry found.
+struct FoundContact {
+  static constexpr int kOutOfReach = -1;
+  int physics_index;  ///< or kOutOfReach
+  bool fresh;
+  Row normal;  ///< world frame
+};
+
+struct Scratch {
+  explicit Scratch(int history_count);
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+
+  PairBatch pairs{};
+  WallBatch walls{};  ///< in the memory of `pairs`: a worker is at one batch at a time
+  double* query_position[3];
+  double* query_radius;
+  GeometryContacts found{};
+  std::vector<FoundContact> contacts;  ///< one for each of `found`
+  BodyForceArrays bodies{};
+  AlignedVector<ForceLine> ring;  ///< for ForceWindow; zero between steps
+
+ private:
+  AlignedVector<double> doubles_;
+  std::vector<std::uint32_t> integers_;
+  std::vector<std::int32_t> signed_;
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace millscope::dem
