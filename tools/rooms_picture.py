@@ -7,7 +7,7 @@ order by the mean place of the neighbours, then coordinates.
 
 from xml.sax.saxutils import escape
 
-WIDTH, HEIGHT, GAP, LAYER = 104, 34, 18, 76  # of a room; between rooms; from layer to layer: pixels
+WIDTH, HEIGHT, GAP, LAYER = 128, 32, 18, 70  # of a room; between rooms; from layer to layer: pixels
 PASSING = 10  # width of the empty place where an arrow passes a layer
 HEAD = 5  # of an arrow, behind the end of its line
 MARGIN = 24
