@@ -1,7 +1,8 @@
 // The order in which plugins act on a batch: pair parameters, interactions before, contact law, interactions after.
+#include "kernel/dem/evaluate.hpp"
+
 #include <algorithm>
 
-#include "kernel/dem/slab.hpp"
 #include "millscope/pack.hpp"
 
 namespace millscope::dem {
@@ -97,6 +98,23 @@ void run_pair_parameters(const BatchRun& run, std::int64_t padded, ContactArrays
   }
 }
 
+void count_collisions(std::int64_t count, const ContactArrays& b, PairLedger& ledger) {
+  for (std::int64_t k = 0; k < count; ++k) {
+    if (!b.fresh[k]) continue;
+    const double closing = -(b.velocity[0][k] * b.normal[0][k] + b.velocity[1][k] * b.normal[1][k] + b.velocity[2][k] * b.normal[2][k]);
+    if (closing <= 0) continue;
+    const double energy = 0.5 * b.mass[k] * closing * closing;
+    ++ledger.collisions;
+    ledger.impact_energy += energy;
+    ledger.largest_closing_speed = std::max(ledger.largest_closing_speed, closing);
+    ++ledger.spectrum[ImpactBins::bin(energy)];
+  }
+}
+
+void note_overlap(std::int64_t count, const ContactArrays& b, PairLedger& ledger) {
+  for (std::int64_t k = 0; k < count; ++k) ledger.largest_overlap = std::max(ledger.largest_overlap, b.overlap[k] / b.radius[k]);
+}
+
 }  // namespace
 
 void evaluate(const BatchRun& run, ContactArrays& b, PairLedger& ledger) {
@@ -136,21 +154,10 @@ void evaluate(const BatchRun& run, ContactArrays& b, PairLedger& ledger) {
   }
 }
 
-void count_collisions(std::int64_t count, const ContactArrays& b, PairLedger& ledger) {
-  for (std::int64_t k = 0; k < count; ++k) {
-    if (!b.fresh[k]) continue;
-    const double closing = -(b.velocity[0][k] * b.normal[0][k] + b.velocity[1][k] * b.normal[1][k] + b.velocity[2][k] * b.normal[2][k]);
-    if (closing <= 0) continue;
-    const double energy = 0.5 * b.mass[k] * closing * closing;
-    ++ledger.collisions;
-    ledger.impact_energy += energy;
-    ledger.largest_closing_speed = std::max(ledger.largest_closing_speed, closing);
-    ++ledger.spectrum[static_cast<std::size_t>(ImpactBins::bin(energy))];
-  }
-}
-
-void note_overlap(std::int64_t count, const ContactArrays& b, PairLedger& ledger) {
-  for (std::int64_t k = 0; k < count; ++k) ledger.largest_overlap = std::max(ledger.largest_overlap, b.overlap[k] / b.radius[k]);
+void book_contacts(std::int64_t step, std::int64_t count, const ContactArrays& b, PairLedger& ledger) {
+  count_collisions(count, b, ledger);
+  if (step % 16 == 0) note_overlap(count, b, ledger);
+  ledger.contacts += count;
 }
 
 }  // namespace millscope::dem

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "kernel/dem/aligned.hpp"
 #include "kernel/dem/lines.hpp"
@@ -30,5 +31,8 @@ struct Particles {
     material.resize(n);
   }
 };
+
+/// What is wrong with a bead, where it is, and why that may be.
+std::string complaint(const Particles& particles, std::int64_t bead, double time, const char* what);
 
 }  // namespace millscope::dem

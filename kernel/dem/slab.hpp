@@ -1,43 +1,30 @@
-// Scratch and results of slabs and workers; internal to the core.
+// What one slab has of its own in a step, and its way through phase A on one worker.
 #pragma once
 
+#include <vector>
+
+#include "kernel/dem/common.hpp"
+#include "kernel/dem/ledger.hpp"
+#include "kernel/dem/particles.hpp"
 #include "kernel/dem/scratch.hpp"
-#include "kernel/dem/system.hpp"
 
 namespace millscope::dem {
 
-struct SlabState {
-  std::vector<PairList> lists;  ///< one per pair of materials (those with a wall stay empty)
-  AlignedVector<ForceLine> halo;
-  ForceWindow force;                    ///< in use during this step
-  std::vector<std::uint32_t> frontier;  ///< [batch of the last list]: the first bead that it and earlier ones do not touch
-  std::int64_t ring = 0;                ///< lines that a ring needs, a power of two; 0: the slab is no longer than that
-  std::vector<WallSlab> walls;          ///< one per body
-  Ledger ledger;
-  std::vector<std::vector<double>> impact, shear;  ///< [body][triangle], J
-  IntegrateResult result{false, -1};
+struct alignas(kCacheLine) SlabState {
+  AlignedVector<ForceLine> halo;                   ///< forces on beads of later slabs, from the slab's end on; zero between steps
+  ForceWindow force;                               ///< in use during this step
+  IntegrateResult result{false, -1};               ///< of this step
+  Ledger ledger;                                   ///< since the start
+  std::vector<std::vector<double>> impact, shear;  ///< [body][triangle], J since the start
 };
 
-/// One list of pairs on its way through a step.
-struct System::PairSweep {
+struct SlabPass {
+  const Common& common;
+  const Particles& particles;
+  SlabState& state;
+  Scratch& scratch;
   int slab;
-  std::size_t physics;
-  PairListView list;
-  PairBatch batch;
-  GatherContext gather;
+  std::int64_t step;
 };
-
-/// Runs all physics of one pair of materials over a batch whose geometry and histories are filled, and books it.
-struct BatchRun {
-  const PairPhysics* physics;
-  double time_step;
-  std::int64_t count;
-  bool per_contact;  ///< fill batch.power of each contact
-};
-void evaluate(const BatchRun& run, ContactArrays& batch, PairLedger& ledger);
-
-/// Books first touches and, now and then, the largest overlap.
-void count_collisions(std::int64_t count, const ContactArrays& batch, PairLedger& ledger);
-void note_overlap(std::int64_t count, const ContactArrays& batch, PairLedger& ledger);
 
 }  // namespace millscope::dem

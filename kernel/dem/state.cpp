@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "kernel/dem/slab.hpp"
+#include "kernel/dem/parts.hpp"
 #include "kernel/dem/state_visitors.hpp"
 
 namespace millscope::dem {
@@ -22,7 +22,7 @@ void demand_sound(const PairList& list, BeadRange slab, std::int64_t beads) {
 }
 
 /// Candidates are the geometry's own: the seal alone guards them.
-void demand_sound(const WallSlab& wall, BeadRange slab) {
+void demand_sound(const WallList& wall, BeadRange slab) {
   demand(wall.first.size() == wall.bead.size() + 1 || (wall.first.empty() && wall.bead.empty()));
   for (std::size_t k = 0; k < wall.bead.size(); ++k) {
     demand(wall.bead[k] >= slab.begin && wall.bead[k] < slab.end && (k == 0 || wall.bead[k] > wall.bead[k - 1]));
@@ -46,143 +46,145 @@ void demand_sound(const Particles& p, int material_count) {
   demand(std::all_of(p.material.begin(), p.material.end(), [=](std::uint8_t m) { return m < material_count; }));
 }
 
-/// Every number of the ledgers in a fixed order.
-template <class Slabs>
-auto numbers_of(Slabs& slabs) {
-  std::vector<decltype(&slabs[0]->ledger.pairs[0].impact_energy)> all;
-  for (auto& slab : slabs) {
-    for (auto& p : slab->ledger.pairs) {
-      for (auto& d : p.dissipated) all.push_back(&d);
-      all.insert(all.end(), {&p.impact_energy, &p.largest_closing_speed, &p.largest_overlap});
-    }
-    for (auto& b : slab->ledger.bodies) all.push_back(&b.work);
-    for (auto& w : slab->ledger.body_force_work) all.push_back(&w);
-  }
-  return all;
-}
-
-template <class Slabs>
-auto counts_of(Slabs& slabs) {
-  std::vector<decltype(&slabs[0]->ledger.pairs[0].collisions)> all;
-  for (auto& slab : slabs) {
-    for (auto& p : slab->ledger.pairs) {
-      all.push_back(&p.collisions);
-      for (auto& s : p.spectrum) all.push_back(&s);
-    }
-  }
-  return all;
-}
-
 /// The same part of every slab.
 template <class Slabs, class Access>
 auto across(Slabs& slabs, const Access& access) {
-  std::vector<decltype(&access(*slabs[0]))> all;
-  for (auto& slab : slabs) all.push_back(&access(*slab));
+  std::vector<decltype(&access(slabs[0]))> all;
+  for (auto& slab : slabs) all.push_back(&access(slab));
   return all;
 }
 
 template <class Numbers>
 auto pointers_to(Numbers& numbers) {
-  std::vector<decltype(&numbers[0])> all;
-  for (auto& number : numbers) all.push_back(&number);
-  return all;
+  return across(
+      numbers, [](auto& number) -> auto& { return number; });
 }
 
 }  // namespace
 
-std::array<std::int64_t, 6> System::counters() const {
-  return {step_, rebuilds_, rebuild_needed_ ? 1 : 0, settings_.partitions, layout_.history_count(), std::ssize(physics_)};
-}
-
 template <class Self, class Visit>
-void System::each_bead_array(Self& s, Visit& visit) {
-  visit.scalars("walls_moved", std::vector{&s.wall_margin_, &s.wall_moved_, &s.wall_speed_});
-  auto& p = s.particles;
-  visit.whole("position", p.position);
-  visit.whole("motion", p.motion);
-  visit.whole("half", p.half);
-  visit.whole("acceleration", p.acceleration);
-  visit.whole("reference", p.reference);
-  visit.whole("id", p.id);
-  visit.whole("material", p.material);
-  visit.idle(p.force);
-  visit.idle(s.reaches_);
-  visit.idle(s.new_index_);
-  visit.idle(s.carried_start_);
-}
-
-template <class Self, class Visit>
-void System::each_pair_array(Self& s, Visit& visit) {
-  for (std::size_t q = 0; q < s.physics_.size(); ++q) {
+void PairLists::each_array(Self& self, Visit& visit) {
+  const int histories = self.common_.layout.history_count();
+  for (int q = 0; q < self.common_.physics.count(); ++q) {
     const std::string at = fmt::format("pairs/{}/", q);
     const auto lists = across(
-        s.slabs_, [q](auto& slab) -> auto& { return slab.lists[q]; });
-    const auto count = visit.lengths(at + "count", lists, [](const PairList& l) { return std::ssize(l.owner); });
+        self.slabs_, [q](auto& slab) -> auto& { return slab.lists[q]; });
+    const auto count = visit.lengths(at + "count", lists, &PairList::count);
     visit.parts(at + "owner", count, lists, &PairList::owner);
     visit.parts(at + "partner", count, lists, &PairList::partner);
     visit.parts(at + "touching", count, lists, &PairList::touching);
     const auto contacts = visit.lengths(at + "contacts", lists, &PairList::contact_count);
-    for (int h = 0; h < s.layout_.history_count(); ++h) {
+    for (int h = 0; h < histories; ++h) {
       visit.parts(
-          fmt::format("{}contact_history_{}", at, h), contacts, lists, [h](auto& l) -> auto& { return l.history[h]; });
-      for (const PairList* l : lists) visit.idle(l->next[h]);
+          fmt::format("{}contact_history_{}", at, h), contacts, lists, [h](auto& list) -> auto& { return list.history[h]; });
+      for (const PairList* list : lists) visit.idle(list->next[h]);
     }
   }
-  for (const auto& slab : s.slabs_) visit.idle(slab->halo);
+  visit.idle(self.carried_.start);
+  visit.idle(self.carried_.partner);
+  visit.idle(self.carried_.history);
 }
 
 template <class Self, class Visit>
-void System::each_wall_array(Self& s, Visit& visit) {
-  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-    const std::string at = fmt::format("walls/{}/", b);
-    const auto walls = across(
-        s.slabs_, [b](auto& slab) -> auto& { return slab.walls[b]; });
-    const auto active = across(
-        s.slabs_, [b](auto& slab) -> auto& { return slab.walls[b].active; });
-    const auto beads = visit.lengths(at + "beads", walls, [](const WallSlab& w) { return std::ssize(w.bead); });
-    visit.parts(at + "bead", beads, walls, &WallSlab::bead);
-    const auto offsets = visit.lengths(at + "offsets", walls, [](const WallSlab& w) { return std::ssize(w.first); });
-    visit.parts(at + "first", offsets, walls, &WallSlab::first);
-    const auto candidates = visit.lengths(at + "candidate_count", walls, [](const WallSlab& w) { return std::ssize(w.candidates); });
-    visit.parts(at + "candidates", candidates, walls, &WallSlab::candidates);
-    const auto contacts = visit.lengths(at + "contacts", active, [](const WallContacts& c) { return std::ssize(c.bead); });
-    visit.parts(at + "contact_bead", contacts, active, &WallContacts::bead);
-    visit.parts(at + "contact_feature", contacts, active, &WallContacts::feature);
-    visit.parts(at + "contact_normal", contacts, active, &WallContacts::normal);
-    for (int h = 0; h < s.layout_.history_count(); ++h) {
-      visit.parts(
-          fmt::format("{}history_{}", at, h), contacts, active, [h](auto& c) -> auto& { return c.history[h]; });
-    }
-    for (const WallSlab* wall : walls) {
-      for (const auto& h : wall->next.history) visit.idle(h);
-      visit.idle(wall->next.bead);
-      visit.idle(wall->next.feature);
-      visit.idle(wall->next.normal);
-    }
-    const std::vector<std::int64_t> triangles(s.slabs_.size(), std::ssize(s.slabs_[0]->impact[b]));
-    const auto slabs = across(
-        s.slabs_, [](auto& slab) -> auto& { return slab; });
+void WallLists::each_array(Self& self, int body, Visit& visit) {
+  const std::string at = fmt::format("walls/{}/", body);
+  const auto lists = across(
+      self.slabs_, [body](auto& slab) -> auto& { return slab.lists[body]; });
+  const auto active = across(
+      self.slabs_, [body](auto& slab) -> auto& { return slab.lists[body].active; });
+  const auto beads = visit.lengths(at + "beads", lists, [](const WallList& list) { return std::ssize(list.bead); });
+  visit.parts(at + "bead", beads, lists, &WallList::bead);
+  const auto offsets = visit.lengths(at + "offsets", lists, [](const WallList& list) { return std::ssize(list.first); });
+  visit.parts(at + "first", offsets, lists, &WallList::first);
+  const auto candidates = visit.lengths(at + "candidate_count", lists, [](const WallList& list) { return std::ssize(list.candidates); });
+  visit.parts(at + "candidates", candidates, lists, &WallList::candidates);
+  const auto contacts = visit.lengths(at + "contacts", active, &WallContacts::count);
+  visit.parts(at + "contact_bead", contacts, active, &WallContacts::bead);
+  visit.parts(at + "contact_feature", contacts, active, &WallContacts::feature);
+  visit.parts(at + "contact_normal", contacts, active, &WallContacts::normal);
+  for (int h = 0; h < self.common_.layout.history_count(); ++h) {
     visit.parts(
-        at + "impact", triangles, slabs, [b](auto& slab) -> auto& { return slab.impact[b]; });
-    visit.parts(
-        at + "shear", triangles, slabs, [b](auto& slab) -> auto& { return slab.shear[b]; });
+        fmt::format("{}history_{}", at, h), contacts, active, [h](auto& c) -> auto& { return c.history[h]; });
+  }
+  for (const WallList* list : lists) {
+    visit.idle(list->next.bead);
+    visit.idle(list->next.feature);
+    visit.idle(list->next.normal);
+    for (const std::vector<double>& h : list->next.history) visit.idle(h);
   }
 }
 
 template <class Self, class Visit>
-void System::each_list_array(Self& s, Visit& visit) {
-  each_pair_array(s, visit);
-  each_wall_array(s, visit);
-  visit.scalars("ledger/numbers", numbers_of(s.slabs_));
-  visit.scalars("ledger/counts", counts_of(s.slabs_));
+void WallLists::each_number(Self& self, Visit& visit) {
+  visit.scalars("walls_moved", std::vector{&self.margin_, &self.moved_, &self.speed_});
+}
+
+/// Kept with the lists of the body.
+template <class Self, class Visit>
+void Step::each_work(Self& self, int body, Visit& visit) {
+  const std::string at = fmt::format("walls/{}/", body);
+  const auto slabs = pointers_to(self.slabs_);
+  const std::vector<std::int64_t> triangles(slabs.size(), std::ssize(slabs[0]->impact[body]));
+  visit.parts(
+      at + "impact", triangles, slabs, [body](auto& slab) -> auto& { return slab.impact[body]; });
+  visit.parts(
+      at + "shear", triangles, slabs, [body](auto& slab) -> auto& { return slab.shear[body]; });
+}
+
+template <class Self, class Visit>
+void Step::each_book(Self& self, Visit& visit) {
+  std::vector<decltype(&self.slabs_[0].ledger.bodies[0].work)> numbers;
+  std::vector<decltype(&self.slabs_[0].ledger.pairs[0].collisions)> counts;
+  for (auto& slab : self.slabs_) {
+    for (auto& p : slab.ledger.pairs) {
+      for (auto& channel : p.dissipated) numbers.push_back(&channel);
+      numbers.insert(numbers.end(), {&p.impact_energy, &p.largest_closing_speed, &p.largest_overlap});
+      counts.push_back(&p.collisions);
+      for (auto& bin : p.spectrum) counts.push_back(&bin);
+    }
+    for (auto& b : slab.ledger.bodies) numbers.push_back(&b.work);
+    for (auto& w : slab.ledger.body_force_work) numbers.push_back(&w);
+    visit.idle(slab.halo);
+  }
+  visit.scalars("ledger/numbers", numbers);
+  visit.scalars("ledger/counts", counts);
+}
+
+template <class Self, class SelfParts, class Visit>
+void System::each_bead_array(Self& self, SelfParts& parts, Visit& visit) {
+  WallLists::each_number(parts.walls, visit);
+  visit.whole("position", self.particles.position);
+  visit.whole("motion", self.particles.motion);
+  visit.whole("half", self.particles.half);
+  visit.whole("acceleration", self.particles.acceleration);
+  visit.whole("reference", self.particles.reference);
+  visit.whole("id", self.particles.id);
+  visit.whole("material", self.particles.material);
+  visit.idle(self.particles.force);
+  parts.order.each_idle(visit);
+}
+
+template <class Self, class SelfParts, class Visit>
+void System::each_list_array(Self& self, SelfParts& parts, Visit& visit) {
+  PairLists::each_array(parts.pairs, visit);
+  for (int body = 0; body < std::ssize(self.bodies); ++body) {
+    WallLists::each_array(parts.walls, body, visit);
+    Step::each_work(parts.step, body, visit);
+  }
+  Step::each_book(parts.step, visit);
+}
+
+/// Time and shape of the state.
+std::array<std::int64_t, 6> System::counters() const {
+  return {step_, rebuilds_, rebuild_needed_, settings().partitions, layout().history_count(), std::ssize(physics())};
 }
 
 void System::save(const DoubleSink& doubles, const IntegerSink& integers) const {
   StateWriter visit(doubles, integers);
   const std::array<std::int64_t, 6> now = counters();
   visit.scalars("counters", pointers_to(now));
-  each_bead_array(*this, visit);
-  each_list_array(*this, visit);
+  each_bead_array(*this, std::as_const(*parts_), visit);
+  each_list_array(*this, std::as_const(*parts_), visit);
 }
 
 void System::restore(const DoubleSource& doubles, const IntegerSource& integers) {
@@ -195,30 +197,26 @@ void System::restore(const DoubleSource& doubles, const IntegerSource& integers)
         "the checkpoint was written with other plugins, materials or run.partitions than the case has now; put them back");
   }
   step_ = saved[0];
-  each_bead_array(*this, visit);
-  demand_sound(particles, material_count_);
-  particles.force.assign(particles.position.size(), ForceLine{});
-  prepare();
   rebuilds_ = saved[1];
   rebuild_needed_ = saved[2] != 0;
-  each_list_array(*this, visit);
-  for (int slab = 0; slab < settings_.partitions; ++slab) {
-    SlabState& state = *slabs_[slab];
-    std::int64_t end = beads_of(slab).end;
-    for (const PairList& list : state.lists) {
-      demand_sound(list, beads_of(slab), particles.count());
-      for (const std::uint32_t partner : list.partner) end = std::max<std::int64_t>(end, partner + 1);
-    }
-    for (const WallSlab& wall : state.walls) demand_sound(wall, beads_of(slab));
-    state.halo.assign(end - beads_of(slab).end, ForceLine{});
+  Parts& parts = *parts_;
+  each_bead_array(*this, parts, visit);
+  demand_sound(particles, parts.common.physics.material_count());
+  particles.force.assign(particles.position.size(), ForceLine{});
+  parts.prepare(particles);
+  each_list_array(*this, parts, visit);
+  for (int slab = 0; slab < parts.common.slabs.count; ++slab) {
+    const BeadRange beads = parts.common.slabs.range(slab);
+    for (int q = 0; q < parts.common.physics.count(); ++q) demand_sound(parts.pairs.of(slab, q), beads, particles.count());
+    for (int body = 0; body < std::ssize(bodies); ++body) demand_sound(parts.walls.of(slab, body), beads);
   }
-  prepare_sweeps();
+  parts.step.lists_changed();
 }
 
 std::size_t System::memory_bytes() const {
   StateBytes bytes;
-  each_bead_array(*this, bytes);
-  each_list_array(*this, bytes);
+  each_bead_array(*this, std::as_const(*parts_), bytes);
+  each_list_array(*this, std::as_const(*parts_), bytes);
   return bytes.count();
 }
 

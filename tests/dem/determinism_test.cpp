@@ -4,6 +4,8 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <regex>
+#include <set>
 
 #include "dem/support.hpp"
 #include "kernel/base/error.hpp"
@@ -135,6 +137,33 @@ TEST_CASE("a restored system continues bit for bit") {
     CHECK(wall_contacts);
     CHECK(pair_contacts);
   }
+}
+
+TEST_CASE("the bytes of a system are those of its beads, lists and walls") {
+  Assembly a = ready(mixed_drum());
+  const std::size_t beads = a.system->particles.id.size();
+  const std::size_t lines =
+      2 * sizeof(dem::PositionLine) + 3 * sizeof(dem::MotionLine) + sizeof(dem::AccelerationLine) + sizeof(dem::ReferenceLine);
+  const std::size_t list = static_cast<std::size_t>(a.system->listed_pairs()) * (2 * sizeof(std::uint32_t) + 1);
+  CHECK(a.system->memory_bytes() > beads * (lines + 13) + list);
+  CHECK(a.system->memory_bytes() < 2 * (beads * (lines + 13) + list));
+}
+
+TEST_CASE("what a checkpoint holds has the names that resuming an older one needs") {
+  const Saved state = saved(ready(mixed_drum()));
+  const auto kinds = [](const auto& arrays) {
+    std::set<std::string> names;
+    for (const auto& [name, values] : arrays) names.insert(std::regex_replace(name, std::regex("[0-9]+"), "#"));
+    return names;
+  };
+  CHECK(kinds(state.doubles) == std::set<std::string>{"acceleration", "half", "ledger/numbers", "motion", "pairs/#/contact_history_#",
+                                                      "position", "reference", "walls/#/contact_normal", "walls/#/history_#",
+                                                      "walls/#/impact", "walls/#/shear", "walls_moved"});
+  CHECK(kinds(state.integers) == std::set<std::string>{"counters", "id", "ledger/counts", "material", "pairs/#/contacts", "pairs/#/count",
+                                                       "pairs/#/owner", "pairs/#/partner", "pairs/#/touching", "walls/#/bead",
+                                                       "walls/#/beads", "walls/#/candidate_count", "walls/#/candidates",
+                                                       "walls/#/contact_bead", "walls/#/contact_feature", "walls/#/contacts",
+                                                       "walls/#/first", "walls/#/offsets"});
 }
 
 TEST_CASE("a checkpoint whose numbers do not belong together is refused, never used as an index") {

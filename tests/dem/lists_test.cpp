@@ -8,6 +8,7 @@
 #include <set>
 
 #include "dem/support.hpp"
+#include "kernel/dem/pair_lists.hpp"
 #include "millscope/random.hpp"
 
 using namespace dem_test;
@@ -18,16 +19,17 @@ using IdPairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
 /// All listed pairs as (smaller id, larger id); fails on a repeat, a self or an owner after its partner.
 IdPairs listed(const Assembly& a) {
-  const Saved s = saved(a);
+  const dem::PairLists& lists = a.system->pair_lists();
+  const std::vector<std::uint32_t>& id = a.system->particles.id;
   IdPairs found;
-  for (std::size_t p = 0; p < a.system->physics().size(); ++p) {
-    const auto& owner = s.integers.at(fmt::format("pairs/{}/owner", p));
-    const auto& partner = s.integers.at(fmt::format("pairs/{}/partner", p));
-    for (std::size_t k = 0; k < owner.size(); ++k) {
-      REQUIRE(owner[k] < partner[k]);
-      const std::uint32_t i = a.system->particles.id[static_cast<std::size_t>(owner[k])],
-                          j = a.system->particles.id[static_cast<std::size_t>(partner[k])];
-      REQUIRE(found.emplace(std::min(i, j), std::max(i, j)).second);
+  for (int slab = 0; slab < a.system->settings().partitions; ++slab) {
+    for (int p = 0; p < std::ssize(a.system->physics()); ++p) {
+      const dem::PairList& list = lists.of(slab, p);
+      for (std::int64_t s = 0; s < list.count(); ++s) {
+        REQUIRE(list.owner[s] < list.partner[s]);
+        const std::uint32_t i = id[list.owner[s]], j = id[list.partner[s]];
+        REQUIRE(found.emplace(std::min(i, j), std::max(i, j)).second);
+      }
     }
   }
   return found;
@@ -142,24 +144,23 @@ TEST_CASE("lists stay complete while fast and slow beads fly through one another
   }
   start(a, apart);
   for (int k = 0; k < 400; ++k) {
-    const Saved before = saved(a);
+    const dem::Particles before = a.system->particles;
     a.system->advance();
     // A pair in touch at the step that was just taken must be listed: the lists may be older than it, never too narrow.
     const IdPairs have = listed(a);
-    const auto& x = before.doubles.at("position");
-    const auto& ids = before.integers.at("id");
     bool complete = true;
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      for (std::size_t j = i + 1; j < ids.size(); ++j) {
+    for (std::size_t i = 0; i < before.id.size(); ++i) {
+      for (std::size_t j = i + 1; j < before.id.size(); ++j) {
+        const dem::PositionLine &x = before.position[i], &y = before.position[j];
         double square = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
+        for (int c = 0; c < 3; ++c) {
           const double length = a.system->settings().periodic.length[c];
-          double d = x[4 * i + c] - x[4 * j + c];
+          double d = x.centre[c] - y.centre[c];
           d -= length * std::round(d / length);
           square += d * d;
         }
-        const double sum = x[4 * i + 3] + x[4 * j + 3];
-        const auto p = static_cast<std::uint32_t>(std::min(ids[i], ids[j])), q = static_cast<std::uint32_t>(std::max(ids[i], ids[j]));
+        const double sum = x.radius + y.radius;
+        const auto [p, q] = std::minmax(before.id[i], before.id[j]);
         complete = complete && (square >= sum * sum || have.count({p, q}) == 1);
       }
     }

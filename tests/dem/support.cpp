@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "kernel/dem/wide.hpp"
 #include "kernel/host/registry.hpp"
 
 namespace dem_test {

@@ -1,0 +1,117 @@
+#include "kernel/dem/cell_order.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "kernel/base/error.hpp"
+
+namespace millscope::dem {
+namespace {
+
+double speed(const MotionLine& m) { return std::sqrt(m.v[0] * m.v[0] + m.v[1] * m.v[1] + m.v[2] * m.v[2]); }
+
+/// The skin is cut by what rounding to single precision may hide of a displacement.
+ReferenceLine reference_of(const PositionLine& x, double skin) {
+  const double* c = x.centre;
+  const double hidden = 2e-7 * (std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2])), allowed = std::max(0.0, skin - hidden);
+  return {{static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2])}, static_cast<float>(allowed * allowed)};
+}
+
+/// Of one slab.
+struct Measured {
+  Extent extent;
+  std::optional<std::int64_t> lost;  ///< a bead outside the domain
+};
+
+}  // namespace
+
+/// Wraps, and finds reaches and references.
+Extent CellOrder::measure(Particles& p, double time) {
+  const Settings& settings = common_.settings;
+  double largest_radius = 0;
+  for (const PositionLine& x : p.position) largest_radius = std::max(largest_radius, x.radius);
+  const double law_reach = common_.physics.reach();
+  reaches_.resize(p.position.size());
+  std::vector<Measured> measured(common_.slabs.count);
+  common_.each_slab([&](int slab, int) {
+    Measured& m = measured[slab];
+    for (std::int64_t i = common_.slabs.begin(slab); i < common_.slabs.end(slab); ++i) {
+      PositionLine& x = p.position[i];
+      for (int a = 0; a < 3; ++a) {
+        double& c = x.centre[a];
+        c = wrapped(settings, a, c);
+        if (!(c >= settings.low[a] && c <= settings.high[a])) m.lost = i;
+        m.extent.low[a] = std::min(m.extent.low[a], c);
+        m.extent.high[a] = std::max(m.extent.high[a], c);
+      }
+      const double skin = std::min(settings.skin_cap * largest_radius,
+                                   settings.skin_base * x.radius + settings.skin_steps * settings.time_step * speed(p.motion[i]));
+      reaches_[i] = x;
+      reaches_[i].radius = x.radius + skin + 0.5 * law_reach;
+      p.reference[i] = reference_of(x, skin);
+      m.extent.reach = std::max(m.extent.reach, reaches_[i].radius);
+    }
+  });
+  Extent all;
+  for (const Measured& m : measured) {
+    if (m.lost) throw base::UserError(complaint(p, *m.lost, time, "has left the domain"));
+    all.reach = std::max(all.reach, m.extent.reach);
+    for (int a = 0; a < 3; ++a) {
+      all.low[a] = std::min(all.low[a], m.extent.low[a]);
+      all.high[a] = std::max(all.high[a], m.extent.high[a]);
+    }
+  }
+  return all;
+}
+
+/// Brings values into the new order, over other memory that is free.
+template <class Values>
+void CellOrder::permute(Values& values, AlignedVector<ForceLine>& free) {
+  using Item = typename Values::value_type;
+  static_assert(sizeof(Item) <= sizeof(ForceLine));
+  unsigned char* const there = reinterpret_cast<unsigned char*>(free.data());
+  common_.each_slab([&](int slab, int) {
+    for (std::int64_t i = common_.slabs.begin(slab); i < common_.slabs.end(slab); ++i) {
+      std::memcpy(there + new_index_[i] * sizeof(Item), &values[i], sizeof(Item));
+    }
+  });
+  common_.each_slab([&](int slab, int) {
+    const BeadRange beads = common_.slabs.range(slab);
+    std::memcpy(static_cast<void*>(values.data() + beads.begin), there + beads.begin * sizeof(Item),
+                (beads.end - beads.begin) * sizeof(Item));
+  });
+}
+
+void CellOrder::renew(Particles& p, double time) {
+  const Extent extent = measure(p, time);
+  grid_.fit(common_.settings, extent, p.count());
+  new_index_.resize(p.position.size());
+  common_.each_slab([&](int slab, int) {
+    for (std::int64_t i = common_.slabs.begin(slab); i < common_.slabs.end(slab); ++i) new_index_[i] = grid_.cell_of(reaches_[i]);
+  });
+  grid_.number(new_index_);
+  // Between steps the forces are zero and their lines are free: the largest of all serve as the other half.
+  permute(p.acceleration, p.force);
+  permute(p.motion, p.force);
+  permute(p.half, p.force);
+  permute(p.position, p.force);
+  permute(p.reference, p.force);
+  permute(reaches_, p.force);
+  permute(p.id, p.force);
+  permute(p.material, p.force);
+}
+
+std::span<const std::uint32_t> CellOrder::near(std::int64_t i, const Neighbourhood& round, std::vector<std::uint32_t>& memory) const {
+  std::int64_t count = 0;
+  for (const BeadRange& range : round) {
+    const std::int64_t from = std::max(range.begin, i + 1), more = range.end - from;
+    if (more <= 0) continue;
+    if (std::ssize(memory) < count + more + 8) memory.resize(2 * (count + more) + 64);
+    count += common_.wide.near(reaches_.data(), common_.settings.periodic, i, from, range.end, memory.data() + count);
+  }
+  return {memory.data(), static_cast<std::size_t>(count)};
+}
+
+}  // namespace millscope::dem

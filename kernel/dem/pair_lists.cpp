@@ -1,0 +1,137 @@
+#include "kernel/dem/pair_lists.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace millscope::dem {
+
+PairListView PairList::view() {
+  PairListView v{};
+  v.count = count();
+  v.owner = owner.data();
+  v.partner = partner.data();
+  v.touching = touching.data();
+  v.history_count = static_cast<std::int32_t>(history.size());
+  for (int h = 0; h < v.history_count; ++h) {
+    v.history[h] = history[h].data();
+    v.next[h] = next[h].data();
+  }
+  return v;
+}
+
+std::int64_t PairList::contact_count() const { return std::count(touching.begin(), touching.end(), 1); }
+
+void PairList::make_room(PairListView& v) {
+  const std::int64_t needed = v.written + kBatch;
+  for (int h = 0; h < v.history_count; ++h) {
+    if (std::ssize(next[h]) < needed) next[h].resize(needed + needed / 8);
+    v.next[h] = next[h].data();
+  }
+}
+
+void PairLists::clear() {
+  PairList empty;
+  empty.history.resize(common_.layout.history_count());
+  empty.next.resize(common_.layout.history_count());
+  slabs_.assign(common_.slabs.count, SlabLists{std::vector<PairList>(common_.physics.count(), empty)});
+}
+
+std::int64_t PairLists::count() const {
+  std::int64_t sum = 0;
+  for (const SlabLists& slab : slabs_) {
+    for (const PairList& list : slab.lists) sum += list.count();
+  }
+  return sum;
+}
+
+std::int64_t PairLists::reach_end(int slab) const {
+  std::int64_t end = common_.slabs.end(slab);
+  for (const PairList& list : slabs_[slab].lists) {
+    for (const std::uint32_t partner : list.partner) end = std::max<std::int64_t>(end, std::int64_t{partner} + 1);
+  }
+  return end;
+}
+
+/// Collects the histories of touching pairs by their owner in the new order; an exchanged owner flips the signs.
+void PairLists::carry(const std::vector<std::uint32_t>& new_index) {
+  const std::int64_t histories = common_.layout.history_count();
+  carried_.start.assign(new_index.size() + 1, 0);
+  each_contact([&](const PairList& list, std::int64_t slot, std::int64_t) {
+    ++carried_.start[std::min(new_index[list.owner[slot]], new_index[list.partner[slot]]) + 1];
+  });
+  std::partial_sum(carried_.start.begin(), carried_.start.end(), carried_.start.begin());
+  carried_.partner.resize(carried_.start.back());
+  carried_.history.resize(carried_.start.back() * histories);
+  std::vector<std::uint32_t> next(carried_.start.begin(), carried_.start.end() - 1);
+  each_contact([&](const PairList& list, std::int64_t slot, std::int64_t contact) {
+    const std::uint32_t i = new_index[list.owner[slot]], j = new_index[list.partner[slot]];
+    const std::int64_t at = next[std::min(i, j)]++;
+    carried_.partner[at] = std::max(i, j);
+    for (std::int64_t h = 0; h < histories; ++h) {
+      carried_.history[at * histories + h] = (i < j ? 1.0 : common_.layout.history_sign[h]) * list.history[h][contact];
+    }
+  });
+}
+
+/// Makes the lists of one slab.
+class PairLists::Builder {
+ public:
+  Builder(const Common& common, const Carried& carried, std::vector<PairList>& lists) : common_(common), carried_(carried), lists_(lists) {
+    for (PairList& list : lists_) {
+      list.owner.clear();
+      list.partner.clear();
+      list.touching.clear();
+      for (auto& h : list.history) h.clear();
+    }
+  }
+
+  void run(const CellOrder& order, BeadRange slab, const std::vector<std::uint8_t>& material) {
+    std::vector<std::uint32_t> memory;
+    std::int64_t cell = order.grid().cell_at(slab.begin);
+    for (std::int64_t i = slab.begin; i < slab.end;) {
+      while (order.grid().end_of(cell) <= i) ++cell;
+      const Neighbourhood round = order.grid().round(cell, i);
+      for (const std::int64_t end = std::min(slab.end, order.grid().end_of(cell)); i < end; ++i) {
+        const std::span<const std::uint32_t> partners = order.near(i, round, memory);
+        const std::uint32_t owner = static_cast<std::uint32_t>(i);
+        if (common_.physics.material_count() == 1) {
+          append(lists_[common_.physics.of_beads(0, 0)], owner, partners);
+        } else {
+          for (const std::uint32_t& j : partners) append(lists_[common_.physics.of_beads(material[i], material[j])], owner, {&j, 1});
+        }
+      }
+    }
+  }
+
+ private:
+  void append(PairList& list, std::uint32_t owner, std::span<const std::uint32_t> partners) {
+    const std::int64_t base = list.count();
+    list.partner.insert(list.partner.end(), partners.begin(), partners.end());
+    list.owner.insert(list.owner.end(), partners.size(), owner);
+    list.touching.resize(list.owner.size(), 0);
+    kept_.clear();
+    for (std::uint32_t e = carried_.start[owner]; e < carried_.start[owner + 1]; ++e) {
+      const auto at = std::find(list.partner.begin() + base, list.partner.end(), carried_.partner[e]);
+      if (at == list.partner.end()) continue;
+      list.touching[at - list.partner.begin()] = 1;
+      kept_.emplace_back(at - list.partner.begin(), e);
+    }
+    std::sort(kept_.begin(), kept_.end());
+    const std::int64_t histories = std::ssize(list.history);
+    for (const auto& [slot, e] : kept_) {
+      for (std::int64_t h = 0; h < histories; ++h) list.history[h].push_back(carried_.history[e * histories + h]);
+    }
+  }
+
+  const Common& common_;
+  const Carried& carried_;
+  std::vector<PairList>& lists_;
+  std::vector<std::pair<std::int64_t, std::uint32_t>> kept_;  ///< of one owner: slot and entry of each carried history
+};
+
+void PairLists::rebuild(const CellOrder& order, const std::vector<std::uint8_t>& material) {
+  carry(order.new_index());
+  common_.each_slab([&](int slab, int) { Builder(common_, carried_, slabs_[slab].lists).run(order, common_.slabs.range(slab), material); });
+}
+
+}  // namespace millscope::dem

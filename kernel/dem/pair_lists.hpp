@@ -1,0 +1,77 @@
+// The lists of pairs: which beads are near one another, made anew at each rebuild, with the histories of the pairs that touch.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kernel/dem/batch.hpp"
+#include "kernel/dem/cell_order.hpp"
+
+namespace millscope::dem {
+
+/// Pairs of one slab and one pair of materials; what stands where: PairListView.
+struct PairList {
+  std::vector<std::uint32_t> owner, partner;
+  std::vector<std::uint8_t> touching;
+  std::vector<std::vector<double>> history;  ///< [number][contact]: of the touching slots, in their order; may have room to spare
+  std::vector<std::vector<double>> next;     ///< the same of the step that is being made
+
+  std::int64_t count() const { return std::ssize(owner); }
+  std::int64_t contact_count() const;
+  PairListView view();
+  void make_room(PairListView& view);       ///< in `next` for one more batch
+  void end_sweep() { history.swap(next); }  ///< `next` becomes `history`
+};
+
+class PairLists {
+ public:
+  explicit PairLists(Common& common) : common_(common) {}
+
+  /// Empty lists.
+  void clear();
+  /// Lists, by new numbers, all pairs whose reaches overlap. The histories of touching pairs are carried over; where owner and partner
+  /// change places, the numbers that a law declares odd change sign.
+  void rebuild(const CellOrder& order, const std::vector<std::uint8_t>& material_of_bead);
+
+  PairList& of(int slab, int physics_index) { return slabs_[slab].lists[physics_index]; }
+  const PairList& of(int slab, int physics_index) const { return slabs_[slab].lists[physics_index]; }
+  /// The beads of later slabs that a slab reaches begin at its end, and end here.
+  std::int64_t reach_end(int slab) const;
+  std::int64_t count() const;
+
+  /// visit(list, slot, contact) for all pairs that touch: `contact` is the place in `history`.
+  template <class Visit>
+  void each_contact(const Visit& visit) const {
+    for (const SlabLists& slab : slabs_) {
+      for (const PairList& list : slab.lists) {
+        std::int64_t contact = 0;
+        for (std::int64_t s = 0; s < std::ssize(list.touching); ++s) {
+          if (list.touching[s]) visit(list, s, contact++);
+        }
+      }
+    }
+  }
+
+  /// For visitors of the state (state_visitors.hpp), in state.cpp.
+  template <class Self, class Visit>
+  static void each_array(Self& self, Visit& visit);
+
+ private:
+  struct alignas(kCacheLine) SlabLists {
+    std::vector<PairList> lists;  ///< [physics]; those with a wall stay empty
+  };
+  /// Histories on their way to a new list, by the new number of the owner.
+  struct Carried {
+    std::vector<std::uint32_t> start;  ///< [owner]; one more at the end
+    std::vector<std::uint32_t> partner;
+    std::vector<double> history;  ///< [contact][number]
+  };
+  class Builder;
+  void carry(const std::vector<std::uint32_t>& new_index);
+
+  Common& common_;
+  std::vector<SlabLists> slabs_;
+  Carried carried_;
+};
+
+}  // namespace millscope::dem

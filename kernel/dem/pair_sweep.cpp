@@ -1,0 +1,76 @@
+#include "kernel/dem/pair_sweep.hpp"
+
+#include <algorithm>
+
+#include "kernel/dem/evaluate.hpp"
+
+namespace millscope::dem {
+
+std::optional<Alike> alike_of(const Particles& particles, const PairPhysics& physics) {
+  double radius = -1, mass = 0;
+  for (std::int64_t i = 0; i < particles.count(); ++i) {
+    const int material = particles.material[i];
+    if (material != physics.first && (physics.wall || material != physics.second)) continue;
+    const double own_radius = particles.position[i].radius, own_mass = 1.0 / particles.motion[i].inverse_mass;
+    if (radius < 0) {
+      radius = own_radius;
+      mass = own_mass;
+    }
+    if (own_radius != radius || own_mass != mass) return std::nullopt;
+  }
+  if (radius < 0) return std::nullopt;
+  const auto everywhere = [](double value) { return AlignedVector<double>(kBatchStride, value); };
+  return Alike{radius, 0.5 * mass, everywhere(0.5 * radius), everywhere(0.5 * mass), everywhere(radius)};
+}
+
+PairSweep::PairSweep(const SlabPass& pass, int physics_index, PairList& list, const std::optional<Alike>& alike)
+    : pass_(pass),
+      physics_(pass.common.physics[physics_index]),
+      ledger_(pass.state.ledger.pairs[physics_index]),
+      list_(list),
+      view_(list.view()),
+      batch_(pass.scratch.pairs),
+      gather_{} {
+  gather_.position = pass.particles.position.data();
+  gather_.motion = pass.particles.motion.data();
+  gather_.box = pass.common.settings.periodic;
+  gather_.reach = physics_.reach;
+  gather_.spins = !physics_.interactions.empty();
+  gather_.equal = alike.has_value();
+  if (!alike) return;
+  gather_.radius = alike->radius;
+  gather_.mass = alike->reduced_mass;
+  batch_.radius = const_cast<double*>(alike->reduced_radii.data());  // `equal` keeps `gather` from writing there
+  batch_.mass = const_cast<double*>(alike->reduced_masses.data());
+  batch_.radius_i = batch_.radius_j = const_cast<double*>(alike->radii.data());
+}
+
+void PairSweep::look_ahead(BeadRange ahead) {
+  gather_.ahead = ahead.begin;
+  gather_.ahead_end = ahead.end;
+  gather_.ahead_force = nullptr;
+  const std::int64_t slab_end = pass_.common.slabs.end(pass_.slab);
+  if (ahead.begin == ahead.end) return;
+  if (ahead.begin >= slab_end) {
+    gather_.ahead_force = pass_.state.halo.data() + (ahead.begin - slab_end);
+  } else if (!pass_.state.force.is_ring()) {
+    gather_.ahead_force = &pass_.state.force[ahead.begin];
+    gather_.ahead_end = std::min(ahead.end, slab_end);
+  }
+}
+
+void PairSweep::batch(std::int64_t first, BeadRange ahead) {
+  look_ahead(ahead);
+  const std::int64_t last = std::min(view_.count, first + kBatch);
+  const WideTable& wide = pass_.common.wide;
+  const std::int64_t count = wide.search(gather_, view_, first, last, batch_);
+  if (count == 0) return;
+  list_.make_room(view_);
+  wide.gather(gather_, view_, count, batch_);
+  book_contacts(pass_.step, count, batch_, ledger_);
+  evaluate({&physics_, pass_.common.settings.time_step, count, false}, batch_, ledger_);
+  const ScatterContext scatter{pass_.state.force, pass_.state.halo.data(), pass_.common.slabs.end(pass_.slab), gather_.equal};
+  wide.scatter(scatter, view_, count, physics_.has_post(), batch_);
+}
+
+}  // namespace millscope::dem

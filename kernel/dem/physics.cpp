@@ -1,0 +1,31 @@
+#include "kernel/dem/physics.hpp"
+
+#include <utility>
+
+namespace millscope::dem {
+
+PhysicsTable::PhysicsTable(std::vector<PairPhysics> all, int material_count)
+    : all_(std::move(all)), material_count_(material_count), of_beads_(material_count * material_count, -1), of_wall_(of_beads_) {
+  for (int p = 0; p < count(); ++p) {
+    const PairPhysics& physics = all_[p];
+    reach_ = std::max(reach_, physics.reach);
+    if (physics.wall) {
+      of_wall_[physics.first * material_count + physics.second] = p;
+      wall_reach_ = std::max(wall_reach_, physics.reach);
+    } else {
+      of_beads_[physics.first * material_count + physics.second] = p;
+      of_beads_[physics.second * material_count + physics.first] = p;
+    }
+  }
+}
+
+std::vector<std::uint8_t> normal_channels(const Layout& layout) {
+  std::vector<std::uint8_t> normal;
+  for (const std::string& channel : layout.channels) {
+    const std::string own = channel.substr(channel.rfind('.') + 1);
+    normal.push_back(own.find("normal") != std::string::npos || own.find("adhesion") != std::string::npos);
+  }
+  return normal;
+}
+
+}  // namespace millscope::dem

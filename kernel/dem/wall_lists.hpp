@@ -1,0 +1,97 @@
+// The beads near each body, made anew at each rebuild, and the contacts that last, by bead, feature and nearest normal.
+#pragma once
+
+#include <compare>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "kernel/dem/body.hpp"
+#include "kernel/dem/cell_order.hpp"
+#include "kernel/dem/rows.hpp"
+
+namespace millscope::dem {
+
+/// Contacts of one slab with one body: a history is found again by bead, feature and the nearest normal.
+struct WallContacts {
+  std::vector<std::uint32_t> bead;  ///< index into WallList::bead
+  std::vector<std::uint32_t> feature;
+  std::vector<Row> normal;                   ///< in the body's frame
+  std::vector<std::vector<double>> history;  ///< [number][contact]
+
+  static constexpr std::uint32_t kUsedUp =
+      std::numeric_limits<std::uint32_t>::max();  ///< feature of a contact that is not to be found again
+
+  std::int64_t count() const { return std::ssize(bead); }
+  void resize(std::int64_t n);
+  /// The contact of a bead with this feature whose normal is nearest; it can be taken once. `cursor`, the first contact of this bead or of
+  /// a later one, is kept from call to call: beads come in ascending order.
+  std::optional<std::int64_t> take(std::int64_t& cursor, std::uint32_t bead, std::uint32_t feature, const Row& normal);
+};
+
+/// The beads of one slab that are near one body.
+struct WallList {
+  std::vector<std::uint32_t> bead;  ///< ascending
+  std::vector<std::int64_t> first;  ///< [bead]: its first candidate; one more at the end
+  std::vector<std::uint32_t> candidates;
+  WallContacts active, next;  ///< of the last step, and of the one that is being made
+  std::int64_t swept = 0;     ///< entries of `bead` that this step has been through
+  std::int64_t matched = 0;   ///< contacts of `active` that it has passed: `cursor` of `take`
+};
+
+class WallLists {
+ public:
+  WallLists(Common& common, const std::vector<Body>& bodies) : common_(common), bodies_(bodies) {}
+
+  /// Empty lists for the bodies that there are.
+  void clear();
+  /// Asks every geometry for the features near each bead; contacts that last go to the slabs that own the beads now.
+  void rebuild(const CellOrder& order, Particles& particles, double time);
+  /// The walls have moved on by one step. True: by more than the lists allow.
+  bool move_on();
+
+  const std::vector<Body>& bodies() const { return bodies_; }
+  WallList& of(int slab, int body) { return slabs_[slab].lists[body]; }
+  const WallList& of(int slab, int body) const { return slabs_[slab].lists[body]; }
+
+  /// visit(list, contact) for all contacts of the last step with a body.
+  template <class Visit>
+  void each_contact(int body, const Visit& visit) const {
+    for (const SlabLists& slab : slabs_) {
+      for (std::int64_t c = 0; c < slab.lists[body].active.count(); ++c) visit(slab.lists[body], c);
+    }
+  }
+
+  /// For visitors of the state (state_visitors.hpp), in state.cpp.
+  template <class Self, class Visit>
+  static void each_array(Self& self, int body, Visit& visit);
+  template <class Self, class Visit>
+  static void each_number(Self& self, Visit& visit);
+
+ private:
+  struct alignas(kCacheLine) SlabLists {
+    std::vector<WallList> lists;  ///< [body]
+  };
+  struct Carried {
+    std::uint32_t bead, feature;  ///< bead: its new number
+    Row normal;
+    std::vector<double> history;
+  };
+  struct Near {
+    std::uint32_t bead, feature;
+    friend auto operator<=>(const Near&, const Near&) = default;
+  };
+  double greatest_speed() const;
+  std::vector<Near> near(const Body& body, const CellOrder& order, Particles& particles, const Pose& pose);
+  std::vector<Carried> take_contacts(int body, const std::vector<std::uint32_t>& new_index);
+  void deal(int body, const std::vector<Near>& near, const std::vector<Carried>& carried);
+
+  Common& common_;
+  const std::vector<Body>& bodies_;
+  std::vector<SlabLists> slabs_;
+  double speed_ = 0;   ///< greatest of any wall, m/s
+  double margin_ = 0;  ///< the walls may move this far before a rebuild, m
+  double moved_ = 0;   ///< bound on their displacement since the rebuild, m
+};
+
+}  // namespace millscope::dem

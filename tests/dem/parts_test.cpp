@@ -1,0 +1,327 @@
+// The parts of a system by themselves: order, lists, schedule; no plugin, no step.
+#include <catch2/catch.hpp>
+
+#include <fmt/core.h>
+
+#include <map>
+#include <set>
+
+#include "kernel/dem/schedule.hpp"
+#include "kernel/dem/wall_lists.hpp"
+#include "millscope/random.hpp"
+
+using namespace millscope;
+using namespace millscope::dem;
+
+namespace {
+
+constexpr double kSide = 0.05, kBeadRadius = 2.5e-3;  // m
+
+Settings open_box(int partitions) {
+  Settings s;
+  s.time_step = 1e-5;
+  s.partitions = partitions;
+  for (int a = 0; a < 3; ++a) {
+    s.low[a] = -1;
+    s.high[a] = 1;
+  }
+  return s;
+}
+
+PhysicsTable one_material() {
+  PairPhysics beads, wall;
+  wall.second = 1;
+  wall.wall = true;
+  return {{beads, wall}, 2};
+}
+
+/// Two numbers per contact, the second odd: it changes sign when owner and partner change places.
+const Layout kOneEvenOneOdd{{}, {1, -1}};
+
+Particles strewn(std::int64_t count, std::uint64_t seed) {
+  Random random(seed);
+  Particles p;
+  p.resize(count);
+  for (std::int64_t i = 0; i < count; ++i) {
+    p.position[i].radius = kBeadRadius;
+    for (double& c : p.position[i].centre) c = kSide * random.uniform();
+    p.id[i] = static_cast<std::uint32_t>(i);
+  }
+  return p;
+}
+
+/// Order and pair lists of some beads, and what they keep.
+struct Lists {
+  explicit Lists(Particles beads, int partitions = 4)
+      : common(open_box(partitions), kOneEvenOneOdd, one_material()), order(common), pairs(common), particles(std::move(beads)) {
+    common.slabs.beads = particles.count();
+    pairs.clear();
+    rebuild();
+  }
+  void rebuild() {
+    order.renew(particles, 0);
+    pairs.rebuild(order, particles.material);
+  }
+  /// Makes all pairs touch that overlap; the numbers say which pair it is, as seen from its owner.
+  void touch() {
+    for (int slab = 0; slab < common.slabs.count; ++slab) {
+      PairList& list = pairs.of(slab, 0);
+      for (auto& h : list.history) h.clear();
+      for (std::int64_t s = 0; s < list.count(); ++s) {
+        const std::uint32_t i = list.owner[s], j = list.partner[s];
+        list.touching[s] = distance(i, j) < 2 * kBeadRadius;
+        if (!list.touching[s]) continue;
+        list.history[0].push_back(name(i, j));
+        list.history[1].push_back(particles.id[i] < particles.id[j] ? name(i, j) : -name(i, j));
+      }
+    }
+  }
+  double name(std::uint32_t i, std::uint32_t j) const {
+    const auto [small, large] = std::minmax(particles.id[i], particles.id[j]);
+    return 1000.0 * small + large + 1;
+  }
+  double distance(std::uint32_t i, std::uint32_t j) const {
+    double square = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double d = particles.position[i].centre[a] - particles.position[j].centre[a];
+      square += d * d;
+    }
+    return std::sqrt(square);
+  }
+
+  Common common;
+  CellOrder order;
+  PairLists pairs;
+  Particles particles;
+};
+
+/// A geometry that says of each bead which features are near.
+struct MadeUpWall {
+  std::map<std::int64_t, std::set<std::uint32_t>> near;  ///< by bead
+};
+const GeometryTable kMadeUp = [] {
+  GeometryTable t{};
+  t.candidates = [](void* self, const GeometryBeads*, double, const CandidateSink* sink, Failure*) -> Status {
+    for (const auto& [bead, features] : static_cast<MadeUpWall*>(self)->near) {
+      for (const std::uint32_t f : features) sink->add(sink->host, bead, f);
+    }
+    return 0;
+  };
+  return t;
+}();
+
+}  // namespace
+
+TEST_CASE("histories follow their pairs through a rebuild, and odd ones change sign with the owner") {
+  Lists l(strewn(300, 1));
+  l.touch();
+  std::int64_t touching = 0;
+  l.pairs.each_contact([&](const PairList&, std::int64_t, std::int64_t) { ++touching; });
+  REQUIRE(touching > 100);
+  // Seen in a mirror the order of cells is another, and what is near stays near.
+  for (PositionLine& x : l.particles.position) {
+    for (double& c : x.centre) c = kSide - c;
+  }
+  l.rebuild();
+  std::int64_t exchanged = 0, kept = 0;
+  l.pairs.each_contact([&](const PairList& list, std::int64_t slot, std::int64_t contact) {
+    const std::uint32_t i = list.owner[slot], j = list.partner[slot];
+    const double sign = l.particles.id[i] < l.particles.id[j] ? 1 : -1;
+    CHECK(list.history[0][contact] == l.name(i, j));
+    CHECK(list.history[1][contact] == sign * l.name(i, j));
+    exchanged += sign < 0;
+    ++kept;
+  });
+  CHECK(kept == touching);
+  CHECK(exchanged > 20);
+  CHECK(exchanged < kept - 20);
+}
+
+TEST_CASE("a pair that is listed no more loses its history, the others keep theirs") {
+  Lists l(strewn(300, 2));
+  l.touch();
+  std::int64_t touching = 0, of_moved = 0;
+  const std::uint32_t moved = 17;  // an id
+  l.pairs.each_contact([&](const PairList& list, std::int64_t slot, std::int64_t) {
+    ++touching;
+    of_moved += l.particles.id[list.owner[slot]] == moved || l.particles.id[list.partner[slot]] == moved;
+  });
+  REQUIRE(of_moved > 0);
+  for (std::int64_t i = 0; i < l.particles.count(); ++i) {
+    if (l.particles.id[i] == moved) l.particles.position[i].centre[1] += 0.5;
+  }
+  l.rebuild();
+  std::int64_t kept = 0;
+  l.pairs.each_contact([&](const PairList& list, std::int64_t slot, std::int64_t contact) {
+    CHECK(list.history[0][contact] == l.name(list.owner[slot], list.partner[slot]));
+    ++kept;
+  });
+  CHECK(kept == touching - of_moved);
+}
+
+TEST_CASE("the number of slabs changes how the lists are cut, and nothing else") {
+  const auto all = [](const Lists& l) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
+    for (int slab = 0; slab < l.common.slabs.count; ++slab) {
+      const PairList& list = l.pairs.of(slab, 0);
+      for (std::int64_t s = 0; s < list.count(); ++s) found.emplace_back(list.owner[s], list.partner[s]);
+    }
+    return found;
+  };
+  const Lists one(strewn(300, 3), 1), many(strewn(300, 3), 7), more_than_beads(strewn(300, 3), 400);
+  CHECK(one.pairs.count() > 150);
+  CHECK(all(one) == all(many));
+  CHECK(all(one) == all(more_than_beads));
+}
+
+TEST_CASE("a contact at a wall is found again by bead, feature and the nearest normal, once") {
+  WallContacts c;
+  c.resize(4);
+  c.bead = {3, 3, 3, 8};
+  c.feature = {1, 1, 2, 1};
+  c.normal = {Row{1, 0, 0}, Row{0, 1, 0}, Row{1, 0, 0}, Row{1, 0, 0}};
+  std::int64_t cursor = 0;
+  CHECK_FALSE(c.take(cursor, 2, 1, {1, 0, 0}));
+  CHECK_FALSE(c.take(cursor, 3, 9, {1, 0, 0}));
+  CHECK(c.take(cursor, 3, 1, {0.6, 0.8, 0}) == 1);
+  CHECK(c.take(cursor, 3, 1, {0.6, 0.8, 0}) == 0);  // the nearest is taken
+  CHECK_FALSE(c.take(cursor, 3, 1, {1, 0, 0}));
+  CHECK(c.take(cursor, 3, 2, {0, 0, 1}) == 2);
+  CHECK(c.take(cursor, 8, 1, {0, 0, 1}) == 3);
+}
+
+TEST_CASE("contacts at a wall go with their bead to its new number and slab, and end where it is no longer near") {
+  Lists l(strewn(200, 4), 5);
+  MadeUpWall wall;
+  std::vector<Body> bodies(1);
+  bodies[0].table = &kMadeUp;
+  bodies[0].self = &wall;
+  WallLists walls(l.common, bodies);
+  walls.clear();
+  const auto near_ids = [&](std::uint32_t first, std::uint32_t last) {
+    wall.near.clear();
+    for (std::int64_t i = 0; i < l.particles.count(); ++i) {
+      if (l.particles.id[i] >= first && l.particles.id[i] < last) wall.near[i] = {5, l.particles.id[i]};
+    }
+  };
+  near_ids(0, 100);
+  walls.rebuild(l.order, l.particles, 0);
+  std::int64_t near = 0;
+  for (int slab = 0; slab < 5; ++slab) {
+    WallList& list = walls.of(slab, 0);
+    near += std::ssize(list.bead);
+    REQUIRE(std::ssize(list.first) == std::ssize(list.bead) + 1);
+    list.active.resize(std::ssize(list.bead));
+    for (std::int64_t k = 0; k < std::ssize(list.bead); ++k) {
+      const std::uint32_t id = l.particles.id[list.bead[k]];
+      CHECK(list.bead[k] >= l.common.slabs.begin(slab));
+      CHECK(list.bead[k] < l.common.slabs.end(slab));
+      CHECK(std::set<std::uint32_t>(list.candidates.begin() + list.first[k], list.candidates.begin() + list.first[k + 1]) ==
+            std::set<std::uint32_t>{5, id});
+      list.active.bead[k] = static_cast<std::uint32_t>(k);
+      list.active.feature[k] = id;
+      list.active.history[0][k] = id + 0.5;
+    }
+  }
+  CHECK(near == 100);
+  for (PositionLine& x : l.particles.position) {
+    for (double& c : x.centre) c = kSide - c;
+  }
+  l.rebuild();
+  near_ids(40, 140);
+  walls.rebuild(l.order, l.particles, 0);
+  std::set<std::uint32_t> kept;
+  walls.each_contact(0, [&](const WallList& list, std::int64_t c) {
+    const std::uint32_t id = l.particles.id[list.bead[list.active.bead[c]]];
+    CHECK(list.active.feature[c] == id);
+    CHECK(list.active.history[0][c] == id + 0.5);
+    kept.insert(id);
+  });
+  CHECK(kept.size() == 60);
+  CHECK(*kept.begin() == 40);
+  CHECK(*kept.rbegin() == 99);
+}
+
+// A slab is gone through as a step does it: a bead is alive from the first pair that touches it until phase B has passed it.
+TEST_CASE("the ring of a slab holds all beads that carry forces at once, and each bead is asked for once before it is touched") {
+  Particles beads = strewn(20000, 5);
+  for (PositionLine& x : beads.position) x.centre[0] *= 20;  // longer than wide: a slab is much longer than its pairs reach
+  Settings settings = open_box(2);
+  settings.high[0] = 3;
+  Common common(settings, kOneEvenOneOdd, one_material());
+  common.slabs.beads = beads.count();
+  CellOrder order(common);
+  PairLists pairs(common);
+  Schedule schedule(common);
+  pairs.clear();
+  order.renew(beads, 0);
+  pairs.rebuild(order, beads.material);
+  schedule.renew(pairs);
+  for (int slab = 0; slab < 2; ++slab) {
+    INFO("slab " << slab);
+    const BeadRange range = common.slabs.range(slab);
+    const PairList& list = pairs.of(slab, 0);
+    const std::int64_t ring = schedule.ring(slab);
+    REQUIRE(ring > 0);
+    REQUIRE(ring < range.end - range.begin);
+    REQUIRE(list.count() > 20 * kBatch);
+    std::int64_t finished = range.begin, trails = 0, asked_to = range.begin, longest = 0;
+    bool in_order = true, asked = true;
+    for (std::int64_t first = 0; first < list.count(); first += kBatch) {
+      const BeadRange touched = schedule.first_touched(slab, first);
+      asked = asked && touched.begin == asked_to && touched.end >= touched.begin;
+      asked_to = touched.end;
+      const std::int64_t last = std::min(list.count(), first + kBatch);
+      for (std::int64_t s = first; s < last; ++s) {
+        asked = asked && list.partner[s] < asked_to;
+        if (list.partner[s] < range.end) longest = std::max(longest, list.partner[s] + 1 - finished);
+        in_order = in_order && list.owner[s] >= finished;
+      }
+      if (!Schedule::trails_at(last, list.count())) continue;
+      longest = std::max(longest, list.owner[last] - finished);
+      finished = list.owner[last];
+      ++trails;
+    }
+    longest = std::max(longest, range.end - finished);
+    CHECK(longest <= ring);
+    CHECK(longest > ring / 2);  // the next power of two
+    CHECK(in_order);
+    CHECK(asked);
+    CHECK(trails > 2);
+    const BeadRange behind = schedule.first_touched(slab, (list.count() / kBatch + 2) * kBatch);
+    CHECK(behind.begin == behind.end);
+    CHECK(std::max(asked_to, range.end) == range.end + schedule.halo_size(slab));
+  }
+  CHECK(schedule.halo_size(0) > 0);
+  CHECK(schedule.halo_size(1) == 0);
+  CHECK(schedule.follows_at_once(1, 0));
+}
+
+TEST_CASE("where lists of several pairs of materials follow one another, no bead is done with before the last: no ring") {
+  PairPhysics same, mixed, other;
+  mixed.second = other.first = other.second = 1;
+  Common common(open_box(2), kOneEvenOneOdd, PhysicsTable({same, mixed, other}, 2));
+  Particles beads = strewn(2000, 6);
+  for (std::int64_t i = 0; i < beads.count(); ++i) beads.material[i] = static_cast<std::uint8_t>(i % 2);
+  common.slabs.beads = beads.count();
+  CellOrder order(common);
+  PairLists pairs(common);
+  Schedule schedule(common);
+  pairs.clear();
+  order.renew(beads, 0);
+  pairs.rebuild(order, beads.material);
+  schedule.renew(pairs);
+  CHECK(schedule.last_list() == 2);
+  CHECK(schedule.ring(0) == 0);
+  for (int slab = 0; slab < 2; ++slab) {
+    for (int p = 0; p < 3; ++p) {
+      const PairList& list = pairs.of(slab, p);
+      CHECK(list.count() > 100);
+      bool right = true;
+      for (std::int64_t s = 0; s < list.count(); ++s) {
+        right = right && common.physics.of_beads(beads.material[list.owner[s]], beads.material[list.partner[s]]) == p;
+      }
+      CHECK(right);
+    }
+  }
+}
