@@ -40,7 +40,8 @@ double least_gap(const Assembly& a) {
   double least = 1e9;
   for (std::size_t i = 0; i < p.size(); ++i) {
     for (std::size_t j = i + 1; j < p.size(); ++j) {
-      double d[3] = {p[i].x - p[j].x, p[i].y - p[j].y, p[i].z - p[j].z}, square = 0;
+      const double *x = p[i].centre, *y = p[j].centre;
+      double d[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]}, square = 0;
       for (int k = 0; k < 3; ++k) {
         if (length[k] > 0) d[k] -= length[k] * std::round(d[k] / length[k]);
         square += d[k] * d[k];
@@ -113,8 +114,8 @@ TEST_CASE("no bead overlaps another, a wall or the inside of a lifter") {
     if (c.setup.geometry.find("mill") == std::string::npos) continue;
     // Inside the free cross-section: within the shell, and above the tops of the lifters (42 mm from the axis) only between them.
     for (const auto& x : a.system->particles.position) {
-      const double r = std::hypot(x.x, x.y), turn = std::numbers::pi / 4;
-      const double phi = std::remainder(std::atan2(x.y, x.x), turn);
+      const double r = std::hypot(x.centre[0], x.centre[1]), turn = std::numbers::pi / 4;
+      const double phi = std::remainder(std::atan2(x.centre[1], x.centre[0]), turn);
       CHECK(r <= 0.05 - x.radius);
       if (r > 0.042) CHECK(std::abs(r * std::sin(phi)) > 5e-3);  // a lifter is 10.8 mm wide at its top, more below
     }
@@ -206,7 +207,7 @@ TEST_CASE("beads of many sizes are scattered where the sites of the largest do n
     CHECK(third.system->state_hash() == again.system->state_hash());
     // The lower part is filled first.
     double highest = -1;
-    for (const auto& x : a.system->particles.position) highest = std::max(highest, x.y);
+    for (const auto& x : a.system->particles.position) highest = std::max(highest, x.centre[1]);
     CHECK(highest < 0.045);
   }
 }
@@ -220,7 +221,7 @@ TEST_CASE("few beads in a large vessel take the lowest places of the lattice, wh
     return filled(s);
   };
   const Assembly a = lowest("0");
-  for (const auto& x : a.system->particles.position) CHECK(x.y < 2e-3);
+  for (const auto& x : a.system->particles.position) CHECK(x.centre[1] < 2e-3);
   CHECK_THROWS_WITH(lowest("-1e5"), Catch::Contains("places for beads") && Catch::Contains("fill.region"));
 }
 
