@@ -19,10 +19,10 @@ struct GeometryUse {
   Interior interior{};
 };
 
-/// Everything a run is made of. Movable only.
 /// More steps than any run will take, and few enough to be counted exactly.
 inline constexpr double kMostSteps = 1e15;
 
+/// Everything a run is made of. Movable only.
 struct Assembly {
   config::Case c;
   std::vector<std::string> materials;  ///< index → name
@@ -42,6 +42,7 @@ struct Assembly {
   std::uint64_t bead_count = 0;
   std::array<double, 3> gravity{};
 
+  int index_of_material(const std::string& name) const;
   int wall_body_of_mill() const;  ///< index of the first body that rotates; −1: none
 };
 

@@ -88,9 +88,16 @@ void Recorder::check(const Assembly& a) {
 
 Recorder::Recorder(const Assembly& a, std::filesystem::path directory, std::optional<double> resume_time)
     : a_(a), directory_(std::move(directory)), sample_steps_(steps_of(kSampleInterval, a.time_step)) {
-  const config::OutputCase& o = a.c.output;
-  const std::size_t n = a.bead_count;
-  const dem::Particles& p = a.system->particles;
+  take_beads();
+  if (a.c.output.series) open_series(resume_time);
+  if (a.c.output.frames) open_frames(resume_time);
+  if (a.c.output.tracks) open_tracks(resume_time);
+  if (a.c.output.vtk) open_pictures(resume_time);
+}
+
+void Recorder::take_beads() {
+  const std::size_t n = a_.bead_count;
+  const dem::Particles& p = a_.system->particles;
   ids_.resize(n);
   materials_.resize(n);
   radius_.resize(n);
@@ -105,50 +112,55 @@ Recorder::Recorder(const Assembly& a, std::filesystem::path directory, std::opti
     radius_[k] = p.position[i].radius;
     mass_[k] = 1.0 / p.motion[i].inverse_mass;
   }
-  if (o.series) {
-    series_steps_ = steps_of(o.series->every, a.time_step);
-    const std::vector<std::string> columns = series_columns(a);
-    const auto path = directory_ / "series.csv";
-    series_ = resume_time ? output::SeriesWriter::resume(path, columns, *resume_time) : output::SeriesWriter::create(path, columns);
+}
+
+void Recorder::open_series(std::optional<double> resume_time) {
+  series_steps_ = steps_of(a_.c.output.series->every, a_.time_step);
+  const std::vector<std::string> columns = series_columns(a_);
+  const auto path = directory_ / "series.csv";
+  series_ = resume_time ? output::SeriesWriter::resume(path, columns, *resume_time) : output::SeriesWriter::create(path, columns);
+}
+
+void Recorder::open_frames(std::optional<double> resume_time) {
+  const config::OutputCase::Frames& frames = *a_.c.output.frames;
+  frame_steps_ = steps_of(frames.every, a_.time_step);
+  frame_from_ = std::llround(std::min(frames.from / a_.time_step, kMostSteps));
+  const auto path = directory_ / "frames.h5";
+  if (resume_time) {
+    frames_ = output::FrameWriter::resume(path, a_.bead_count, *resume_time);
+    return;
   }
-  if (o.frames) {
-    frame_steps_ = steps_of(o.frames->every, a.time_step);
-    frame_from_ = std::llround(std::min(o.frames->from / a.time_step, kMostSteps));
-    const auto path = directory_ / "frames.h5";
-    if (resume_time) {
-      frames_ = output::FrameWriter::resume(path, n, *resume_time);
-    } else {
-      output::BeadTable table{ids_, radius_, mass_, materials_, a.materials, {}, {}};
-      for (const dem::Body& b : a.system->bodies) table.wall_names.push_back(b.name);
-      for (const dem::PairPhysics& pair : a.system->physics()) {
-        for (const std::string& channel : a.system->layout().channels) table.dissipation_names.push_back(pair.name + ":" + channel);
-        table.impact_pairs.push_back(pair.name);
-      }
-      for (int b = 0; b <= dem::ImpactBins::kCount; ++b) table.impact_edges.push_back(dem::ImpactBins::lower_edge(b));
-      frames_ = output::FrameWriter::create(path, table);
-    }
+  output::BeadTable table{ids_, radius_, mass_, materials_, a_.materials, {}, {}};
+  for (const dem::Body& b : a_.system->bodies) table.wall_names.push_back(b.name);
+  for (const dem::PairPhysics& pair : a_.system->physics()) {
+    for (const std::string& channel : a_.system->layout().channels) table.dissipation_names.push_back(pair.name + ":" + channel);
+    table.impact_pairs.push_back(pair.name);
   }
-  if (o.tracks) {
-    track_steps_ = steps_of(o.tracks->every, a.time_step);
-    track_ids_ = tracked(a);
-    std::vector<output::TrackInfo> infos;
-    for (const std::uint32_t id : track_ids_) {
-      const double volume = 4.0 / 3.0 * std::numbers::pi * radius_[id] * radius_[id] * radius_[id];
-      infos.push_back({fmt::format("bead_{}", id), id, 2 * radius_[id], mass_[id] / volume, "simulation"});
-    }
-    const auto path = directory_ / "tracks.h5";
-    tracks_ = resume_time ? output::TrackWriter::resume(path, infos, *resume_time) : output::TrackWriter::create(path, infos);
+  for (int b = 0; b <= dem::ImpactBins::kCount; ++b) table.impact_edges.push_back(dem::ImpactBins::lower_edge(b));
+  frames_ = output::FrameWriter::create(path, table);
+}
+
+void Recorder::open_tracks(std::optional<double> resume_time) {
+  track_steps_ = steps_of(a_.c.output.tracks->every, a_.time_step);
+  track_ids_ = tracked(a_);
+  std::vector<output::TrackInfo> infos;
+  for (const std::uint32_t id : track_ids_) {
+    const double volume = 4.0 / 3.0 * std::numbers::pi * radius_[id] * radius_[id] * radius_[id];
+    infos.push_back({fmt::format("bead_{}", id), id, 2 * radius_[id], mass_[id] / volume, "simulation"});
   }
-  if (o.vtk) {
-    picture_steps_ = steps_of(o.vtk->every, a.time_step);
-    std::filesystem::create_directories(directory_ / "vtk");
-    const auto open = [&](const char* name) {
-      return resume_time ? output::PictureSeries::resume(directory_ / "vtk" / name, *resume_time)
-                         : output::PictureSeries::create(directory_ / "vtk" / name);
-    };
-    bead_pictures_ = open("beads.pvd");
-    mesh_pictures_ = open("mesh.pvd");
-  }
+  const auto path = directory_ / "tracks.h5";
+  tracks_ = resume_time ? output::TrackWriter::resume(path, infos, *resume_time) : output::TrackWriter::create(path, infos);
+}
+
+void Recorder::open_pictures(std::optional<double> resume_time) {
+  picture_steps_ = steps_of(a_.c.output.vtk->every, a_.time_step);
+  const std::filesystem::path folder = directory_ / "vtk";
+  std::filesystem::create_directories(folder);
+  const auto open = [&](const char* name) {
+    return resume_time ? output::PictureSeries::resume(folder / name, *resume_time) : output::PictureSeries::create(folder / name);
+  };
+  bead_pictures_ = open("beads.pvd");
+  mesh_pictures_ = open("mesh.pvd");
 }
 
 bool Recorder::wants(std::int64_t step) const {

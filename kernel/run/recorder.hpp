@@ -34,6 +34,11 @@ class Recorder {
   void close();
 
  private:
+  void take_beads();
+  void open_series(std::optional<double> resume_time);
+  void open_frames(std::optional<double> resume_time);
+  void open_tracks(std::optional<double> resume_time);
+  void open_pictures(std::optional<double> resume_time);
   void write_series(const Sample& s);
   void gather(const dem::System& system);
   void write_frame(const dem::System& system);
