@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
@@ -76,8 +75,7 @@ std::optional<double> seconds(const Options& options, const char* name) {
 /// Removes the tables and pictures of the earlier results in OUT, which these may lack: files named after an analyzer of theirs
 /// (ANALYZER.….csv, .svg, .png) and numbers.csv. Anything else in OUT stays.
 void remove_earlier(const fs::path& output) {
-  std::ifstream in(output / "results.json");
-  const auto earlier = nlohmann::json::parse(in, nullptr, false);
+  const auto earlier = output::read_json(output / "results.json");
   if (!earlier.is_object() || !earlier.contains("provenance") || !earlier["provenance"].contains("analyzers")) return;
   std::error_code ignored;
   fs::remove(output / "tables" / "numbers.csv", ignored);

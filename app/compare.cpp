@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 #include "app/commands.hpp"
 #include "kernel/output/file.hpp"
+#include "kernel/output/summary.hpp"
 #include "studies/compare/report.hpp"
 #include "studies/picture/outline.hpp"
 
@@ -35,8 +35,7 @@ void print_rest(const studies::Comparison& c) {
 
 /// Removes the pictures of the earlier comparison in OUT, which this one may lack; anything else stays.
 void remove_earlier(const fs::path& output) {
-  std::ifstream in(output / "comparison.json");
-  const auto earlier = nlohmann::json::parse(in, nullptr, false);
+  const auto earlier = output::read_json(output / "comparison.json");
   if (!earlier.is_object() || !earlier.contains("observables") || !earlier["observables"].is_array()) return;
   std::error_code ignored;
   for (const auto& o : earlier["observables"]) {

@@ -3,9 +3,8 @@
 
 #include <fmt/format.h>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
+#include "kernel/base/text.hpp"
 #include "kernel/config/node_data.hpp"
 
 namespace millscope::config {
@@ -89,11 +88,9 @@ std::string read_text(const std::string& file, const Location* named_at) {
   if (fs::is_regular_file(file, error) && fs::file_size(file, error) > kLargestFile) {
     throw UserError(fmt::format("{}{}: is larger than 16 MB; this is no case file", prefix, file));
   }
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw UserError(fmt::format("{}{}: cannot be read; check its permissions", prefix, file));
-  return text.str();
+  std::optional<std::string> text = base::text_if_readable(file);
+  if (!text) throw UserError(fmt::format("{}{}: cannot be read; check its permissions", prefix, file));
+  return std::move(*text);
 }
 
 void overlay(NodeData& base, const NodeData& over) {

@@ -7,11 +7,11 @@
 
 #include <boost/dll/shared_library.hpp>
 #include <filesystem>
-#include <fstream>
 #include <utility>
 
 #include "kernel/base/error.hpp"
 #include "kernel/base/hash.hpp"
+#include "kernel/base/text.hpp"
 #include "kernel/host/descriptor_check.hpp"
 #include "kernel/host/directory_check.hpp"
 
@@ -27,11 +27,10 @@ constexpr const char* kSymbol = "millscope_plugins";
 
 /// FNV-1a over the bytes of a file; refuses what is no shared library before the system's loader sees it.
 std::string hash_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) refuse(path, "it cannot be read");
-  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (bytes.size() < sizeof(ElfW(Ehdr)) || !bytes.starts_with(ELFMAG)) refuse(path, "it is not a shared library (no ELF file)");
-  return base::Hash().add(bytes).text();
+  const std::optional<std::string> bytes = base::text_if_readable(path);
+  if (!bytes) refuse(path, "it cannot be read");
+  if (bytes->size() < sizeof(ElfW(Ehdr)) || !bytes->starts_with(ELFMAG)) refuse(path, "it is not a shared library (no ELF file)");
+  return base::Hash().add(*bytes).text();
 }
 
 boost::dll::shared_library open_handle(const std::string& path) {

@@ -5,9 +5,9 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <utility>
 
+#include "kernel/base/text.hpp"
 #include "kernel/host/registry.hpp"
 
 namespace millscope::host {
@@ -55,12 +55,11 @@ std::string filled(std::string line, Kind kind, std::string_view name) {
 }
 
 void write_filled(const fs::path& source, const fs::path& target, Kind kind, std::string_view name) {
-  std::ifstream in(source, std::ios::binary);
-  const std::string body{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  const std::string text = filled(base::text_of(source), kind, name);
   std::ofstream out(target, std::ios::binary);
-  out << filled(body, kind, name);
+  out << text;
   out.flush();
-  if (!in || !out) throw UserError(fmt::format("'{}' cannot be written; check the permissions and the space on the disk", target.string()));
+  if (!out) throw UserError(fmt::format("'{}' cannot be written; check the permissions and the space on the disk", target.string()));
 }
 
 /// Copies a template folder's files; NAME in a file's name becomes the plugin's.

@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/text.hpp"
 #include "kernel/output/file.hpp"
 
 namespace millscope::output {
@@ -125,9 +126,7 @@ const std::vector<double>& Series::column(const std::string& name) const {
 }
 
 Series read_series(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw UserError(fmt::format("{}: cannot be read", path.string()));
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string text = base::text_of(path);
   Series series;
   std::size_t from = 0;
   for (std::size_t to = text.find('\n'); to != std::string::npos; from = to + 1, to = text.find('\n', from)) {

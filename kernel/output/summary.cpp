@@ -9,6 +9,7 @@
 #include <fstream>
 #include <thread>
 
+#include "kernel/base/text.hpp"
 #include "kernel/output/file.hpp"
 #include "millscope/abi.hpp"
 
@@ -47,6 +48,10 @@ nlohmann::ordered_json provenance(std::span<const std::string> command_line, std
     json["plugins"].push_back({{"name", plugin.name}, {"version", plugin.version}, {"file", plugin.file}, {"hash", plugin.hash}});
   }
   return json;
+}
+
+nlohmann::ordered_json read_json(const std::filesystem::path& path) {
+  return nlohmann::ordered_json::parse(base::text_if_readable(path).value_or(""), nullptr, false);
 }
 
 void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json) {

@@ -18,6 +18,9 @@ struct PluginRecord {
 /// Where, when and with what: version, compiler, host, processor, cores, date (UTC), command line, plugins.
 nlohmann::ordered_json provenance(std::span<const std::string> command_line, std::span<const PluginRecord> plugins);
 
+/// What a file holds as JSON; `is_discarded()` where it cannot be read or holds none.
+nlohmann::ordered_json read_json(const std::filesystem::path& path);
+
 /// Writes `json` indented, whole or not at all. NaN and infinity become null. UserError when it cannot be written.
 void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json);
 

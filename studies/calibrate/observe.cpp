@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <map>
 
 #include "kernel/base/parallel.hpp"
@@ -22,11 +21,6 @@ using base::UserError;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLeastPoints = 30;  // of a bead that the camera saw too little of
-
-Json read_json(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return Json::parse(in, nullptr, false);
-}
 
 /// The frame of a simulation is known: a link that shifts it is left out, as a recording's shift is taken off.
 studies::Camera without_frame(const studies::Camera& camera) {
@@ -79,7 +73,7 @@ studies::Recording film(const BeadPaths& paths, const studies::Camera& camera, s
 
 /// Power of the whole simulated charge over the analysed time, from the run's own summary, times `factor`.
 PowerFigure whole_charge_power(const fs::path& run, double factor) {
-  const Json j = read_json(run / "summary.json");
+  const Json j = output::read_json(run / "summary.json");
   const auto power = j.is_object() && j.contains("power_W") ? j["power_W"] : Json{};
   if (!power.is_object() || !power.contains("com") || !power["com"].is_number()) {
     throw UserError(fmt::format("{}: its summary.json tells no power; the run has not come to its end", run.string()));
@@ -198,7 +192,7 @@ Observation Observer::simulated(std::size_t condition, const fs::path& run, cons
   const std::string id = key + "-" + hash_of(depends);
   const fs::path file = impl_->cache / ("simulation-" + id + ".json");
   if (fs::exists(file)) {
-    const Json known = read_json(file);
+    const Json known = output::read_json(file);
     if (!known.is_discarded()) return observation_from(known);
   }
   const Observation o = impl_->simulated(condition, run, {key, camera});

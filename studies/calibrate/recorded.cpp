@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <string_view>
 
 #include "kernel/base/hash.hpp"
+#include "kernel/base/text.hpp"
 #include "kernel/output/summary.hpp"
 #include "studies/analysis/open_source.hpp"
 #include "studies/calibrate/velocity_profile.hpp"
@@ -24,17 +24,12 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kExactCamera = "observations: {rate: {kind: sampling, rate: 1000 Hz, shape: 1000}}\n";
 constexpr double kEvenStep = 0.002;  // s between the even times: recordings have a location every 5 ms
 
-std::string file_text(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// Everything that the results of a recording depend on.
 std::string identity(const studies::Recording& recording, const Processing& how, std::size_t condition) {
   const Study& study = how.study;
   std::vector<std::string> parts{kObservations, kAnalyzers, std::to_string(study.observing.draws), std::to_string(study.observing.beads),
                                  study.observing.camera};
-  if (std::filesystem::is_regular_file(study.observing.camera)) parts.push_back(file_text(study.observing.camera));
+  if (std::filesystem::is_regular_file(study.observing.camera)) parts.push_back(base::text_of(study.observing.camera));
   if (study.observing.z_low) parts.push_back(fmt::format("{:.17g} {:.17g}", *study.observing.z_low, *study.observing.z_high));
   parts.push_back(studies::file_hash(study.base) + studies::file_hash(recording.file));
   for (const studies::Run& run : recording.runs) parts.push_back(run.name + studies::file_hash(run.source));
@@ -60,7 +55,7 @@ struct RecordingCamera {
 
 RecordingCamera camera_of(const studies::Recording& recording, const Study& study) {
   if (study.observing.camera == "exact") return {kExactCamera, {}};
-  if (study.observing.camera != "recording") return {file_text(study.observing.camera), {}};
+  if (study.observing.camera != "recording") return {base::text_of(study.observing.camera), {}};
   try {
     const studies::CameraEstimate estimate = studies::estimate_camera(recording);
     std::string text = studies::camera_text(estimate, recording.file.string());
@@ -233,7 +228,7 @@ RecordedCondition look_at_recording(std::size_t condition, const Processing& how
   const std::string id = identity(recording, how, condition);
   const std::filesystem::path file = cache / ("recording-" + id + ".json");
   if (std::filesystem::exists(file)) {
-    const Json known = Json::parse(file_text(file), nullptr, false);
+    const Json known = output::read_json(file);
     if (!known.is_discarded()) return recorded_from(known, id);
   }
   RecordedCondition r = look(recording, condition, how);

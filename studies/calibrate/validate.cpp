@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <iterator>
 
+#include "kernel/base/text.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
 #include "studies/calibrate/outputs.hpp"
@@ -82,9 +82,9 @@ void add_row(std::string& out, const Judged& j) {
 }  // namespace
 
 Eigen::VectorXd calibrated_set(const fs::path& file, const Study& study) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw UserError(fmt::format("{}: cannot be read; give the calibration.json that 'millscope calibrate' wrote", file.string()));
-  const Json j = Json::parse(in, nullptr, false);
+  const std::optional<std::string> text = base::text_if_readable(file);
+  if (!text) throw UserError(fmt::format("{}: cannot be read; give the calibration.json that 'millscope calibrate' wrote", file.string()));
+  const Json j = Json::parse(*text, nullptr, false);
   if (!j.is_object() || !j.contains("parameters") || !j["parameters"].is_array())
     throw UserError(fmt::format("{}: is no calibration.json; give the one that 'millscope calibrate' wrote", file.string()));
   Eigen::VectorXd point(static_cast<Eigen::Index>(study.parameters.size()));

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "kernel/config/case.hpp"
+#include "kernel/output/summary.hpp"
 #include "studies/analysis/mill.hpp"
 #include "studies/camera/camera.hpp"
 
@@ -49,11 +49,9 @@ Condition condition_of(const config::Case& c, const MillOfCase& mill, const std:
 }
 
 std::optional<MeasuredPower> power_of(const std::filesystem::path& summary) {
-  std::ifstream in(summary);
-  if (!in) return std::nullopt;
-  const nlohmann::json j = nlohmann::json::parse(in, nullptr, false);
+  const nlohmann::ordered_json j = output::read_json(summary);
   if (!j.is_object() || !j.contains("power_W")) return std::nullopt;
-  const nlohmann::json &value = j["power_W"]["com"], &error = j["power_W"]["com_sem"];
+  const nlohmann::ordered_json &value = j["power_W"]["com"], &error = j["power_W"]["com_sem"];
   if (!value.is_number() || !error.is_number()) return std::nullopt;
   return MeasuredPower{value.get<double>(), error.get<double>()};
 }

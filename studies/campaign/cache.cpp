@@ -6,9 +6,9 @@
 
 #include <array>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "kernel/base/text.hpp"
 #include "kernel/config/writer.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
@@ -20,11 +20,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 5> kStages{"waiting", "running", "interrupted", "done", "failed"};
-
-Json json_of(const fs::path& file) {
-  const std::optional<std::string> text = text_of(file);
-  return text ? Json::parse(*text, nullptr, false) : Json();
-}
 
 Stage stage_named(const std::string& word) {
   for (std::size_t i = 0; i < kStages.size(); ++i) {
@@ -39,7 +34,7 @@ std::string keep_copy(const NamedFile& file, const fs::path& cache) {
   const fs::path copy = cache / "files" / name;
   if (!fs::exists(copy)) {
     make_directory(copy.parent_path());
-    const std::optional<std::string> bytes = text_of(file.path);
+    const std::optional<std::string> bytes = base::text_if_readable(file.path);
     if (!bytes || content_hash(*bytes) != file.hash)
       throw base::UserError(file.path + ": changes while the campaign is being prepared; start again when it is whole");
     output::write_file(copy, *bytes);
@@ -48,12 +43,6 @@ std::string keep_copy(const NamedFile& file, const fs::path& cache) {
 }
 
 }  // namespace
-
-std::optional<std::string> text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return {};
-  return std::string{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 void make_directory(const fs::path& directory) {
   std::error_code trouble;
@@ -92,7 +81,7 @@ void Entry::prepare(const Identity& identity, const std::string& label) const {
 }
 
 TaskRecord Entry::read() const {
-  const Json json = json_of(folder_ / "task.json");
+  const Json json = output::read_json(folder_ / "task.json");
   TaskRecord record;
   if (json.is_object()) {
     record.stage = stage_named(json.value("state", ""));
@@ -102,7 +91,7 @@ TaskRecord Entry::read() const {
     record.wall_s = json.value("wall_s", 0.0);
     record.host = json.value("host", "");
   }
-  const Json summary = json_of(run() / "summary.json");
+  const Json summary = output::read_json(run() / "summary.json");
   if (summary.is_object()) {
     record.stage = Stage::done;
     record.message.clear();

@@ -57,9 +57,6 @@ std::string last_line(const std::filesystem::path& file);
 /// Host name of this machine.
 std::string host_name();
 
-/// The file's text; nothing when it cannot be read.
-std::optional<std::string> text_of(const std::filesystem::path& file);
-
 /// Makes a directory with its parents. UserError when that fails.
 void make_directory(const std::filesystem::path& directory);
 

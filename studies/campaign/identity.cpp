@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <boost/uuid/name_generator_sha1.hpp>
 #include <boost/uuid/uuid.hpp>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "kernel/base/text.hpp"
 #include "kernel/config/values.hpp"
 #include "kernel/config/writer.hpp"
 #include "kernel/output/summary.hpp"
@@ -28,9 +27,9 @@ constexpr std::uint64_t kMemoryPerBead = 1000;    // bytes
 constexpr std::uint64_t kMemoryPerMeshByte = 10;  // triangles, their trees and their topology
 
 std::string read_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw UserError(fmt::format("{}: the case names this file and it cannot be read; put it there or correct the case", path));
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  std::optional<std::string> text = base::text_if_readable(path);
+  if (!text) throw UserError(fmt::format("{}: the case names this file and it cannot be read; put it there or correct the case", path));
+  return std::move(*text);
 }
 
 /// A glTF file may keep its numbers in files beside it: their contents belong to it.

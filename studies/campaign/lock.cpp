@@ -11,6 +11,7 @@
 #include <optional>
 #include <sstream>
 
+#include "kernel/base/text.hpp"
 #include "kernel/output/file.hpp"
 #include "studies/campaign/cache.hpp"
 
@@ -25,7 +26,7 @@ constexpr double kDeadAfter = 120;  // s without a touch, on another machine
 
 /// Start time of a process in clock ticks since boot: tells a process from a later one of the same number. "" when there is none.
 std::string birth_of(long pid) {
-  const std::optional<std::string> text = text_of(fmt::format("/proc/{}/stat", pid));
+  const std::optional<std::string> text = base::text_if_readable(fmt::format("/proc/{}/stat", pid));
   if (!text) return "";
   std::istringstream rest(text->substr(text->rfind(')') + 1));  // the name may hold anything
   std::string word;
@@ -64,7 +65,7 @@ Guard::Guard(const fs::path& cache) : file_(cache / ".guard", O_RDWR | O_CREAT) 
 
 std::unique_ptr<Lock> Lock::try_take(const fs::path& cache, const fs::path& file) {
   const Guard guard(cache);
-  if (const std::optional<std::string> text = text_of(file)) {
+  if (const std::optional<std::string> text = base::text_if_readable(file)) {
     if (!is_stale(file, *text, guard.file())) return nullptr;
   }
   const std::string text = own_text();
@@ -76,7 +77,7 @@ Lock::Lock(fs::path file, std::string text) : file_(std::move(file)), text_(std:
 
 // A head that was stopped for minutes may have lost its lock: it removes only its own.
 Lock::~Lock() {
-  if (text_of(file_) == text_) ::unlink(file_.c_str());
+  if (base::text_if_readable(file_) == text_) ::unlink(file_.c_str());
 }
 
 void Lock::keep_alive() {

@@ -101,8 +101,7 @@ class Slurm {
 
   /// What an earlier head has handed over already.
   static Handed recall(Handed h) {
-    const std::optional<std::string> text = text_of(h.note());
-    const nlohmann::json json = text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
+    const nlohmann::ordered_json json = output::read_json(h.note());
     if (!json.is_object() || h.job.afresh) return h;
     h.batch = json.value("batch", "");
     h.index = json.value("index", 0);

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <random>
 
+#include "kernel/base/text.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
 #include "studies/campaign/identity.hpp"
@@ -18,11 +17,6 @@ namespace fs = std::filesystem;
 using base::UserError;
 using Json = nlohmann::ordered_json;
 
-std::string bytes_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
 fs::path answer_file(const fs::path& sets, const std::string& set) { return sets / "answers" / (set + ".json"); }
 
 Json read_manifest(const fs::path& sets) {
@@ -31,7 +25,7 @@ Json read_manifest(const fs::path& sets) {
     throw UserError(
         fmt::format("{}: is no folder of sets (it has no manifest.json); make one: millscope challenge make CHALLENGE.yaml -o {}",
                     sets.string(), sets.string()));
-  const Json j = Json::parse(bytes_of(file), nullptr, false);
+  const Json j = output::read_json(file);
   if (!j.is_object() || !j.contains("sets")) throw UserError(fmt::format("{}: is damaged; make the sets again", file.string()));
   return j;
 }
@@ -84,12 +78,12 @@ void seal(const fs::path& sets, const std::vector<Answer>& answers, const fs::pa
   Json list = Json::array();
   for (const Answer& a : answers) {
     output::write_json(answer_file(sets, a.set), to_json(a, fresh_salt()));
-    list.push_back({{"set", a.set}, {"answer_hash", campaign::content_hash(bytes_of(answer_file(sets, a.set)))}});
+    list.push_back({{"set", a.set}, {"answer_hash", campaign::content_hash(base::text_of(answer_file(sets, a.set)))}});
   }
   output::write_json(sets / "manifest.json",
                      {{"schema_version", 1},
                       {"hash", "SHA-1 of the bytes of answers/SET.json, its first 32 hexadecimal digits as a version 5 UUID"},
-                      {"study_hash", campaign::content_hash(bytes_of(study))},
+                      {"study_hash", campaign::content_hash(base::text_of(study))},
                       {"sets", list}});
 }
 
@@ -107,7 +101,7 @@ std::vector<Answer> open_answers(const fs::path& sets) {
     const std::string name = s.at("set");
     const fs::path file = answer_file(sets, name);
     if (!fs::is_regular_file(file)) throw UserError(fmt::format("{}: is missing; without every answer nothing is scored", file.string()));
-    const std::string bytes = bytes_of(file);
+    const std::string bytes = base::text_of(file);
     if (campaign::content_hash(bytes) != s.at("answer_hash").get<std::string>())
       throw UserError(
           fmt::format("{}: is not the answer that manifest.json has the hash of; it was changed after the sets were made, so nothing is "
@@ -120,7 +114,7 @@ std::vector<Answer> open_answers(const fs::path& sets) {
 
 std::string manifest_hash(const fs::path& sets) {
   read_manifest(sets);
-  return campaign::content_hash(bytes_of(sets / "manifest.json"));
+  return campaign::content_hash(base::text_of(sets / "manifest.json"));
 }
 
 }  // namespace millscope::challenge

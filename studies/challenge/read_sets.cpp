@@ -1,10 +1,9 @@
 // Diagnoses as `run` left them.
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 #include <set>
 
+#include "kernel/base/text.hpp"
 #include "studies/challenge/score.hpp"
 
 namespace millscope::challenge {
@@ -12,11 +11,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-std::string bytes_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 /// A number that was not finite is null in the file.
 double number(const Json& j) { return j.is_number() ? j.get<double>() : std::numeric_limits<double>::quiet_NaN(); }
@@ -64,7 +58,7 @@ std::optional<Found> read_found(const fs::path& set) {
   const fs::path file = set / "diagnosis" / "diagnosis.json", failed = set / "diagnosis" / "failed.txt";
   if (fs::exists(file)) {
     try {
-      return found_from(Json::parse(bytes_of(file)));
+      return found_from(Json::parse(base::text_of(file)));
     } catch (const Json::exception& e) {
       throw base::UserError(
           fmt::format("{}: is no diagnosis that can be scored ({}); remove it and run the challenge again", file.string(), e.what()));
@@ -72,7 +66,7 @@ std::optional<Found> read_found(const fs::path& set) {
   }
   if (!fs::exists(failed)) return std::nullopt;
   Found f;
-  f.failure = bytes_of(failed);
+  f.failure = base::text_of(failed);
   while (!f.failure.empty() && f.failure.back() == '\n') f.failure.pop_back();
   if (f.failure.empty()) f.failure = "no reason was noted";
   return f;

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "kernel/base/parallel.hpp"
 #include "kernel/config/case.hpp"
 #include "kernel/output/file.hpp"
+#include "kernel/output/summary.hpp"
 #include "studies/analysis/mill.hpp"
 #include "studies/calibrate/bead_paths.hpp"
 #include "studies/camera/ctrack_writer.hpp"
@@ -45,9 +45,8 @@ studies::Condition believed(const diagnose::Question& q, std::size_t condition, 
 }
 
 PowerOfRun power_of(const fs::path& run, const host::Registry& registry) {
-  std::ifstream in(run / "summary.json", std::ios::binary);
-  const nlohmann::json j = nlohmann::json::parse(in, nullptr, false);
-  const auto power = j.is_object() ? j.value("power_W", nlohmann::json()) : nlohmann::json();
+  const nlohmann::ordered_json j = output::read_json(run / "summary.json");
+  const auto power = j.is_object() ? j.value("power_W", nlohmann::ordered_json()) : nlohmann::ordered_json();
   if (!power.is_object() || !power.contains("com") || !power["com"].is_number())
     throw UserError(fmt::format("{}: its summary.json tells no power; the run has not come to its end", run.string()));
   const bool tracers = config::read_case((run / "case.resolved.yaml").string()).has_tracers();

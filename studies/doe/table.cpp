@@ -3,16 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <optional>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/text.hpp"
 #include "kernel/config/document.hpp"
 
 namespace millscope::doe {
@@ -29,9 +26,7 @@ std::string trimmed(const std::string& text) {
 std::string bytes_of(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) throw UserError(fmt::format("{}: is a directory; give a table (.csv)", file.string()));
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw UserError(fmt::format("{}: cannot be read ({})", file.string(), std::strerror(errno)));
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  std::string bytes = base::text_of(file);
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);  // byte order mark of spreadsheets
   if (bytes.find('\0') != std::string::npos) throw UserError(fmt::format("{}: is no text file; give a table (.csv)", file.string()));
   return bytes;

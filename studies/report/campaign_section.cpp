@@ -30,7 +30,7 @@ Json task_json(const fs::path& entry) {
   const fs::path run = entry / "run";
   Json task = Json::object();
   std::error_code none;
-  if (fs::exists(entry / "task.json", none)) task = read_json(entry / "task.json");
+  if (fs::exists(entry / "task.json", none)) task = json_object_of(entry / "task.json");
   const bool running = state_of(run, "summary.json") == State::running;
   const std::string state = running ? "running" : task.value("state", "waiting");
   const auto changed = fs::last_write_time(fs::exists(run / "summary.json", none) ? run / "summary.json" : entry / "case.yaml", none);

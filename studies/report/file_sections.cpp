@@ -4,9 +4,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
+#include "kernel/base/text.hpp"
 #include "studies/doe/table.hpp"
 #include "studies/report/one_section.hpp"
 
@@ -51,7 +50,7 @@ Json table_json(const fs::path& file) {
 /// A section that is one JSON file.
 Json from_file(const char* kind, const char* file, const fs::path& folder) {
   Json section = begun(kind, folder.filename().empty() ? folder.parent_path().filename() : folder.filename(), folder);
-  section[kind] = read_json(folder / file);
+  section[kind] = json_object_of(folder / file);
   return section;
 }
 
@@ -61,10 +60,8 @@ Json begun(const char* kind, const std::string& title, const fs::path& folder) {
   return {{"kind", kind}, {"title", title}, {"source", folder.lexically_normal().string()}, {"notes", Json::array()}};
 }
 
-Json read_json(const fs::path& file) {
-  std::ifstream in(file);
-  if (!in) throw base::UserError(fmt::format("{}: cannot be read", file.string()));
-  Json json = Json::parse(in, nullptr, false);
+Json json_object_of(const fs::path& file) {
+  Json json = Json::parse(base::text_of(file), nullptr, false);
   if (!json.is_object())
     throw base::UserError(fmt::format("{}: is damaged: no JSON object; run the command that wrote it again", file.string()));
   return json;
@@ -81,9 +78,7 @@ Json comparison_section(const fs::path& folder) {
   Json section = from_file("comparison", "comparison.json", folder);
   section["pictures"] = Json::array();
   for (const fs::path& file : sorted_files(folder / "pictures", ".svg")) {
-    std::stringstream svg;
-    svg << std::ifstream(file).rdbuf();
-    section["pictures"].push_back({{"name", file.stem().string()}, {"svg", svg.str()}});
+    section["pictures"].push_back({{"name", file.stem().string()}, {"svg", base::text_of(file)}});
   }
   return section;
 }

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 Json begun(const char* kind, const std::string& title, const std::filesystem::path& folder);
 
 /// Throws base::UserError with the file's name when it cannot be read or is no JSON object.
-Json read_json(const std::filesystem::path& file);
+Json json_object_of(const std::filesystem::path& file);
 
 Json run_section(const std::filesystem::path& folder, const host::Registry& registry, const SectionOptions& options);
 Json analysis_section(const std::filesystem::path& folder, const host::Registry& registry);

@@ -1,9 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
+#include "kernel/base/text.hpp"
 #include "kernel/config/case.hpp"
 #include "kernel/output/series.hpp"
 #include "studies/analysis/mill.hpp"
@@ -16,14 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostRows = 2000;
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw base::UserError(fmt::format("{}: cannot be read", file.string()));
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 /// Means over as many neighbouring rows as it takes to have at most kMostRows.
 Json thinned(const std::vector<double>& column) {
@@ -81,12 +72,12 @@ void add_pictures(Json& section, const fs::path& folder, const host::Registry& r
 
 Json run_section(const fs::path& folder, const host::Registry& registry, const SectionOptions& options) {
   const State state = state_of(folder, "summary.json");
-  const Json summary = state == State::done ? read_json(folder / "summary.json") : Json(nullptr);
+  const Json summary = state == State::done ? json_object_of(folder / "summary.json") : Json(nullptr);
   const config::Case c = config::read_case((folder / "case.resolved.yaml").string());
   Json section = begun("run", c.name, folder);
   section["state"] = text(state);
   section["summary"] = summary;
-  section["case"] = text_of(folder / "case.resolved.yaml");
+  section["case"] = base::text_of(folder / "case.resolved.yaml");
   section["series"] = series_json(folder);
   section["progress"] = nullptr;
   const Json& times = section["series"].contains("time_s") ? section["series"]["time_s"] : Json::array();

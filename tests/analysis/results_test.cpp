@@ -1,4 +1,5 @@
 #include "studies/analysis/results.hpp"
+#include "kernel/base/text.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,11 +15,6 @@ using namespace millscope::studies;
 using Catch::Contains;
 
 namespace {
-
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 ResultSet some_results() {
   ResultSet r;
@@ -111,7 +107,7 @@ TEST_CASE("results are never overwritten unasked, and damaged ones are refused")
   write_results(file, r, true);
   CHECK_FALSE(fs::exists(scratch / "results.h5.tmp"));
   CHECK_THAT(refusal([&] { read_results(scratch / "nowhere"); }), Contains("there is no such file"));
-  const std::string bytes = slurp(file);
+  const std::string bytes = base::text_of(file);
   spill(scratch / "cut.h5", bytes.substr(0, bytes.size() / 2));
   CHECK_THAT(refusal([&] { read_results(scratch / "cut.h5"); }), Contains("cut.h5"));
   Drum().write(scratch / "run");
@@ -162,9 +158,9 @@ TEST_CASE("tables hold every value with the bounds of its cell") {
   const Scratch scratch;
   const auto files = write_tables(scratch.path, some_results());
   REQUIRE(files.size() == 2);
-  const std::string numbers = slurp(scratch / "numbers.csv");
+  const std::string numbers = base::text_of(scratch / "numbers.csv");
   CHECK_THAT(numbers, Contains("a_power,power,W,29.8,0.3,29.3,30.3,40,correlated blocks,Power.\n"));
-  const std::string map = slurp(scratch / "b_grid.edges.edges.csv");
+  const std::string map = base::text_of(scratch / "b_grid.edges.edges.csv");
   CHECK_THAT(map, Contains("edges_from [m],edges_to [m],edges_from [m],edges_to [m],map [1],map_sem,map_low,map_high\n"));
   CHECK_THAT(map, Contains("\n0.5,1,0,0.5,3,0.3,2,4\n"));
   CHECK_THAT(map, Contains("\n0,0.5,0.5,1,,,,\n"));  // undefined

@@ -1,4 +1,5 @@
 #include "studies/calibrate/outputs.hpp"
+#include "kernel/base/text.hpp"
 
 #include <fstream>
 #include <sstream>
@@ -9,16 +10,6 @@
 using namespace millscope;
 using namespace millscope::calibrate;
 using testing::Folder;
-
-namespace {
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ostringstream out;
-  out << std::ifstream(file).rdbuf();
-  return out.str();
-}
-
-}  // namespace
 
 TEST_CASE("a calibration leaves its numbers, its case, its runs and its report") {
   const Folder folder;
@@ -35,7 +26,7 @@ TEST_CASE("a calibration leaves its numbers, its case, its runs and its report")
   const config::Node found = config::load_document((out / "calibrated.yaml").string());
   CHECK(std::stod(found.at("pairs").at("glass~liner").at("mu").text()) == c.best[0]);
   CHECK(found.at("schema_version").text() == "1");  // of the base, too, which is found from here
-  const std::string runs = text_of(out / "runs.csv"), report = text_of(out / "report.md");
+  const std::string runs = base::text_of(out / "runs.csv"), report = base::text_of(out / "report.md");
   CHECK(std::count(runs.begin(), runs.end(), '\n') == static_cast<std::ptrdiff_t>(evaluator.trials().size()) + 1);
   CHECK(runs.find("a bead ran away") != std::string::npos);
   CHECK(report.find("The dominant factor is **mu**") != std::string::npos);
@@ -44,7 +35,7 @@ TEST_CASE("a calibration leaves its numbers, its case, its runs and its report")
     CHECK(std::filesystem::exists(out / "pictures" / picture));
   const Validation v = validate(evaluator, c.best, {1});
   write_validation(v, evaluator, folder.path / "val");
-  CHECK(text_of(folder.path / "val" / "validation.md").find("## dry50 (held out)") != std::string::npos);
+  CHECK(base::text_of(folder.path / "val" / "validation.md").find("## dry50 (held out)") != std::string::npos);
   CHECK(std::filesystem::exists(folder.path / "val" / "validation.json"));
 }
 

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <string>
 
+#include "kernel/base/text.hpp"
 #include "studies/campaign/campaign.hpp"
 #include "tests/scratch.hpp"
 
@@ -15,11 +16,6 @@ namespace millscope::campaign::test {
 namespace fs = std::filesystem;
 
 inline void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
-
-inline std::string read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 /// 60 beads in a small drum, soft: a tenth of a second of computing.
 inline constexpr const char* kCase = R"(schema_version: 1

@@ -25,7 +25,7 @@ TEST_CASE("a lock is held once, says by whom, and goes with its holder") {
   const fs::path file = folder.path() / "lock";
   auto lock = Lock::try_take(folder.path(), file);
   REQUIRE(lock);
-  CHECK_THAT(read(file), Catch::Contains(host_name()) && Catch::Contains(std::to_string(::getpid())));
+  CHECK_THAT(base::text_of(file), Catch::Contains(host_name()) && Catch::Contains(std::to_string(::getpid())));
   CHECK_FALSE(Lock::try_take(folder.path(), file));
   lock.reset();
   CHECK_FALSE(fs::exists(file));
@@ -74,7 +74,7 @@ TEST_CASE("a lock that was lost to another is left alone") {
   REQUIRE(lock);
   write(file, "another's");
   lock.reset();
-  CHECK(read(file) == "another's");
+  CHECK(base::text_of(file) == "another's");
 }
 
 }  // namespace millscope::campaign::test

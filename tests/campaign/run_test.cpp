@@ -30,7 +30,7 @@ fs::path noting_program(const Folder& folder, const fs::path& notes) {
 }
 
 int most_at_once(const fs::path& notes) {
-  std::istringstream in(read(notes));
+  std::istringstream in(base::text_of(notes));
   int now = 0, most = 0;
   for (std::string word; in >> word;) {
     now += word == "begin" ? 1 : -1;
@@ -87,7 +87,9 @@ TEST_CASE("a simulation that fails is recorded, and tried again only when asked"
   CHECK_THAT(first[2].message, Catch::Contains("did you mean"));
   CHECK(first[2].folder.empty());
   CHECK(first[3].state == State::done);
-  const auto attempts = [&] { return nlohmann::json::parse(read(first[0].folder.parent_path() / "task.json"))["attempts"].get<int>(); };
+  const auto attempts = [&] {
+    return nlohmann::json::parse(base::text_of(first[0].folder.parent_path() / "task.json"))["attempts"].get<int>();
+  };
   CHECK(attempts() == 1);
   const std::vector<Outcome> second = run(simulations, options);
   CHECK((second[0].cached && second[0].message == first[0].message && attempts() == 1));

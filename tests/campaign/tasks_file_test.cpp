@@ -47,7 +47,7 @@ TEST_CASE("the table quotes what it must") {
   outcomes[0] = {State::done, "/cache/0/run", "", true, 1.5, "0"};
   outcomes[1] = {State::failed, "/cache/1/run", "too long, \"unstable\"", false, 0, "1"};
   write_table(folder.path() / "campaign.csv", simulations, outcomes, {true, true, false});
-  CHECK(read(folder.path() / "campaign.csv") ==
+  CHECK(base::text_of(folder.path() / "campaign.csv") ==
         "label,key,state,wall_s,cached,folder,message\n"
         "tiny,0,done,1.500,yes,/cache/0/run,\n"
         "tiny,1,failed,,no,/cache/1/run,\"too long, \"\"unstable\"\"\"\n"

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "kernel/base/text.hpp"
 #include "studies/calibrate/bead_paths.hpp"
 #include "studies/challenge/answer.hpp"
 #include "studies/challenge/draw.hpp"
@@ -42,11 +43,6 @@ beads: 6
 seconds: 0.4
 sets: [{kind: none}, {kind: effect, hypothesis: lifter_wear, strength: [0.5, 0.9]}]
 )";
-
-std::string read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 struct Made {
   testing::Scratch folder;
@@ -91,7 +87,7 @@ TEST_CASE("sets are recordings of drawn mills, and tell nothing of what was draw
     CHECK(r.condition.slice->high == Approx(0.04));
     CHECK(r.condition.power->value == Approx(a.made.at("fast").at("measured_power_W").get<double>()));
     for (const auto& file : fs::directory_iterator(made.sets / a.set)) {
-      const std::string text = read(file.path());
+      const std::string text = base::text_of(file.path());
       for (const char* word : {"lifter", "seed", "cache", "friction", "stiffness", "answers"}) CHECK(text.find(word) == std::string::npos);
     }
   }
@@ -128,7 +124,7 @@ TEST_CASE("a set whose diagnosis throws is noted, and the others are tried") {
        made.folder / "study.yaml");
   const RunCount count = challenge::run(made.sets, made.registry, {}, {});
   CHECK(count.failed == 2);
-  CHECK(read(made.sets / "set_002" / "diagnosis" / "failed.txt").find("study.yaml: no such file") != std::string::npos);
+  CHECK(base::text_of(made.sets / "set_002" / "diagnosis" / "failed.txt").find("study.yaml: no such file") != std::string::npos);
   fs::create_directories(made.sets / "set_001" / "diagnosis");
   std::ofstream(made.sets / "set_001" / "diagnosis" / "diagnosis.json") << "{}";
   CHECK(challenge::run(made.sets, made.registry, {}, {}).known == 1);
@@ -171,7 +167,7 @@ TEST_CASE("the power of a mill with one heavy tracer is that of the charge witho
   made.make_sets();
   const Answer a = open_answers(made.sets).at(0);
   const fs::path run = made.sets / "answers" / "cache" / a.made.at("fast").at("run").get<std::string>() / "run";
-  const double all = nlohmann::json::parse(read(run / "summary.json"))["power_W"]["com"];
+  const double all = nlohmann::json::parse(base::text_of(run / "summary.json"))["power_W"]["com"];
   // One bead in twenty of twice the density adds a twentieth, where its like are as far from the axis; they need not be.
   const double ratio = a.made.at("fast").at("power_W").get<double>() / all;
   CHECK(ratio == Approx(1 / 1.05).margin(0.04));

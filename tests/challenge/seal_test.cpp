@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "kernel/base/text.hpp"
 #include "studies/challenge/page.hpp"
 #include "tests/scratch.hpp"
 
@@ -15,11 +16,6 @@ namespace fs = std::filesystem;
 void write(const fs::path& file, const std::string& text) {
   fs::create_directories(file.parent_path());
   std::ofstream(file, std::ios::binary) << text;
-}
-
-std::string read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
 std::vector<Answer> two_answers() {
@@ -57,7 +53,7 @@ TEST_CASE("an answer that was changed afterwards is refused") {
   write(folder / "study.yaml", "base: x");
   seal(folder.path, two_answers(), folder / "study.yaml");
   const fs::path file = folder.path / "answers" / "set_002.json";
-  std::string text = read(file);
+  std::string text = base::text_of(file);
   text.replace(text.find("0.004"), 5, "0.003");
   write(file, text);
   const std::string message = testing::refusal([&] { read_sets(folder.path); });

@@ -1,5 +1,6 @@
 // What a diagnosis leaves: figures for programs, a page for people, a corrected case to go on with.
 #include "studies/diagnose/pages/outputs.hpp"
+#include "kernel/base/text.hpp"
 
 #include <fmt/format.h>
 
@@ -21,11 +22,6 @@ namespace {
 const std::string kFilling = "nuisances: {fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %, name: filling}}\n";
 const std::string kRolling = "pairs.glass~glass.rolling_friction";
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// A diagnosis of recordings made with `truth`, written to folder/out.
 nlohmann::json written(const Scratch& folder, const std::vector<std::string>& truth, const std::string& nuisances = kFilling,
                        double recording_noise = 1) {
@@ -39,7 +35,7 @@ nlohmann::json written(const Scratch& folder, const std::vector<std::string>& tr
   Workshop workshop = mill.workshop();
   const Diagnosis d = diagnose::diagnose(q, workshop, options);
   write_outputs({q, workshop, d}, folder / "out");
-  return nlohmann::json::parse(text_of(folder / "out/diagnosis.json"));
+  return nlohmann::json::parse(base::text_of(folder / "out/diagnosis.json"));
 }
 
 const std::vector<std::string> kBase{"pairs.glass~glass.static_friction=0.3", "pairs.glass~liner.static_friction=0.4",
@@ -101,7 +97,7 @@ TEST_CASE("diagnosis.json has every figure that is promised") {
 TEST_CASE("diagnosis.md tells the verdict, every candidate, the figures and the pictures, which are there") {
   const Scratch folder;
   const nlohmann::json j = written(folder, with_rolling());
-  const std::string page = text_of(folder / "out/diagnosis.md");
+  const std::string page = base::text_of(folder / "out/diagnosis.md");
   CHECK_THAT(page, Contains("**named**") && Contains(j["sentence"].get<std::string>()));
   for (const auto& h : j["hypotheses"]) CHECK_THAT(page, Contains(h["name"].get<std::string>()));
   CHECK_THAT(page, Contains("retuned to power") && Contains("Gaussian-process discrepancy") && Contains("placebo"));
@@ -150,7 +146,7 @@ TEST_CASE("a camera that was found to stand aside is where corrected/ goes on fr
   const nlohmann::json j = written(folder, {kBase[0], kBase[1], "camera.frame_error.offset_x=0.0042"},
                                    "nuisances: {camera.frame_error.offset_x: {range: [-5 mm, 5 mm], sigma: 1 mm, name: axis_x}}\n", 0.4);
   REQUIRE(j["named"] == nlohmann::json({"axis_x"}));
-  CHECK_THAT(text_of(folder / "out/corrected/case.yaml"), Contains("The mill behind axis_x"));
+  CHECK_THAT(base::text_of(folder / "out/corrected/case.yaml"), Contains("The mill behind axis_x"));
   const Question again = read_question(folder / "out/corrected/study.yaml", {}, registry());
   REQUIRE(again.nuisances.size() == 1);
   CHECK_THAT(again.nuisances[0].mean, WithinAbs(0.0042, 0.001));

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "kernel/base/text.hpp"
 #include "kernel/host/scaffold.hpp"
 #include "scratch.hpp"
 #include "studies/diagnose/question/candidates.hpp"
@@ -18,15 +19,10 @@ namespace {
 
 std::string quoted(const std::string& word) { return "'" + word + "'"; }
 
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// Runs a shell command; what it printed. The log is shown when it fails.
 std::string run(const std::string& command, const fs::path& log) {
   const int status = std::system((command + " >" + quoted(log.string()) + " 2>&1").c_str());
-  const std::string said = text_of(log);
+  const std::string said = base::text_of(log);
   INFO(command << "\n" << said);
   REQUIRE(status == 0);
   return said;
@@ -36,7 +32,7 @@ std::string run(const std::string& command, const fs::path& log) {
 std::string write_wind(const Scratch& scratch) {
   const std::string project = host::scaffold(Kind::body_force, "wind", scratch.path.string());
   const fs::path source = fs::path(project) / "wind.cpp";
-  std::string text = text_of(source);
+  std::string text = base::text_of(source);
   const auto replace = [&](const std::string& old, const std::string& with) {
     const std::size_t at = text.find(old);
     REQUIRE(at != std::string::npos);
@@ -109,7 +105,7 @@ TEST_CASE("a third party's hypothesis is named on a recording made with it") {
   run(command + "diagnose " + quoted((story / "study.yaml").string()) + " -o out -q --draws 400 --cache cache" + plugins + conditions +
           " --set 'hypotheses={wind: {}, rolling_resistance: {}}' --set observe.beads=60",
       log);
-  const auto found = nlohmann::json::parse(text_of(scratch / "out" / "diagnosis.json"));
+  const auto found = nlohmann::json::parse(base::text_of(scratch / "out" / "diagnosis.json"));
   INFO(found["sentence"] << "\n" << found["hypotheses"].dump(1));
   CHECK(found["verdict"] == "named");
   REQUIRE(found["named"] == nlohmann::json::array({"wind"}));

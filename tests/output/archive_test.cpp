@@ -1,4 +1,5 @@
 #include "kernel/output/archive.hpp"
+#include "kernel/base/text.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -8,6 +9,7 @@
 
 #include "output/support.hpp"
 
+using millscope::base::text_of;
 using namespace millscope::output;
 using namespace output_test;
 using Catch::Contains;
@@ -66,7 +68,7 @@ TEST_CASE("an archive gives back the same bits of every type") {
 TEST_CASE("any damaged byte of an archive is found, and any cut") {
   const Scratch scratch;
   write_small(scratch / "checkpoint.h5", 1);
-  const std::string whole = slurp(scratch / "checkpoint.h5");
+  const std::string whole = text_of(scratch / "checkpoint.h5");
   const auto opens = [&] { return refusal([&] { ArchiveReader reader(scratch / "checkpoint.h5"); }); };
   REQUIRE(opens().empty());
   int missed = 0;
@@ -94,7 +96,7 @@ TEST_CASE("an archive without commit leaves what was there") {
   const Scratch scratch;
   const auto path = scratch / "checkpoint.h5";
   write_small(path, 1);
-  const std::string before = slurp(path);
+  const std::string before = text_of(path);
   {
     ArchiveWriter writer(path);
     writer.write("state/x", std::vector<double>(10, 2));
@@ -104,7 +106,7 @@ TEST_CASE("an archive without commit leaves what was there") {
     writer.write("state/x", std::vector<double>(10, 2));
     writer.seal();
   }
-  CHECK(slurp(path) == before);
+  CHECK(text_of(path) == before);
   CHECK_FALSE(std::filesystem::exists(path.string() + ".tmp"));
 }
 

@@ -1,10 +1,12 @@
 // Files that are written aside: nothing of the user's is touched, no link followed.
 #include "kernel/output/file.hpp"
+#include "kernel/base/text.hpp"
 
 #include <catch2/catch.hpp>
 
 #include "support.hpp"
 
+using millscope::base::text_of;
 using namespace millscope::output;
 using namespace output_test;
 namespace fs = std::filesystem;
@@ -21,12 +23,12 @@ TEST_CASE("a file that is written aside spares what has the name of its temporar
     AtomicFile second(scratch / "y.stl");  // two writers at once do not mix
     second.write("other");
     second.commit();
-    CHECK(slurp(scratch / "y.stl") == "other");
+    CHECK(text_of(scratch / "y.stl") == "other");
     file.commit();
   }
-  CHECK(slurp(scratch / "y.stl") == "solid");
-  CHECK(slurp(scratch / "y.stl.tmp") == "my notes");
-  CHECK(slurp(scratch / "secret") == "another's");
+  CHECK(text_of(scratch / "y.stl") == "solid");
+  CHECK(text_of(scratch / "y.stl.tmp") == "my notes");
+  CHECK(text_of(scratch / "secret") == "another's");
   CHECK(fs::is_symlink(scratch / "y.stl.1.tmp"));
   for (const char* name : {"y.stl.2.tmp", "y.stl.3.tmp"}) CHECK_FALSE(fs::exists(scratch / name));
   { AtomicFile given_up(scratch / "z"); }

@@ -1,9 +1,11 @@
 #include "kernel/output/frames.hpp"
+#include "kernel/base/text.hpp"
 
 #include <catch2/catch.hpp>
 
 #include "output/support.hpp"
 
+using millscope::base::text_of;
 using namespace millscope::output;
 using namespace output_test;
 using Catch::Contains;
@@ -65,7 +67,7 @@ TEST_CASE("a frames file refuses what does not belong to it") {
   writer.close();
   CHECK_THAT(refusal([&] { FrameWriter::create(path, story.table()); }), Contains("exists already"));
   CHECK_THAT(refusal([&] { FrameWriter::resume(path, 6, 0); }), Contains("holds 5 beads"));
-  spill(path, slurp(path).substr(0, 3000));
+  spill(path, text_of(path).substr(0, 3000));
   CHECK_THAT(refusal([&] { FrameWriter::resume(path, 5, 0); }), Contains("frames.h5"));
   spill(path, "no HDF5");
   CHECK_THAT(refusal([&] { FrameWriter::resume(path, 5, 0); }), Contains("is damaged at its start"));

@@ -3,10 +3,12 @@
 #include <map>
 #include <sstream>
 
+#include "kernel/base/text.hpp"
 #include "kernel/output/stl.hpp"
 #include "kernel/output/vtk.hpp"
 #include "output/support.hpp"
 
+using millscope::base::text_of;
 using namespace millscope::output;
 using namespace output_test;
 using Catch::Contains;
@@ -65,7 +67,7 @@ TEST_CASE("a picture of beads") {
   const std::vector<std::uint32_t> id{5, 6}, material{0, 1};
   const std::vector<double> radius{0.005, 0.006}, position{1, 2, 3, 4, 5, 6}, velocity{3, 4, 0, 0, 0, 0}, spin{0, 0, 1, 0, 0, 2};
   write_beads_vtp(scratch / "beads.vtp", {id, material, radius, position, velocity, spin});
-  const auto arrays = parse_vtp(slurp(scratch / "beads.vtp"));
+  const auto arrays = parse_vtp(text_of(scratch / "beads.vtp"));
   CHECK(arrays.size() == 9);
   CHECK(value<float>(arrays.at("speed"), 0) == 5);
   CHECK(value<float>(arrays.at("position"), 5) == 6);
@@ -75,20 +77,20 @@ TEST_CASE("a picture of beads") {
   CHECK(value<std::int64_t>(arrays.at("offsets"), 1) == 2);
   CHECK(arrays.at("spin").components == 3);
   write_beads_vtp(scratch / "none.vtp", {});
-  CHECK(parse_vtp(slurp(scratch / "none.vtp")).size() == 9);
+  CHECK(parse_vtp(text_of(scratch / "none.vtp")).size() == 9);
 }
 
 TEST_CASE("a picture of a mesh") {
   const Scratch scratch;
   const std::vector<double> impact{1, 2, 3}, shear{4, 5, 6};
   write_mesh_vtp(scratch / "mesh.vtp", {kVertices, kTriangles, kSlots, impact, shear});
-  const auto arrays = parse_vtp(slurp(scratch / "mesh.vtp"));
+  const auto arrays = parse_vtp(text_of(scratch / "mesh.vtp"));
   CHECK(value<double>(arrays.at("impact_work"), 2) == 3);
   CHECK(value<double>(arrays.at("shear_work_per_area"), 0) == 8);
   CHECK(value<std::int64_t>(arrays.at("connectivity"), 8) == 4);
   CHECK(value<std::int64_t>(arrays.at("offsets"), 2) == 9);
   write_mesh_vtp(scratch / "plain.vtp", {kVertices, kTriangles, kSlots, {}, {}});
-  CHECK(parse_vtp(slurp(scratch / "plain.vtp")).count("impact_work") == 0);
+  CHECK(parse_vtp(text_of(scratch / "plain.vtp")).count("impact_work") == 0);
 }
 
 TEST_CASE("a series of pictures, resumed") {
@@ -96,11 +98,11 @@ TEST_CASE("a series of pictures, resumed") {
   PictureSeries series = PictureSeries::create(scratch / "beads.pvd");
   CHECK_FALSE(std::filesystem::exists(scratch / "beads.pvd"));
   for (int k = 0; k < 5; ++k) series.add(0.1 * k, "a&b<\"" + std::to_string(k) + ".vtp", k % 2);
-  const std::string whole = slurp(scratch / "beads.pvd");
+  const std::string whole = text_of(scratch / "beads.pvd");
   PictureSeries resumed = PictureSeries::resume(scratch / "beads.pvd", 0.1 * 2);
   CHECK(resumed.size() == 3);
   for (int k = 3; k < 5; ++k) resumed.add(0.1 * k, "a&b<\"" + std::to_string(k) + ".vtp", k % 2);
-  CHECK(slurp(scratch / "beads.pvd") == whole);
+  CHECK(text_of(scratch / "beads.pvd") == whole);
   CHECK_THAT(whole, Contains("file=\"a&amp;b&lt;&quot;4.vtp\""));
   CHECK(PictureSeries::resume(scratch / "none.pvd", 1).size() == 0);
   CHECK_THAT(refusal([&] { PictureSeries::create(scratch / "beads.pvd"); }), Contains("exists already"));
@@ -110,7 +112,7 @@ TEST_CASE("ASCII STL keeps the slots' names and the coordinates' bits") {
   const Scratch scratch;
   const std::vector<std::string> slots{"end face", "lifter", "unused"};
   write_stl(scratch / "a.stl", kSurface, slots);
-  std::istringstream in(slurp(scratch / "a.stl"));
+  std::istringstream in(text_of(scratch / "a.stl"));
   std::vector<std::string> solids;
   std::vector<double> corners;
   for (std::string word; in >> word;) {
@@ -132,7 +134,7 @@ TEST_CASE("binary STL has the size that its count says") {
   const Scratch scratch;
   const std::vector<std::string> slots{"end", "lifter"};
   write_stl(scratch / "b.stl", kSurface, slots, StlFormat::binary);
-  const std::string file = slurp(scratch / "b.stl");
+  const std::string file = text_of(scratch / "b.stl");
   REQUIRE(file.size() == 84 + 3 * 50);
   CHECK(file[80] == 3);
   CHECK(file.rfind("solid", 0) != 0);

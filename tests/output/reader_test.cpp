@@ -2,10 +2,12 @@
 
 #include <catch2/catch.hpp>
 
+#include "kernel/base/text.hpp"
 #include "kernel/output/frame_reader.hpp"
 #include "kernel/output/track_reader.hpp"
 #include "output/support.hpp"
 
+using millscope::base::text_of;
 using namespace millscope::output;
 using namespace output_test;
 using Catch::Contains;
@@ -55,10 +57,10 @@ TEST_CASE("frames are readable where a kill has left the mark of a writer") {
   H5Pset_libver_bounds(list, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, list);
   REQUIRE(file >= 0);
-  const std::string bytes = slurp(path);
+  const std::string bytes = text_of(path);
   H5Fclose(file);
   H5Pclose(list);
-  REQUIRE(bytes != slurp(path));
+  REQUIRE(bytes != text_of(path));
   spill(scratch / "killed.h5", bytes);
   CHECK(FrameReader(scratch / "killed.h5").frame_count() == 3);
 }
@@ -66,7 +68,7 @@ TEST_CASE("frames are readable where a kill has left the mark of a writer") {
 TEST_CASE("a damaged head is refused at once") {
   const Scratch scratch;
   FrameWriter::create(scratch / "frames.h5", Story(7).table()).close();
-  std::string bytes = slurp(scratch / "frames.h5");
+  std::string bytes = text_of(scratch / "frames.h5");
   bytes.at(13) = static_cast<char>(bytes.at(13) + 1);
   spill(scratch / "damaged.h5", bytes);
   CHECK_THAT(refusal([&] { FrameReader reader(scratch / "damaged.h5"); }), Contains("damaged.h5"));

@@ -17,11 +17,6 @@ SmallDisk::~SmallDisk() {
   if (mounted) ::umount2(scratch.path.c_str(), MNT_DETACH);
 }
 
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 void spill(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
 Story::Story(std::size_t beads, std::size_t walls) : work_(walls), position_(3 * beads), velocity_(3 * beads), spin_(3 * beads) {

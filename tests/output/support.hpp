@@ -22,7 +22,6 @@ class SmallDisk {
   bool mounted;
 };
 
-std::string slurp(const std::filesystem::path& path);
 void spill(const std::filesystem::path& path, const std::string& text);
 
 /// Beads that move with the frame's number: what a resumed file must repeat.

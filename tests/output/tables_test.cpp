@@ -3,11 +3,13 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "kernel/base/text.hpp"
 #include "kernel/output/csv.hpp"
 #include "kernel/output/series.hpp"
 #include "kernel/output/summary.hpp"
 #include "output/support.hpp"
 
+using millscope::base::text_of;
 using namespace millscope::output;
 using namespace output_test;
 using Catch::Contains;
@@ -31,19 +33,19 @@ TEST_CASE("a resumed series equals that of an uninterrupted run, byte for byte")
     SeriesWriter first = SeriesWriter::create(scratch / "series.csv", kColumns);
     write(first, 0, 7000);
   }
-  spill(scratch / "series.csv", slurp(scratch / "series.csv") + "70.0");  // a row cut short by a kill
+  spill(scratch / "series.csv", text_of(scratch / "series.csv") + "70.0");  // a row cut short by a kill
   {
     SeriesWriter second = SeriesWriter::resume(scratch / "series.csv", kColumns, 0.01 * 5000);
     write(second, 5001, 8000);
   }
-  spill(scratch / "series.csv", slurp(scratch / "series.csv") + "1");
+  spill(scratch / "series.csv", text_of(scratch / "series.csv") + "1");
   {
     SeriesWriter third = SeriesWriter::resume(scratch / "series.csv", kColumns, 1e9);
     write(third, 8000, 9000);
     third.close();
   }
-  CHECK(slurp(scratch / "series.csv") == slurp(scratch / "whole.csv"));
-  CHECK(slurp(scratch / "whole.csv").rfind("time_s,kinetic_energy_J\n0,0\n0.01,1\n", 0) == 0);
+  CHECK(text_of(scratch / "series.csv") == text_of(scratch / "whole.csv"));
+  CHECK(text_of(scratch / "whole.csv").rfind("time_s,kinetic_energy_J\n0,0\n0.01,1\n", 0) == 0);
 }
 
 TEST_CASE("a series refuses what does not belong to it") {
@@ -60,7 +62,7 @@ TEST_CASE("a series is read back as it was written, without the row that is bein
   SeriesWriter writer = SeriesWriter::create(scratch / "series.csv", kColumns);
   write(writer, 0, 50);
   writer.close();
-  const std::string whole = slurp(scratch / "series.csv");
+  const std::string whole = text_of(scratch / "series.csv");
   spill(scratch / "series.csv", whole + "0.5,1.5abc\n0.51,7.1");
   const Series series = read_series(scratch / "series.csv");
   CHECK(series.names == kColumns);
@@ -93,7 +95,7 @@ TEST_CASE("JSON keeps its order and is written whole") {
   const std::vector<PluginRecord> plugins{{"hertz_mindlin", "1.0", "laws.so", "ab12"}};
   json["provenance"] = provenance(command, plugins);
   write_json(scratch / "summary.json", json);
-  const std::string text = slurp(scratch / "summary.json");
+  const std::string text = text_of(scratch / "summary.json");
   CHECK(text.rfind("{\n  \"z\": 0.1,\n  \"a\": null,", 0) == 0);
   const auto back = nlohmann::json::parse(text);
   for (const char* key : {"version", "compiler", "host", "processor", "cores", "date_utc"}) CHECK(back["provenance"].contains(key));

@@ -4,9 +4,11 @@
 #include <limits>
 
 #include "host/temporary.hpp"
+#include "kernel/base/text.hpp"
 #include "raster.hpp"
 #include "studies/picture/picture.hpp"
 
+using millscope::base::text_of;
 using namespace millscope::studies;
 using host_test::refusal;
 using picture_test::Raster;
@@ -41,11 +43,6 @@ CurvePicture two_curves() {
   b.label = "b";
   return {
       .title = "Curves", .subtitle = "test", .x_label = "x", .x_unit = "m", .value_label = "value", .value_unit = "W", .curves = {a, b}};
-}
-
-std::string bytes(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
@@ -122,9 +119,9 @@ TEST_CASE("the same arrays give the same bytes, whatever was drawn before") {
   draw_map(map, folder.path() / "one");
   draw_curves(two_curves(), folder.path() / "curves");
   draw_map(map, folder.path() / "two");
-  CHECK(bytes(folder.path() / "one.svg") == bytes(folder.path() / "two.svg"));
-  CHECK(bytes(folder.path() / "one.png") == bytes(folder.path() / "two.png"));
-  CHECK(bytes(folder.path() / "one.svg").find("<title>Speed</title>") != std::string::npos);
+  CHECK(text_of(folder.path() / "one.svg") == text_of(folder.path() / "two.svg"));
+  CHECK(text_of(folder.path() / "one.png") == text_of(folder.path() / "two.png"));
+  CHECK(text_of(folder.path() / "one.svg").find("<title>Speed</title>") != std::string::npos);
 }
 
 TEST_CASE("nothing is cut off, however long the words and large the numbers") {

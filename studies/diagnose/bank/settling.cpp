@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
@@ -15,6 +14,7 @@
 
 #include "kernel/base/parallel.hpp"
 #include "kernel/output/series.hpp"
+#include "kernel/output/summary.hpp"
 #include "studies/diagnose/bank/bank.hpp"
 
 namespace millscope::diagnose {
@@ -45,11 +45,11 @@ struct Times {
 };
 
 /// Both parts are whole turns, as a speed that ripples once a turn is no sign of a start; nothing where less than three turns are analysed.
-std::optional<Times> times_of(const nlohmann::json& summary) {
-  const auto window = summary.is_object() ? summary.value("window_s", nlohmann::json()) : nlohmann::json();
+std::optional<Times> times_of(const nlohmann::ordered_json& summary) {
+  const auto window = summary.is_object() ? summary.value("window_s", nlohmann::ordered_json()) : nlohmann::ordered_json();
   if (!window.is_array() || window.size() != 2 || !window[0].is_number() || !window[1].is_number()) return {};
   const double begin = window[0], end = window[1], span = end - begin;
-  const auto speed = summary.value("mill_speed_rad_per_s", nlohmann::json());
+  const auto speed = summary.value("mill_speed_rad_per_s", nlohmann::ordered_json());
   double first = kFirst * span, later = (1 - kLater) * span;
   if (speed.is_number() && speed.get<double>() != 0) {
     const double turn = 2 * std::numbers::pi / std::fabs(speed.get<double>());
@@ -73,8 +73,7 @@ double mean_within(const std::vector<double>& time, const std::vector<double>& v
 std::optional<Parts> parts_of(const fs::path& run) {
   if (run.empty() || !fs::exists(run / "series.csv")) return {};
   try {
-    std::ifstream in(run / "summary.json", std::ios::binary);
-    const std::optional<Times> t = times_of(nlohmann::json::parse(in, nullptr, false));
+    const std::optional<Times> t = times_of(output::read_json(run / "summary.json"));
     if (!t) return {};
     const output::Series series = output::read_series(run / "series.csv");
     const std::vector<double>& time = series.column("time_s");
