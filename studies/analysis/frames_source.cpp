@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/statistics.hpp"
 #include "studies/analysis/times.hpp"
 
 namespace millscope::studies {
@@ -98,8 +99,7 @@ void FramesSource::weigh() {
   const std::vector<double>& time = reader_.scalars().time;
   std::vector<double> steps;
   for (std::size_t f = begin_ + 1; f < end_; ++f) steps.push_back(time[f] - time[f - 1]);
-  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-  const double usual = steps[steps.size() / 2];
+  const double usual = base::quantile(steps, 0.5);
   share_.assign(time.size(), 0.0);
   piece_.assign(time.size(), 0);
   for (std::size_t f = begin_; f < end_; ++f) {

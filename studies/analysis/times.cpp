@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/analysis/resample.hpp"
 
 namespace millscope::studies {
@@ -97,9 +98,7 @@ double usual_step(const std::vector<BasicSeries>& stretches) {
   for (const BasicSeries& s : stretches) {
     for (std::size_t i = 1; i < s.size(); ++i) steps.push_back(s.time[i] - s.time[i - 1]);
   }
-  if (steps.empty()) return 0;
-  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-  return steps[steps.size() / 2];
+  return steps.empty() ? 0 : base::quantile(steps, 0.5);
 }
 
 std::vector<double> even_row(const BasicSeries& s, std::size_t basic, double step) {

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/statistics.hpp"
 #include "studies/compare/regions.hpp"
 
 namespace millscope::calibrate {
@@ -131,8 +132,7 @@ double median_blocks(const ResultSet& results) {
     }
   }
   if (blocks.empty()) return static_cast<double>(results.meta.blocks.size());
-  std::nth_element(blocks.begin(), blocks.begin() + static_cast<std::ptrdiff_t>(blocks.size() / 2), blocks.end());
-  return blocks[blocks.size() / 2];
+  return base::quantile(blocks, 0.5);
 }
 
 /// An error that is known from n blocks has Student's spread: variance (n − 1)/(n − 3).

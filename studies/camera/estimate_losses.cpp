@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/statistics.hpp"
 #include "studies/camera/estimate_parts.hpp"
 #include "studies/camera/maximise.hpp"
-#include "studies/recording/select.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
 namespace millscope::studies::camera {
@@ -100,7 +100,8 @@ RateModel estimate_rate(const std::vector<RateWindow>& windows) {
     count += w.count;
     seconds += w.seconds;
   }
-  const double distance = std::max(quantile(distances, 0.95), 1e-6), speed = std::max(quantile(speeds, 0.95), 1e-6), rate = count / seconds;
+  const double distance = std::max(base::quantile(distances, 0.95), 1e-6), speed = std::max(base::quantile(speeds, 0.95), 1e-6),
+               rate = count / seconds;
   const Counts counts(windows, distance, speed, rate);
   const Fit plain = maximise(counts, {{0, -1, 1}});
   const auto fit_with = [&](double deviation) {
@@ -115,7 +116,7 @@ RateModel estimate_rate(const std::vector<RateWindow>& windows) {
   loss.found = 2 * (fit.log_likelihood - plain.log_likelihood) > 14.2;
   const Fit& used = loss.found ? fit : plain;
   model.rate = {rate * std::exp(used.value[0]), rate * std::exp(used.value[0]) * used.error(0)};
-  loss.typical_distance = quantile(distances, 0.5);
+  loss.typical_distance = base::quantile(distances, 0.5);
   if (loss.found) {
     loss.at_rest = {fit.value[1], kCaution * fit.error(1)};
     loss.per_distance = {fit.value[2] / distance, kCaution * fit.error(2) / distance};
@@ -123,7 +124,7 @@ RateModel estimate_rate(const std::vector<RateWindow>& windows) {
   }
   std::vector<double> rates;
   for (const RateWindow& w : windows) rates.push_back(counts.rate_at(used.value, w));
-  model.lowest_rate = quantile(rates, 0.005);
+  model.lowest_rate = base::quantile(rates, 0.005);
   return model;
 }
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/camera/maximise.hpp"
 #include "studies/camera/stretches.hpp"
-#include "studies/recording/select.hpp"
 
 namespace millscope::studies::camera {
 namespace {
@@ -139,8 +139,8 @@ CameraNoise result_of(const Estimator& e) {
   r.growth = {p.growth / kLengthScale, kCaution * e.size.error(3) / kLengthScale};
   std::vector<double> distances;
   for (const Stretch& s : e.all) distances.insert(distances.end(), s.distance.begin(), s.distance.end());
-  r.near = quantile(distances, 0.05);
-  r.far = quantile(distances, 0.95);
+  r.near = base::quantile(distances, 0.05);
+  r.far = base::quantile(distances, 0.95);
   r.total_near = total_at(r.near, e);
   r.total_far = total_at(r.far, e);
   r.stretches = e.all.size();

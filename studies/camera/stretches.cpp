@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "kernel/base/error.hpp"
-#include "studies/recording/select.hpp"
+#include "kernel/base/statistics.hpp"
 
 namespace millscope::studies::camera {
 namespace {
@@ -68,7 +68,7 @@ std::vector<Stretch> stretches_of(const Recording& recording, const Middle& midd
   std::vector<double> bends;
   for (const Stretch& s : all) bends.push_back(largest_bend(s));
   std::vector<double> ordered = bends;
-  const double limit = kImpact * quantile(ordered, 0.5);
+  const double limit = kImpact * base::quantile(ordered, 0.5);
   std::vector<Stretch> calm;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (bends[i] <= limit) calm.push_back(std::move(all[i]));

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <numeric>
 
+#include "kernel/base/statistics.hpp"
+
 namespace millscope::studies {
 namespace {
 
@@ -51,9 +53,8 @@ struct Pairing {
 /// w_k: the normal deviate at 99 % over that of the resamples, at most 1.
 float tail_weight(std::vector<float> deviates) {
   constexpr float kNormal = 2.5758F;
-  const auto place = deviates.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(deviates.size() - 1));
-  std::nth_element(deviates.begin(), place, deviates.end());
-  return *place > kNormal ? kNormal / *place : 1;
+  const float found = base::quantile_below(deviates, 0.99);
+  return found > kNormal ? kNormal / found : 1;
 }
 
 /// M*_r of one observable; sets the weights of its elements.

@@ -9,6 +9,7 @@
 
 #include "kernel/base/error.hpp"
 #include "kernel/base/parallel.hpp"
+#include "kernel/base/statistics.hpp"
 #include "studies/emulate/check_training.hpp"
 #include "studies/emulate/process.hpp"
 
@@ -31,12 +32,6 @@ struct Emulator::State {
 namespace {
 
 constexpr double kTwoSided90 = 1.6448536269514722;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 Sample sample_of(const Emulator::State& s, Index observable) {
   MatrixXd input(s.box.size(), s.training.input.rows());
@@ -140,8 +135,9 @@ Emulator Emulator::fit(const Box& box, const Training& training, const FitOption
     const Process& process = *found[static_cast<std::size_t>(j)];
     state->process.push_back(process);
     state->hyperparameters.push_back(summary(process, state->spread[j]));
-    const VectorXd noise = training.noise_variance.col(j);
-    state->noise[j] = median(std::vector<double>(noise.begin(), noise.end()));
+    const auto noise = training.noise_variance.col(j);
+    std::vector<double> of_runs(noise.begin(), noise.end());
+    state->noise[j] = base::quantile(of_runs, 0.5);
   }
   state->correlation = shrunk_correlation(standardised(state->process));
   return Emulator(state);

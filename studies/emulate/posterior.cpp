@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "kernel/base/parallel.hpp"
+#include "kernel/base/statistics.hpp"
 #include "studies/emulate/chains.hpp"
 #include "studies/emulate/likelihood.hpp"
 #include "studies/emulate/prior.hpp"
@@ -24,12 +25,8 @@ constexpr int kLearning = 300;  // draws per parameter and round for the mixture
 constexpr double kEdge = 0.01;  // of coded units: half a hundredth of the range
 constexpr double kMostRHat = 1.05, kLeastEffective = 400;
 
-/// Value below which a fraction of the (sorted) values lies.
 double quantile(const VectorXd& sorted, double fraction) {
-  const double at = fraction * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<Index>(at);
-  const Index above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+  return base::interpolated_quantile({sorted.data(), static_cast<std::size_t>(sorted.size())}, fraction);
 }
 
 VectorXd sorted(VectorXd values) {

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/base/statistics.hpp"
 #include "millscope/random.hpp"
 #include "studies/inspect/circles.hpp"
-#include "studies/recording/select.hpp"
 
 namespace millscope::studies {
 namespace {
@@ -14,7 +14,7 @@ constexpr double kOuter = 0.75;  // of the enclosing radius: where windows count
 double enclosing_radius(const std::vector<double>& x, const std::vector<double>& y, double cx, double cy, std::vector<double>& scratch) {
   scratch.resize(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) scratch[i] = (x[i] - cx) * (x[i] - cx) + (y[i] - cy) * (y[i] - cy);
-  return std::sqrt(quantile(scratch, 0.99));
+  return std::sqrt(base::quantile(scratch, 0.99));
 }
 
 std::size_t count_support(const std::vector<Parabola>& windows, const Rotation& r, double noise) {
@@ -96,7 +96,7 @@ std::optional<Rotation> search_rotation(const std::vector<Parabola>& windows, co
     y.push_back(points.y[i]);
   }
   std::vector<double> xs = x, ys = y;
-  const double extent = std::max(quantile(xs, 0.99) - quantile(xs, 0.01), quantile(ys, 0.99) - quantile(ys, 0.01));
+  const double extent = std::max(base::quantile(xs, 0.99) - base::quantile(xs, 0.01), base::quantile(ys, 0.99) - base::quantile(ys, 0.01));
   Random random(1);
   std::optional<Rotation> best;
   for (int attempt = 0; attempt < 4000; ++attempt) {

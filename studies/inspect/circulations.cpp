@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/inspect/resample.hpp"
-#include "studies/recording/select.hpp"
 
 namespace millscope::studies {
 namespace {
@@ -16,8 +16,8 @@ namespace {
 double extent_of_height(const Recording& recording) {
   std::vector<double> heights;
   for (const Run& run : recording.runs) heights.insert(heights.end(), run.position[1].begin(), run.position[1].end());
-  const double low = quantile(heights, 0.01);
-  return quantile(heights, 0.99) - low;
+  const double low = base::quantile(heights, 0.01);
+  return base::quantile(heights, 0.99) - low;
 }
 
 }  // namespace

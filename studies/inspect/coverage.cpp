@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/inspect/resample.hpp"
 #include "studies/inspect/windows.hpp"
 #include "studies/recording/noise.hpp"
@@ -99,8 +100,8 @@ Axial measure_axial(const Recording& recording) {
   }
   Axial axial;
   if (!(all > 0)) return axial;
-  axial.low = weighted_quantile(heights, 0.005);
-  axial.high = weighted_quantile(heights, 0.995);
+  axial.low = base::weighted_quantile(heights, 0.005);
+  axial.high = base::weighted_quantile(heights, 0.995);
   const double length = axial.high - axial.low;
   if (!(length > 0)) return axial;
   for (const auto& [z, weight] : heights)

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/inspect/resample.hpp"
 #include "studies/inspect/windows.hpp"
 #include "studies/recording/noise.hpp"
-#include "studies/recording/select.hpp"
 
 namespace millscope::studies {
 namespace {
@@ -96,9 +96,9 @@ class Rest {  // the broad population: a normal density
     for (int a = 0; a < 3; ++a) {
       std::vector<double> values;
       for (const Arc& arc : arcs) values.push_back(arc.acceleration[a]);
-      middle_[a] = quantile(values, 0.5);
+      middle_[a] = base::quantile(values, 0.5);
       for (double& v : values) v = std::fabs(v - middle_[a]);
-      width_[a] = std::numbers::sqrt2 * std::max(1.5, 1.4826 * quantile(values, 0.5));
+      width_[a] = std::numbers::sqrt2 * std::max(1.5, 1.4826 * base::quantile(values, 0.5));
     }
   }
   double density(const Vector3d& a) const {

@@ -8,9 +8,9 @@
 #include <limits>
 #include <numbers>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/inspect/resample.hpp"
 #include "studies/inspect/windows.hpp"
-#include "studies/recording/select.hpp"
 
 namespace millscope::studies {
 namespace {
@@ -107,7 +107,7 @@ std::vector<double> rates(const Tally& tally, const std::vector<double>& times) 
 void measure_ranges(const std::vector<Pause>& pauses, Losses& losses) {
   std::vector<double> speeds;
   for (const Pause& p : pauses) speeds.push_back(p.speed);
-  const double width = quantile(speeds, 0.98) / (kRanges - 1);
+  const double width = base::quantile(speeds, 0.98) / (kRanges - 1);
   if (!(width > 0)) return;
   Tally tally;
   tally.count.resize(pauses.back().group + 1);

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/inspect/circles.hpp"
 #include "studies/inspect/resample.hpp"
 #include "studies/inspect/rides.hpp"
 #include "studies/inspect/windows.hpp"
 #include "studies/recording/noise.hpp"
-#include "studies/recording/select.hpp"
 
 namespace millscope::studies {
 namespace {
@@ -124,7 +124,7 @@ double scatter_about(const PlanePoints& points, const Circle& circle) {
   std::vector<double> misses;
   for (std::size_t i = 0; i < points.size(); ++i)
     misses.push_back(std::fabs(std::hypot(points.x[i] - circle.x, points.y[i] - circle.y) - circle.radius));
-  return misses.empty() ? 0 : 1.4826 * quantile(misses, 0.5);
+  return misses.empty() ? 0 : 1.4826 * base::quantile(misses, 0.5);
 }
 
 void report_circle(const Work& work, MillMotion& motion) {
@@ -204,7 +204,7 @@ void report_least_speed(const Work& work, MillMotion& motion) {
     motion.speed.note = "too few circular paths near the shell";
     return;
   }
-  const double typical = quantile(speeds, 0.9), low = quantile(speeds, 0.5);
+  const double typical = base::quantile(speeds, 0.9), low = base::quantile(speeds, 0.5);
   motion.speed = {Estimate{typical, low, std::numeric_limits<double>::infinity()},
                   why_no_wall(work) + ": the outer charge turns so fast, the shell at least", Bound::at_least};
 }

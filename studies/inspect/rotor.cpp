@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/inspect/circles.hpp"
 #include "studies/inspect/resample.hpp"
 #include "studies/inspect/windows.hpp"
-#include "studies/recording/select.hpp"
 
 namespace millscope::studies {
 namespace {
@@ -43,10 +43,10 @@ Plane fit_plane(const std::vector<Vector3d>& points) {
   std::vector<double> values(points.size());
   for (int a = 0; a < 3; ++a) {
     for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i][a];
-    plane.middle[a] = quantile(values, 0.5);
+    plane.middle[a] = base::quantile(values, 0.5);
   }
   for (std::size_t i = 0; i < points.size(); ++i) values[i] = (points[i] - plane.middle).norm();
-  const double near = 3 * quantile(values, 0.5);
+  const double near = 3 * base::quantile(values, 0.5);
   Vector3d mean = Vector3d::Zero();
   double count = 0;
   for (const Vector3d& p : points) {
@@ -88,7 +88,7 @@ bool is_circle(const std::vector<Vector3d>& points, const PlanePoints& flat, con
       seen[static_cast<std::size_t>(std::clamp((std::atan2(dy, dx) / kTurn + 0.5) * 36, 0.0, 35.0))] = true;
     }
   }
-  return quantile(radial, 0.9) < 0.12 * circle.radius && quantile(normal, 0.9) < 0.25 * circle.radius &&
+  return base::quantile(radial, 0.9) < 0.12 * circle.radius && base::quantile(normal, 0.9) < 0.25 * circle.radius &&
          std::count(seen.begin(), seen.end(), true) > 32;
 }
 
@@ -209,7 +209,7 @@ std::optional<Rotor> recognise_rotor(const Recording& recording) {
   const PlanePoints flat = project(points, plane);
   std::vector<double> radii;
   for (std::size_t i = 0; i < flat.size(); ++i) radii.push_back(std::hypot(flat.x[i], flat.y[i]));
-  Circle circle{0, 0, quantile(radii, 0.5)};
+  Circle circle{0, 0, base::quantile(radii, 0.5)};
   for (const double part : {0.5, 0.2, 0.05}) circle = ridge_circle(flat, {}, circle, part * circle.radius);
   if (!is_circle(points, flat, plane, circle)) return std::nullopt;
 
@@ -219,7 +219,7 @@ std::optional<Rotor> recognise_rotor(const Recording& recording) {
     misses.push_back(std::fabs(std::hypot(flat.x[i] - circle.x, flat.y[i] - circle.y) - circle.radius));
   rotor.share = static_cast<double>(std::count_if(misses.begin(), misses.end(), [&](double m) { return m < 0.1 * circle.radius; })) /
                 static_cast<double>(misses.size());
-  rotor.scatter = 1.4826 * quantile(misses, 0.5);
+  rotor.scatter = 1.4826 * base::quantile(misses, 0.5);
   rotor.radius = radius_interval(flat, circle, std::max(3 * rotor.scatter, 0.02 * circle.radius));
   const std::vector<Pace> paces = measure_paces(recording, Phases(plane, circle), kPaceLength);
   double turned = 0;

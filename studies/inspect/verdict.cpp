@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/inspect/windows.hpp"
 
 namespace millscope::studies {
@@ -88,7 +89,7 @@ Verdict judge_velocity(const Recording& recording, const Inspection& i) {
     v.reason = fmt::format("fewer than five points within {:.0f} ms nearly everywhere", length * 1e3);
     return v;
   }
-  const double error = weighted_quantile(errors, 0.5) * 0.5 * (i.noise[0].estimate->value + i.noise[1].estimate->value);
+  const double error = base::weighted_quantile(errors, 0.5) * 0.5 * (i.noise[0].estimate->value + i.noise[1].estimate->value);
   const double rim = speed * i.motion.path_radius.estimate->value;
   v.support = error < 0.1 * rim ? Support::yes : error < 0.3 * rim ? Support::partly : Support::no;
   v.reason = fmt::format("standard error of about {:.3f} m/s over {:.0f} ms, {:.1f} % of the shell's {:.2f} m/s", error, length * 1e3,

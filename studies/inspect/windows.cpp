@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "studies/recording/select.hpp"
+#include "kernel/base/statistics.hpp"
 
 namespace millscope::studies {
 
@@ -114,23 +114,12 @@ std::vector<double> dwell_times(const Run& run, double gap_limit) {
   return dwell;
 }
 
-double weighted_quantile(std::vector<std::pair<double, double>> value_and_weight, double fraction) {
-  std::sort(value_and_weight.begin(), value_and_weight.end());
-  double all = 0, below = 0;
-  for (const auto& [value, weight] : value_and_weight) all += weight;
-  for (const auto& [value, weight] : value_and_weight) {
-    below += weight;
-    if (weight > 0 && below >= fraction * all) return value;
-  }
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 double median_interval(const Recording& recording) {
   std::vector<double> intervals;
   for (const Run& run : recording.runs) {
     for (std::size_t i = 1; i < run.size(); ++i) intervals.push_back(run.time[i] - run.time[i - 1]);
   }
-  return intervals.empty() ? 0 : quantile(intervals, 0.5);
+  return intervals.empty() ? 0 : base::quantile(intervals, 0.5);
 }
 
 }  // namespace millscope::studies

@@ -62,9 +62,6 @@ std::vector<Parabola> local_parabolas(const std::vector<UnbrokenStretch>& stretc
 /// Dwell time of each point of a run, s: half of the pauses on both sides; pauses longer than the gap limit count nothing.
 std::vector<double> dwell_times(const Run& run, double gap_limit);
 
-/// Value below which the part `fraction` of the weight lies; NaN without weight.
-double weighted_quantile(std::vector<std::pair<double, double>> value_and_weight, double fraction);
-
 /// Median time between consecutive points, s.
 double median_interval(const Recording& recording);
 

@@ -4,15 +4,9 @@
 #include <iterator>
 #include <vector>
 
+#include "kernel/base/statistics.hpp"
+
 namespace millscope::studies {
-namespace {
-
-double quantile(const std::vector<double>& sorted, double probability) {
-  return sorted[static_cast<std::size_t>(std::lround(probability * static_cast<double>(sorted.size() - 1)))];
-}
-
-}  // namespace
-
 Color MapColors::operator()(double value) const {
   if (named) return distinct_color(static_cast<std::size_t>(std::lround(value) - 1));
   const double fraction = (value - low) / (high - low);
@@ -25,14 +19,14 @@ MapColors choose_colors(const MapPicture& picture) {
   MapColors colors;
   colors.named = !picture.names.empty();
   if (values.empty()) return colors;
-  std::sort(values.begin(), values.end());
+  const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
   colors.any = true;
-  colors.smallest = values.front(), colors.largest = values.back();
+  colors.smallest = *smallest, colors.largest = *largest;
   if (colors.named) {
     colors.low = 0.5, colors.high = static_cast<double>(picture.names.size()) - 0.5;
     return colors;
   }
-  double low = quantile(values, 0.01), high = quantile(values, 0.99);
+  double low = base::quantile(values, 0.01), high = base::quantile(values, 0.99);
   const double span = std::max(high - low, 0.5 * std::max(std::abs(low), std::abs(high)));
   if (colors.largest - high < 0.3 * span) high = colors.largest;
   if (low - colors.smallest < 0.3 * span) low = colors.smallest;

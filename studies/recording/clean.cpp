@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/recording/select.hpp"
 
 namespace millscope::studies {
@@ -57,7 +58,7 @@ double median_interval(const std::vector<Run>& runs) {
   for (const Run& run : runs) {
     for (std::size_t i = 1; i < run.size(); i += stride) intervals.push_back(run.time[i] - run.time[i - 1]);
   }
-  return intervals.empty() ? 0 : quantile(intervals, 0.5);
+  return intervals.empty() ? 0 : base::quantile(intervals, 0.5);
 }
 
 double default_gap_limit(const std::vector<Run>& runs) {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "studies/recording/select.hpp"
+#include "kernel/base/statistics.hpp"
 
 namespace millscope::studies {
 
@@ -28,7 +28,8 @@ std::array<double, 3> difference_noise(const Run& run, double gap_limit) {
     }
   }
   std::array<double, 3> noise{};
-  for (std::size_t axis = 0; axis < 3; ++axis) noise[axis] = contrasts[axis].empty() ? 0 : quantile(contrasts[axis], 0.5) / kMedianOfNormal;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    noise[axis] = contrasts[axis].empty() ? 0 : base::quantile(contrasts[axis], 0.5) / kMedianOfNormal;
   return noise;
 }
 

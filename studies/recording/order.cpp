@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/recording/clean.hpp"
 #include "studies/recording/select.hpp"
 
@@ -20,7 +21,7 @@ std::vector<char> true_times(const std::vector<double>& time) {
   std::vector<char> keep(time.size(), 1);
   std::vector<double> some;
   for (std::size_t i = 0; i < time.size(); i += time.size() / 10000 + 1) some.push_back(time[i]);
-  const double middle = quantile(some, 0.5);
+  const double middle = base::quantile(some, 0.5);
   for (std::size_t i = 0; i < time.size(); ++i) keep[i] = std::abs(time[i] - middle) < kYear;
   const auto apart = [&](std::size_t i, std::size_t j) { return std::abs(time[i] - time[j]); };
   for (std::size_t i = 1; i + 1 < time.size(); ++i) {

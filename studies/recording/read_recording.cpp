@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/statistics.hpp"
 #include "kernel/output/track_reader.hpp"
 #include "studies/recording/clean.hpp"
 #include "studies/recording/layout.hpp"
 #include "studies/recording/plausible.hpp"
 #include "studies/recording/recording.hpp"
-#include "studies/recording/select.hpp"
 #include "studies/recording/text_file.hpp"
 
 namespace millscope::studies {
@@ -47,7 +47,7 @@ void check_times(const std::vector<double>& times, const base::Location& where, 
   constexpr double kLatest = 1e11;  // s
   std::vector<double> some;
   for (std::size_t i = 0; i < times.size(); i += times.size() / 10000 + 1) some.push_back(std::fabs(times[i]));
-  const double usual = quantile(some, 0.5);
+  const double usual = base::quantile(some, 0.5);
   if (usual <= kLatest) return;
   throw UserError(where,
                   fmt::format("has times of {:.3g} s (read in {}), more than three thousand years; say the right unit under 'columns' in "

@@ -1,7 +1,6 @@
 #include "studies/recording/select.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace millscope::studies {
 namespace {
@@ -15,12 +14,6 @@ void for_each_array(Run& run, Change change) {
 }
 
 }  // namespace
-
-double quantile(std::vector<double>& values, double fraction) {
-  const auto rank = static_cast<std::ptrdiff_t>(std::llround(fraction * static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
-}
 
 std::uint64_t keep_only(Run& run, const std::vector<char>& keep) {
   const auto gone = static_cast<std::uint64_t>(std::count(keep.begin(), keep.end(), 0));

@@ -1,4 +1,4 @@
-// Choosing points of a run, and quantiles. For the files of this room and of the trajectory.
+// Choosing points of a run.
 #pragma once
 
 #include <vector>
@@ -6,9 +6,6 @@
 #include "studies/recording/recording.hpp"
 
 namespace millscope::studies {
-
-/// The value below which the part `fraction` of the values lies (nearest rank). `values` is left in another order; not empty.
-double quantile(std::vector<double>& values, double fraction);
 
 /// Keeps the points with a mark that is not 0, in all arrays of the run; returns how many went. report.used follows.
 std::uint64_t keep_only(Run& run, const std::vector<char>& keep);

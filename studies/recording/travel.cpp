@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/recording/noise.hpp"
-#include "studies/recording/select.hpp"
 
 namespace millscope::studies {
 namespace {
@@ -33,8 +33,8 @@ Extent measure_extent(std::span<const Run> runs) {
       for (std::size_t i = 0; i < run.size(); i += stride) values.push_back(run.position[axis][i]);
     }
     if (values.empty()) continue;
-    const double low = quantile(values, 0.02), high = quantile(values, 0.98);
-    extent.middle[axis] = quantile(values, 0.5);
+    const double low = base::quantile(values, 0.02), high = base::quantile(values, 0.98);
+    extent.middle[axis] = base::quantile(values, 0.5);
     extent.width[axis] = high - low;
   }
   return extent;
@@ -54,7 +54,7 @@ double speed_quantile(std::span<const Run> runs, double fraction) {
       speeds.push_back(std::max(0.0, std::sqrt(squared) - kNoises * noise) / (run.time[i + kSteps] - run.time[i]));
     }
   }
-  return speeds.empty() ? 0 : quantile(speeds, fraction);
+  return speeds.empty() ? 0 : base::quantile(speeds, fraction);
 }
 
 double fall_speed(double diameter) { return std::sqrt(2 * kGravity * diameter); }

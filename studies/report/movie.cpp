@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "kernel/base/statistics.hpp"
 #include "kernel/config/values.hpp"
 #include "kernel/host/objects.hpp"
 #include "studies/report/packed.hpp"
@@ -57,11 +58,7 @@ std::vector<double> speeds_of(const std::vector<float>& velocity) {
   return speed;
 }
 
-double high_of(std::vector<double> speed) {
-  const auto at = speed.begin() + static_cast<std::ptrdiff_t>(kHighSpeedQuantile * static_cast<double>(speed.size() - 1));
-  std::nth_element(speed.begin(), at, speed.end());
-  return std::max(*at, 1e-9);
-}
+double high_of(std::vector<double> speed) { return std::max(base::quantile_below(speed, kHighSpeedQuantile), 1e-9); }
 
 template <class T>
 T scaled(double value, double most) {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/recording/noise.hpp"
-#include "studies/recording/select.hpp"
 #include "studies/trajectory/pieces.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
@@ -124,9 +124,9 @@ NoiseEstimate estimate_noise_model(std::span<const Run> runs, double gap_limit) 
       guesses[axis].push_back(guess);
       found.push_back(guess.correlation);
     }
-    correlations.push_back(quantile(found, 0.5));
+    correlations.push_back(base::quantile(found, 0.5));
   }
-  estimate.correlation = std::max(0.0, quantile(correlations, 0.5));
+  estimate.correlation = std::max(0.0, base::quantile(correlations, 0.5));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::vector<double> found;
     for (std::size_t k = 0; k < windows.size(); ++k) {
@@ -135,7 +135,7 @@ NoiseEstimate estimate_noise_model(std::span<const Run> runs, double gap_limit) 
       windows[k].improve(axis, true, guess);
       found.push_back(guess.log_noise / 2);
     }
-    estimate.standard_deviation[axis] = std::exp(quantile(found, 0.5));
+    estimate.standard_deviation[axis] = std::exp(base::quantile(found, 0.5));
   }
   return estimate;
 }

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "studies/recording/select.hpp"
+#include "kernel/base/statistics.hpp"
 #include "studies/trajectory/pieces.hpp"
 
 namespace millscope::studies {
@@ -58,7 +58,7 @@ double median_interval(const Points& points) {
   std::vector<double> some;
   const std::size_t stride = points.count / 1000 + 1;
   for (std::size_t i = 0; i + 1 < points.count; i += stride) some.push_back(points.time[i + 1] - points.time[i]);
-  return quantile(some, 0.5);
+  return base::quantile(some, 0.5);
 }
 
 double likely_roughness(const Run& run, std::size_t axis, const std::vector<Span>& spans, double noise) {

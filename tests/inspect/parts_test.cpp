@@ -51,12 +51,6 @@ TEST_CASE("dwell times add up to the covered time") {
   CHECK(sum < 59);
 }
 
-TEST_CASE("quantiles are weighted") {
-  CHECK(weighted_quantile({{3, 1}, {1, 1}, {2, 8}}, 0.5) == 2);
-  CHECK(weighted_quantile({{3, 9}, {1, 1}, {2, 1}}, 0.5) == 3);
-  CHECK(std::isnan(weighted_quantile({}, 0.5)));
-}
-
 TEST_CASE("resampling finds the standard error of a mean") {
   std::vector<double> values;
   for (int i = 0; i < 400; ++i) values.push_back(i % 2 ? 1 : -1);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "kernel/base/parallel.hpp"
+#include "kernel/base/statistics.hpp"
 #include "studies/diagnose/naming/pseudo_data.hpp"
 
 namespace millscope::diagnose {
@@ -33,15 +34,6 @@ double edge(double limit, double found, Inside inside) {
   return in;
 }
 
-/// The value below which 90 % of the numbers are; 0 of none.
-double ninety_percent(std::vector<double> of) {
-  if (of.empty()) return 0;
-  const auto rank = static_cast<std::size_t>(std::ceil(kInside * static_cast<double>(of.size() + 1)));
-  const auto at = of.begin() + static_cast<std::ptrdiff_t>(std::min(rank, of.size()) - 1);
-  std::nth_element(of.begin(), at, of.end());
-  return *at;
-}
-
 }  // namespace
 
 VectorXd coordinates_of(const VectorXd& coded, const std::vector<double>& shares) {
@@ -61,8 +53,8 @@ double PseudoData::allowed(const std::vector<Drawn>& drawn, const Model& fitted,
       all.push_back(rise);
       if (found > fitted.low(i) && found < fitted.high(i)) free.push_back(rise);
     }
-    out = std::max(out, ninety_percent(std::move(all)));
-    if (free.size() >= kFree) out = std::max(out, ninety_percent(std::move(free)));
+    if (!all.empty()) out = std::max(out, base::quantile_of_next(all, kInside));
+    if (free.size() >= kFree) out = std::max(out, base::quantile_of_next(free, kInside));
   }
   return out;
 }
