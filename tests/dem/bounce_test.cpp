@@ -104,7 +104,7 @@ TEST_CASE("a sphere that slides through the whole impact obeys Coulomb") {
   s.stiffness_factor = 1;
   s.time = "{end_s: 100, step_fraction: 0.02}";
   const SpringLaw laws[] = {{"{kind: hertz_mindlin, allow_tension: false, cap: sum}", ""},
-                            {"{kind: hertz_mindlin, allow_tension: false, cap: sum, tangential: mindlin_deresiewicz}", ""},
+                            {"{kind: hertz_mindlin_deresiewicz, allow_tension: false, cap: sum}", ""},
                             {"{kind: linear_spring_dashpot, allow_tension: false, cap: sum}", ", normal_stiffness: 1e7 N/m"}};
   for (const SpringLaw& law : laws) {
     s.law = law.law;

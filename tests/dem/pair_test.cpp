@@ -54,7 +54,7 @@ struct NamedLaw {
 };
 constexpr NamedLaw kLaws[] = {
     {"{kind: hertz_mindlin}", "restitution: 0.7, static_friction: 0.3", "{}"},
-    {"{kind: hertz_mindlin, tangential: mindlin_deresiewicz, cap: sum}", "restitution: 0.7, static_friction: 0.3", "{}"},
+    {"{kind: hertz_mindlin_deresiewicz, cap: sum}", "restitution: 0.7, static_friction: 0.3", "{}"},
     {"{kind: hertz_mindlin, allow_tension: false}", "restitution: 0.7, static_friction: 0.3", "{}"},
     {"{kind: linear_spring_dashpot}", "restitution: 0.7, static_friction: 0.3, normal_stiffness: 20000 N/m", "{}"},
     {"{kind: jkr}", "restitution: 0.7, static_friction: 0.3, surface_energy: 0.05 J/m^2", "{}"},

@@ -40,24 +40,26 @@ TEST_CASE("the ledger of a head-on collision closes within 0.1 % at 20 % of the 
   }
 }
 
-TEST_CASE("the ledger of any collision closes within 2 % at 20 % of the Rayleigh time and within 0.3 % at 10 %") {
+TEST_CASE("the ledger of any collision closes within 0.45 % at 20 % of the Rayleigh time and within 0.1 % at 10 %") {
   // The tangential spring swings 1.7 times as fast as the normal one, and a sliding surface moves by the whole slip in one step of 17 µm.
   for (const Case& c : kCases) {
     const Law law = make_law(c.law, c.values);
+    // A linear force that is clipped ends with a jump, somewhere within a step.
+    const bool jumps = std::string(c.law) == "linear_spring_dashpot" && std::string(c.values).find("allow_tension=0") != std::string::npos;
     for (const double sideways : {0.0, 0.2, 1.0}) {
       const Balance coarse = balance(law, 1.0, sideways, rayleigh_step()), fine = balance(law, 1.0, sideways, 0.5 * rayleigh_step());
       INFO(c.law << " " << c.values << ", sideways " << sideways << ": " << coarse.error << ", " << fine.error);
-      CHECK(std::fabs(coarse.error) < 0.02);
-      CHECK(std::fabs(fine.error) < 0.004);
+      CHECK(std::fabs(coarse.error) < (jumps ? 0.016 : 0.0045));
+      CHECK(std::fabs(fine.error) < 0.001);
     }
   }
 }
 
-TEST_CASE("the ledger closes within 0.02 % at 1 % of the Rayleigh time") {
+TEST_CASE("the ledger closes within 0.002 % at 1 % of the Rayleigh time") {
   for (const Case& c : kCases) {
     const Balance fine = balance(make_law(c.law, c.values), 1.0, 0.5, 0.05 * rayleigh_step());
     INFO(c.law << " " << c.values << ": " << fine.error);
-    CHECK(std::fabs(fine.error) < 2e-4);
+    CHECK(std::fabs(fine.error) < 2e-5);
   }
 }
 
@@ -68,4 +70,17 @@ TEST_CASE("the change of stiffness is a channel of its own and may give energy b
   CHECK(std::string(law.table().info.channel_name[3]) == "stiffness_change");
   CHECK(std::fabs(out.lost[3]) > 1e-4 * out.kinetic_before);
   CHECK(out.lost[0] == Approx(0.0).margin(1e-9 * out.kinetic_before));
+}
+
+TEST_CASE("of partial slip the edge takes its share as friction, and little is left for the change of stiffness") {
+  // The row of springs that the law stands for has no change of stiffness at all.
+  const Law law = make_law("hertz_mindlin_deresiewicz", "restitution=1 static_friction=0.34");
+  for (const double sideways : {0.05, 0.2}) {
+    Collision c = head_on(law, 1.0, sideways);
+    const Outcome out = c.run(1e-7);
+    INFO("friction " << out.lost[2] / out.kinetic_before << ", change " << out.lost[3] / out.kinetic_before);
+    CHECK(out.lost[2] > 0.2 * sideways * sideways * out.kinetic_before);
+    CHECK(std::fabs(out.lost[3]) < 0.1 * out.lost[2]);
+    CHECK(out.kinetic_before - out.kinetic_after == Approx(out.lost[2] + out.lost[3]).epsilon(1e-5));
+  }
 }
