@@ -63,7 +63,7 @@ TEST_CASE("slow beads stick, fast ones rebound") {
   slow.run(1e-6, 0.05);
   fast.run(1e-6, 0.05);
   CHECK(slow.i().position[0] - slow.j().position[0] < 0.01 + law.table().reach(law.get(), kRadius));
-  CHECK(fast.i().half_velocity[0] > 0.4);
+  CHECK(fast.i().half_velocity[0] == Approx(0.45).epsilon(0.005));  // e = 0.9: adhesion takes 2e-5 of the energy
 }
 
 TEST_CASE("adhesion carries a load of its own in the cap of friction") {
