@@ -2,6 +2,7 @@
 #include "kernel/dem/evaluate.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "millscope/pack.hpp"
 
@@ -119,6 +120,7 @@ void note_overlap(std::int64_t count, const ContactArrays& b, PairLedger& ledger
 
 void evaluate(const BatchRun& run, ContactArrays& b, PairLedger& ledger) {
   const std::int64_t padded = padded_count(run.count);
+  assert(0 < run.count && padded <= kBatchStride);
   ContactBatch contacts = contact_batch(run, padded, b);
   if (!run.physics->pair_parameters.empty()) run_pair_parameters(run, padded, b, contacts);
   const bool pre = run.physics->has_pre(), post = run.physics->has_post();

@@ -1,6 +1,7 @@
 #include "kernel/dem/pair_sweep.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "kernel/dem/evaluate.hpp"
 
@@ -59,11 +60,18 @@ void PairSweep::look_ahead(BeadRange ahead) {
   }
 }
 
+std::int64_t PairSweep::pushed_end(std::int64_t first) const {
+  const std::int64_t last = std::min(view_.count, first + kBatch);
+  return first < last ? std::int64_t{*std::max_element(view_.partner + first, view_.partner + last)} + 1 : 0;
+}
+
 void PairSweep::batch(std::int64_t first, BeadRange ahead) {
+  assert(pushed_end(first) - pass_.common.slabs.end(pass_.slab) <= std::ssize(pass_.state.halo));
   look_ahead(ahead);
   const std::int64_t last = std::min(view_.count, first + kBatch);
   const WideTable& wide = pass_.common.wide;
   const std::int64_t count = wide.search(gather_, view_, first, last, batch_);
+  assert(list_.history.empty() || view_.read <= std::ssize(list_.history[0]));
   if (count == 0) return;
   list_.make_room(view_);
   wide.gather(gather_, view_, count, batch_);
@@ -71,6 +79,7 @@ void PairSweep::batch(std::int64_t first, BeadRange ahead) {
   evaluate({&physics_, pass_.common.settings.time_step, count, false}, batch_, ledger_);
   const ScatterContext scatter{pass_.state.force, pass_.state.halo.data(), pass_.common.slabs.end(pass_.slab), gather_.equal};
   wide.scatter(scatter, view_, count, physics_.has_post(), batch_);
+  assert(list_.next.empty() || view_.written <= std::ssize(list_.next[0]));
 }
 
 }  // namespace millscope::dem

@@ -26,6 +26,8 @@ class PairSweep {
   std::uint32_t owner(std::int64_t slot) const { return view_.owner[slot]; }
   /// The contacts of the batch at slot `first`. `ahead`: beads that a later batch will be the first to touch; their lines are asked for.
   void batch(std::int64_t first, BeadRange ahead);
+  /// Behind the last of the beads that the batch at slot `first` may push.
+  std::int64_t pushed_end(std::int64_t first) const;
   void end() { list_.end_sweep(); }
 
  private:

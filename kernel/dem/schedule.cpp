@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 namespace millscope::dem {
 namespace {
@@ -31,6 +32,7 @@ void Schedule::measure(int slab, const PairList& list) {
     const std::int64_t last = std::min(list.count(), first + kBatch);
     for (std::int64_t s = first; s < last; ++s) {
       const std::int64_t partner = list.partner[s];
+      assert(list.owner[s] < partner);
       frontier = std::max(frontier, partner + 1);
       if (partner < beads.end) touched = std::max(touched, partner + 1);
     }

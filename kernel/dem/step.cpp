@@ -1,6 +1,7 @@
 #include "kernel/dem/step.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "kernel/dem/body_force_pass.hpp"
 #include "kernel/dem/wall_sweep.hpp"
@@ -89,7 +90,9 @@ void Step::contacts(int slab, int worker, bool finish_too) {
   const SlabPass pass{common_, particles_, state, scratch, slab, step_};
   WallSweep walls(pass, walls_, poses_);
   std::int64_t finished = common_.slabs.begin(slab);
+  [[maybe_unused]] const auto fits_ring = [&](std::int64_t end) { return !in_ring || end - finished <= schedule_.ring(slab); };
   const auto trail = [&](std::int64_t end) {
+    assert(fits_ring(end));
     walls.until(end);
     if (finish_too) finish(slab, worker, {finished, end});
     finished = end;
@@ -100,6 +103,7 @@ void Step::contacts(int slab, int worker, bool finish_too) {
     PairSweep pairs(pass, p, pairs_.of(slab, p), alike_[p]);
     for (std::int64_t first = 0; first < pairs.count(); first += kBatch) {
       pairs.batch(first, is_last ? schedule_.first_touched(slab, first + 2 * kBatch) : BeadRange{0, 0});
+      assert(fits_ring(std::min(pairs.pushed_end(first), common_.slabs.end(slab))));
       if (is_last && Schedule::trails_at(first + kBatch, pairs.count())) trail(pairs.owner(first + kBatch));
     }
     pairs.end();

@@ -1,6 +1,7 @@
 #include "kernel/dem/wall_sweep.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "kernel/dem/evaluate.hpp"
 
@@ -78,6 +79,7 @@ void WallSweep::ask(const Chunk& chunk) {
       pass_.common.physics.wall_reach()};
   scratch.found.count = 0;
   body.table->contacts(body.self, &query, &scratch.found);
+  assert(scratch.found.count <= scratch.found.capacity);
 }
 
 /// Notes for each contact found its physics, its normal and its history.
@@ -91,6 +93,7 @@ void WallSweep::match(Chunk& chunk) {
   pass_.scratch.contacts.resize(found.count);
   for (std::int64_t c = 0; c < found.count; ++c) {
     const std::int64_t at = chunk.base + c;
+    assert(found.bead[c] >= 0 && found.bead[c] < chunk.count);
     const std::uint32_t local = static_cast<std::uint32_t>(chunk.begin + found.bead[c]);
     const Row normal{found.normal[0][c], found.normal[1][c], found.normal[2][c]};
     const int p = physics.of_wall(pass_.particles.material[list.bead[local]], body.material_of_slot[found.material[c]]);
