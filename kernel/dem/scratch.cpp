@@ -23,8 +23,8 @@ class Arrays {
 
  private:
   void add_one(T*& pointer) { wanted_.push_back(&pointer); }
-  template <std::size_t n>
-  void add_one(T* (&group)[n]) {
+  template <std::size_t kCount>
+  void add_one(T* (&group)[kCount]) {
     for (T*& pointer : group) wanted_.push_back(&pointer);
   }
   std::vector<T**> wanted_;

@@ -22,8 +22,8 @@ void add_beads(base::Hash& hash, const Particles& particles, const Settings& set
     add(hash, particles.id[i]);
     // Periodic coordinates are wrapped at rebuilds only: hash them wrapped.
     for (int a = 0; a < 3; ++a) add(hash, wrapped(settings, a, particles.position[i].centre[a]));
-    for (int a = 0; a < 3; ++a) add(hash, particles.half[i].v[a]);
-    for (int a = 0; a < 3; ++a) add(hash, particles.half[i].w[a]);
+    for (const double v : particles.half[i].v) add(hash, v);
+    for (const double w : particles.half[i].w) add(hash, w);
   }
 }
 

@@ -1,7 +1,6 @@
 // The beads near each body, made anew at each rebuild, and the contacts that last, by bead, feature and nearest normal.
 #pragma once
 
-#include <compare>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -79,7 +78,7 @@ class WallLists {
   };
   struct Near {
     std::uint32_t bead, feature;
-    friend auto operator<=>(const Near&, const Near&) = default;
+    bool operator<(const Near& other) const { return bead != other.bead ? bead < other.bead : feature < other.feature; }
   };
   double greatest_speed() const;
   std::vector<Near> near(const Body& body, const CellOrder& order, Particles& particles, const Pose& pose);
