@@ -20,14 +20,14 @@ void print_found(const diagnose::Diagnosis& d, const fs::path& output) {
   if (!d.next_experiment.empty()) fmt::print("next: {}\n", d.next_experiment);
   fmt::print("\n{:<28} {:>8} {:>10} {:>16}\n", "candidate", "delta Q", "p", "visible (sigma)");
   for (std::size_t j = 0; j < d.naming.judged.size(); ++j) {
-    const diagnose::Judged& g = d.naming.judged[j];
+    const naming::Judged& g = d.naming.judged[j];
     if (!g.tested) {
-      fmt::print("{:<28} not tested, see the notes in diagnosis.md\n", d.problem.rivals[j].name);
+      fmt::print("{:<28} not tested, see the notes in diagnosis.md\n", d.problem.alternatives[j].name);
       continue;
     }
-    fmt::print("{:<28} {:>8.1f} {:>10.2g} {:>16.1f}\n", d.problem.rivals[j].name, g.delta_q, g.p_family, std::sqrt(g.lambda));
+    fmt::print("{:<28} {:>8.1f} {:>10.2g} {:>16.1f}\n", d.problem.alternatives[j].name, g.delta_q, g.p_family, std::sqrt(g.lambda));
   }
-  fmt::print("results in {}: diagnosis.md, diagnosis.json, pictures{}\n", output.string(), d.naming.best >= 0 ? ", corrected" : "");
+  fmt::print("results in {}: diagnosis.md, diagnosis.json, pictures{}\n", output.string(), d.naming.best ? ", corrected" : "");
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ int diagnose_study(const Arguments& arguments) {
   options.add()("draws", po::value<int>()->value_name("N"), "pseudo-recordings behind every p-value (default: 2016)");
   if (!options.parse(arguments)) return kDone;
   const fs::path output = options.text("output");
-  diagnose::NamingOptions naming;
+  naming::Options naming;
   if (options.has("draws")) naming.draws = options.integer("draws");
   if (naming.draws < 100) throw UserError(fmt::format("--draws {}: give 100 or more", naming.draws));
   const host::Registry registry = options.registry();

@@ -92,27 +92,4 @@ Observation observation_from(const Json& j) {
   return o;
 }
 
-Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& draws, double blocks) {
-  const Eigen::MatrixXd centred = draws.rowwise() - draws.colwise().mean();
-  Eigen::MatrixXd c = centred.transpose() * centred / static_cast<double>(std::max<Eigen::Index>(1, draws.rows() - 1));
-  const Eigen::VectorXd deviation = c.diagonal().cwiseSqrt();
-  double chance = 0, found = 0;
-  for (Eigen::Index i = 0; i < c.rows(); ++i) {
-    for (Eigen::Index j = 0; j < i; ++j) {
-      const double scale = deviation[i] * deviation[j];
-      if (!(scale > 0)) continue;
-      const double r = c(i, j) / scale;
-      chance += std::pow(1 - r * r, 2) / std::max(1.0, blocks - 1);
-      found += r * r;
-    }
-  }
-  const double kept = found > 0 ? 1 - std::min(1.0, chance / found) : 0;
-  for (Eigen::Index i = 0; i < c.rows(); ++i) {
-    for (Eigen::Index j = 0; j < c.cols(); ++j) {
-      if (i != j) c(i, j) *= kept;
-    }
-  }
-  return c;
-}
-
 }  // namespace millscope::calibrate

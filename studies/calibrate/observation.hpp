@@ -56,8 +56,4 @@ Observation observation_from(const nlohmann::ordered_json& json);
 /// or two codes, that agree better than that agree by chance.
 void add_power_error(Observation& recorded, double relative);
 
-/// Covariance of the columns of `draws` [draws, values], correlations shrunk towards none by λ = Σ Var(r)/Σ r² over the pairs, with
-/// Var(r) ≈ (1 − r²)²/(blocks − 1) (Schäfer and Strimmer 2005): draws from few blocks have correlations of chance.
-Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& draws, double blocks);
-
 }  // namespace millscope::calibrate

@@ -11,6 +11,7 @@
 #include "kernel/base/error.hpp"
 #include "kernel/base/statistics.hpp"
 #include "studies/compare/regions.hpp"
+#include "studies/diagnose/naming/shrinkage.hpp"
 
 namespace millscope::calibrate {
 namespace {
@@ -197,7 +198,7 @@ Observation summarise(const ResultSet& results, const std::vector<Summary>& summ
   o.blocks = median_blocks(results);
   if (results.meta.draws < 2)
     throw UserError(fmt::format("{}: too short for an uncertainty: it holds fewer than two blocks", results.meta.description));
-  o.covariance = few_blocks_factor(o.blocks) * shrunk_covariance(drawn(results, summaries, o.value), o.blocks);
+  o.covariance = few_blocks_factor(o.blocks) * naming::shrunk_covariance(drawn(results, summaries, o.value), o.blocks);
   for (Eigen::Index i = 0; i < o.value.size(); ++i) {
     const double size = std::isfinite(o.value[i]) ? std::fabs(o.value[i]) : 0;
     o.covariance(i, i) = std::max(o.covariance(i, i), std::pow(kLeastDeviation * std::max(size, 1e-3), 2));

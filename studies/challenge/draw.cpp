@@ -37,7 +37,7 @@ Eigen::VectorXd draw_theta(const Challenge& challenge, const SetsOf& sets, const
   Eigen::VectorXd theta(static_cast<Eigen::Index>(q.dimensions()));
   for (int trial = 0;; ++trial) {
     for (Eigen::Index i = 0; i < parameters; ++i) {
-      const calibrate::Parameter& p = q.study.parameters[static_cast<std::size_t>(i)];
+      const calibrate::Parameter& p = q.study.parameters[i];
       theta[i] = diagnose::rounded(p.low + (p.high - p.low) * (0.5 + kMiddle * (random.uniform() - 0.5)));
     }
     if (q.study.allowed(theta.head(parameters))) break;
@@ -51,10 +51,10 @@ Eigen::VectorXd draw_theta(const Challenge& challenge, const SetsOf& sets, const
   return theta;
 }
 
-diagnose::Effect draw_effect(const SetsOf& sets, const std::string& name, const diagnose::Question& q, emulate::Random& random) {
+naming::ActiveCandidate draw_effect(const SetsOf& sets, const std::string& name, const diagnose::Question& q, emulate::Random& random) {
   const auto found = std::find_if(q.candidates.begin(), q.candidates.end(), [&](const auto& c) { return c.name == name; });
   const double share = found->on_or_off() ? 1 : sets.low + (sets.high - sets.low) * random.uniform();
-  return {static_cast<int>(found - q.candidates.begin()), diagnose::rounded_share(*found, share)};
+  return {static_cast<int>(found - q.candidates.begin()), diagnose::rounded_strength(*found, share)};
 }
 
 }  // namespace

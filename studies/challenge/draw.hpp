@@ -14,7 +14,7 @@ struct Truth {
   Kind kind = Kind::none;
   std::string name;
   Eigen::VectorXd theta;  ///< natural units, rounded as the bank rounds
-  std::vector<diagnose::Effect> effects;
+  std::vector<naming::ActiveCandidate> effects;
   std::vector<std::string> settings;  ///< of what lies outside
   std::uint64_t stream = 0;           ///< of the random numbers of its runs
 };

@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void diagnose_set(const fs::path& folder, const host::Registry& registry, const calibrate::SessionOptions& session_of,
-                  const diagnose::NamingOptions& naming) {
+                  const naming::Options& naming) {
   const diagnose::Question question = diagnose::read_question(folder / "study.yaml", {}, registry);
   calibrate::Session session(question.study, registry, session_of);
   diagnose::Workshop workshop = diagnose::workshop_of(question, registry, session, session_of.say);
@@ -27,8 +27,7 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
-RunCount run(const fs::path& sets, const host::Registry& registry, calibrate::SessionOptions session,
-             const diagnose::NamingOptions& naming) {
+RunCount run(const fs::path& sets, const host::Registry& registry, calibrate::SessionOptions session, const naming::Options& naming) {
   const auto say = [&](const std::string& line) {
     if (session.say) session.say(line);
   };

@@ -16,6 +16,6 @@ struct RunCount {
 /// SETS/cache. A set whose diagnosis throws is noted in its diagnosis/failed.txt and tried again in the next call; the rest goes on. Throws
 /// what stops everything: an interruption, a full disk.
 RunCount run(const std::filesystem::path& sets, const host::Registry& registry, calibrate::SessionOptions session,
-             const diagnose::NamingOptions& naming);
+             const naming::Options& naming);
 
 }  // namespace millscope::challenge

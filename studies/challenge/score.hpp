@@ -14,7 +14,7 @@
 
 namespace millscope::challenge {
 
-using diagnose::Interval;
+using naming::Interval;
 
 /// One hypothesis of a diagnosis.
 struct Tested {

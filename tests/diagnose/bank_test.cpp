@@ -11,6 +11,7 @@
 
 using namespace millscope;
 using namespace millscope::diagnose;
+using namespace millscope::naming;
 using Catch::WithinRel;
 using Catch::Matchers::Contains;
 using testing::Scratch;
@@ -24,9 +25,9 @@ const std::string kRolling = "pairs.glass~glass.rolling_friction";
 
 std::vector<std::string> settings(const Question& q, const BankPoint& p) { return simulation_of(q, p, 0).settings; }
 
-int candidate(const Question& q, const std::string& name) {
-  for (std::size_t j = 0; j < q.candidates.size(); ++j) {
-    if (q.candidates[j].name == name) return static_cast<int>(j);
+Index candidate(const Question& q, const std::string& name) {
+  for (Index j = 0; j < std::ssize(q.candidates); ++j) {
+    if (q.candidates[j].name == name) return j;
   }
   throw std::runtime_error("no candidate " + name);
 }
@@ -39,8 +40,8 @@ std::string speed_of(const Question& q, std::size_t condition) { return fmt::for
 TEST_CASE("a bank that grows keeps every earlier run") {
   const Scratch folder;
   const Question q = question_of(folder, kSections);
-  for (const int group : {-1, 0, 1, 2}) {
-    const auto few = plan_group(q, {group}, 8), many = plan_group(q, {group}, 40);
+  for (const Group& group : {Group{}, Group{0}, Group{1}, Group{2}}) {
+    const auto few = plan_group(q, group, 8), many = plan_group(q, group, 40);
     REQUIRE(few.size() == 8);
     REQUIRE(many.size() == 40);
     for (std::size_t i = 0; i < few.size(); ++i) CHECK(settings(q, few[i]) == settings(q, many[i]));
@@ -67,8 +68,8 @@ TEST_CASE("all runs of a bank differ, each has a seed of its own") {
   CHECK(labels.size() == points.size());
   for (const BankPoint& p : points) {
     if (p.group != "again") continue;
-    CHECK(p.theta == points[static_cast<std::size_t>(p.index)].theta);
-    CHECK(settings(q, p) != settings(q, points[static_cast<std::size_t>(p.index)]));
+    CHECK(p.theta == points[p.index].theta);
+    CHECK(settings(q, p) != settings(q, points[p.index]));
   }
   CHECK(parameters.size() > points.size() / 2);  // θ of different groups need not agree
   const auto one = simulation_of(q, points[0], 0).settings, other = simulation_of(q, points[0], 1).settings;
@@ -98,33 +99,33 @@ TEST_CASE("no two runs of a large bank share a seed, and a case takes each") {
   CHECK(config::read_case(q.study.base.string(), {largest}).seed == (1ULL << 53) - 1);
 }
 
-TEST_CASE("shares cover what they are meant to, and agree with the rounded values") {
+TEST_CASE("strengths cover what they are meant to, and agree with the rounded values") {
   const Scratch folder;
   const Question q = question_of(folder, kSections);
-  const int rolling = candidate(q, "rolling_resistance"), angle = candidate(q, "lifter_face_angle");
+  const Index rolling = candidate(q, "rolling_resistance"), angle = candidate(q, "lifter_face_angle");
   double least = 1, most = 0, lowest = 1;
   for (const BankPoint& p : plan_group(q, {rolling}, 64)) {
-    REQUIRE(p.effects.size() == 1);
-    const double share = p.effects[0].share;
-    CHECK(share >= 0.1 - 1e-3);
-    CHECK(share <= 1);
-    least = std::min(least, share), most = std::max(most, share);
-    const Candidate& c = q.candidates[static_cast<std::size_t>(rolling)];
-    CHECK_THAT(c.value(share), WithinRel(rounded(c.value(share)), 1e-12));
+    REQUIRE(p.active.size() == 1);
+    const double strength = p.active[0].strength;
+    CHECK(strength >= 0.1 - 1e-3);
+    CHECK(strength <= 1);
+    least = std::min(least, strength), most = std::max(most, strength);
+    const Candidate& c = q.candidates[rolling];
+    CHECK_THAT(c.value(strength), WithinRel(rounded(c.value(strength)), 1e-12));
   }
   CHECK(least < 0.2);
   CHECK(most > 0.9);
-  for (const BankPoint& p : plan_group(q, {angle}, 64)) lowest = std::min(lowest, p.effects[0].share);
+  for (const BankPoint& p : plan_group(q, {angle}, 64)) lowest = std::min(lowest, p.active[0].strength);
   CHECK(lowest < -0.8);
-  CHECK(lowest >= q.candidates[static_cast<std::size_t>(angle)].range.low - 1e-3);
-  for (const BankPoint& p : plan_group(q, {candidate(q, "end_faces_at_rest")}, 8)) CHECK(p.effects[0].share == 1);
-  for (const BankPoint& p : plan_group(q, {-1}, 8)) CHECK(p.effects.empty());
+  CHECK(lowest >= q.candidates[angle].range.low - 1e-3);
+  for (const BankPoint& p : plan_group(q, {candidate(q, "end_faces_at_rest")}, 8)) CHECK(p.active[0].strength == 1);
+  for (const BankPoint& p : plan_group(q, {}, 8)) CHECK(p.active.empty());
 }
 
 TEST_CASE("parameters stay within their ranges, have four digits and break no constraint") {
   const Scratch folder;
   const Question q = question_of(folder, kSections + "constraints: [wall_friction < bead_friction]\n");
-  const auto points = plan_group(q, {-1}, 40);
+  const auto points = plan_group(q, {}, 40);
   CHECK(points.size() < 40);
   CHECK(points.size() > 10);
   const std::vector<Coordinate> theta = q.coordinates();
@@ -132,8 +133,8 @@ TEST_CASE("parameters stay within their ranges, have four digits and break no co
     CHECK(p.theta[1] < p.theta[0]);
     for (Index i = 0; i < p.theta.size(); ++i) {
       CHECK(p.theta[i] == rounded(p.theta[i]));
-      CHECK(p.theta[i] >= theta[static_cast<std::size_t>(i)].low);
-      CHECK(p.theta[i] <= theta[static_cast<std::size_t>(i)].high);
+      CHECK(p.theta[i] >= theta[i].low);
+      CHECK(p.theta[i] <= theta[i].high);
     }
   }
 }
@@ -145,7 +146,7 @@ TEST_CASE("a parameter set of which one condition failed is left out, and said")
   mill.fails = [&](const auto& s) {
     return "mill.speed=" + s.at("mill.speed") == speed_of(q, 1) && std::stod(s.at("fill.filling")) > 0.315;
   };
-  const std::vector<BankPoint> points = plan_group(q, {-1}, 16);
+  const std::vector<BankPoint> points = plan_group(q, {}, 16);
   const Bank bank = fill_bank(q, mill.workshop(), points, {0, 1});
   CHECK(mill.computed() == 32);
   std::size_t failed = 0;
@@ -172,7 +173,7 @@ TEST_CASE("numbers stand under their condition when the first parameter set has 
   const Scratch folder;
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, {}, {});
-  const std::vector<BankPoint> points = plan_group(q, {-1}, 8);
+  const std::vector<BankPoint> points = plan_group(q, {}, 8);
   const std::string first = settings(q, points[0])[1];
   mill.fails = [&](const auto& s) {
     return "pairs.glass~glass.static_friction=" + s.at("pairs.glass~glass.static_friction") == first &&
@@ -188,7 +189,7 @@ TEST_CASE("a bank knows where each of its simulations is") {
   const Scratch folder;
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, {}, {});
-  const std::vector<BankPoint> points = plan_group(q, {-1}, 8);
+  const std::vector<BankPoint> points = plan_group(q, {}, 8);
   Workshop workshop = mill.workshop();
   workshop.run = [run = workshop.run](std::span<const campaign::Simulation> simulations) {
     std::vector<campaign::Outcome> outcomes = run(simulations);
@@ -205,7 +206,7 @@ TEST_CASE("errors that a velocity profile states are correlated as it says, thos
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, {}, {});
   Workshop workshop = mill.workshop();
-  Bank bank = fill_bank(q, workshop, plan_group(q, {-1}, 24), {0});
+  Bank bank = fill_bank(q, workshop, plan_group(q, {}, 24), {0});
   for (auto& run : bank.seen) run[0]->covariance.array() += 0.9 * run[0]->covariance(0, 0);
   const auto between = [&](std::size_t law) { return problem_of(q, workshop, bank, {0}).noise[law](3, 4); };
   CHECK(between(0) == 0);
@@ -227,10 +228,10 @@ TEST_CASE("what the camera is doubted of costs no simulation") {
       question_of(folder, "nuisances: {" + camera + ", fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %}}\n" + hypotheses);
   REQUIRE(doubted.dimensions() == 5);
   CHECK(doubted.case_dimensions() == 3);
-  CHECK(plain.camera(plan_group(plain, {-1}, 1)[0].theta).empty());
+  CHECK(plain.camera(plan_group(plain, {}, 1)[0].theta).empty());
   std::set<std::string> cameras;
-  for (const int group : {-1, 0, 1, 2}) {
-    const auto with = plan_group(doubted, {group}, 20), without = plan_group(plain, {group}, 20);
+  for (const Group& group : {Group{}, Group{0}, Group{1}, Group{2}}) {
+    const auto with = plan_group(doubted, group, 20), without = plan_group(plain, group, 20);
     for (std::size_t i = 0; i < with.size(); ++i) {
       CHECK(settings(doubted, with[i]) == settings(plain, without[i]));
       CHECK(with[i].theta[3] >= -0.005);
@@ -243,12 +244,12 @@ TEST_CASE("what the camera is doubted of costs no simulation") {
   theta << 0.3, 0.4, 0.313, 0.004, -0.01;
   CHECK(doubted.camera(theta) == "schema_version: 1\nobservations:\n  doubted_frame: {kind: frame_error, offset_x: 0.004, scale: -0.01}\n");
   MadeUpMill mill(doubted, {}, {});
-  const BankData data = data_of(doubted, fill_bank(doubted, mill.workshop(), plan_group(doubted, {-1}, 8), {0}), {0});
+  const BankData data = data_of(doubted, fill_bank(doubted, mill.workshop(), plan_group(doubted, {}, 8), {0}), {0});
   CHECK(data.theta[3].products == Products::none);
   CHECK(data.theta[2].products == Products::all);
 }
 
-TEST_CASE("a nuisance apart is varied in a group of its own, and costs the other groups nothing") {
+TEST_CASE("a nuisance that is varied apart has a group of its own, and costs the other groups nothing") {
   const Scratch folder;
   const std::string hypotheses = "hypotheses: {lifter_face_angle: {}, rolling_resistance: {}, end_faces_at_rest: {}}\n";
   const std::string stiffness = "stiffness_factor: {range: [0.001, 0.01], mean: 0.004, sigma: 0.003, name: stiffness, apart: true}";
@@ -258,21 +259,21 @@ TEST_CASE("a nuisance apart is varied in a group of its own, and costs the other
                                              ", fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %}}\n" + hypotheses);
   REQUIRE(q.dimensions() == 5);
   CHECK(q.case_dimensions() == 3);
-  for (const int group : {-1, 0, 1, 2}) {
-    const auto with = plan_group(q, {group}, 20), without = plan_group(plain, {group}, 20);
+  for (const Group& group : {Group{}, Group{0}, Group{1}, Group{2}}) {
+    const auto with = plan_group(q, group, 20), without = plan_group(plain, group, 20);
     for (std::size_t i = 0; i < with.size(); ++i) {
       CHECK(settings(q, with[i]) == settings(plain, without[i]));
       CHECK(with[i].theta[3] == 0.001);
     }
   }
-  REQUIRE(groups_apart(plain).empty());
-  REQUIRE(groups_apart(q).size() == 1);
-  const std::vector<BankPoint> points = plan_group(q, groups_apart(q)[0], 32);
+  REQUIRE(varied_apart(plain).empty());
+  REQUIRE(varied_apart(q).size() == 1);
+  const std::vector<BankPoint> points = plan_group(q, {{}, varied_apart(q)[0]}, 32);
   int stiff = 0;
   double most = 0;
   for (const BankPoint& p : points) {
     CHECK(p.group == "stiffness");
-    CHECK(p.effects.empty());
+    CHECK(p.active.empty());
     const std::vector<std::string> s = settings(q, p);
     CHECK_THAT(s[4], Catch::StartsWith("stiffness_factor=0.00"));
     stiff += p.theta[3] > 0.00316 ? 1 : 0;  // half of them, as it is spread by its logarithm
@@ -285,14 +286,14 @@ TEST_CASE("a nuisance apart is varied in a group of its own, and costs the other
   // Every candidate with it, half as many as alone; screening does without them.
   CHECK(plan_bank(q).size() == plan_bank(plain).size() + static_cast<std::size_t>(q.bank.base + 3 * q.bank.each / 2));
   CHECK(plan_screening(q).size() == plan_screening(plain).size() + static_cast<std::size_t>(q.bank.base));
-  const int rolling = candidate(q, "rolling_resistance");
-  const std::vector<BankPoint> alone = plan_group(q, {rolling, -1}, q.bank.each), together = plan_together(q, rolling, 3);
+  const Index rolling = candidate(q, "rolling_resistance");
+  const std::vector<BankPoint> alone = plan_group(q, {rolling}, q.bank.each), together = plan_together(q, rolling, 3);
   REQUIRE(together.size() == 5);
   for (const BankPoint& p : together) {
     CHECK(p.group == "rolling_resistance*stiffness");
-    REQUIRE(p.effects.size() == 1);
+    REQUIRE(p.active.size() == 1);
     const auto pair = static_cast<std::size_t>(2 * p.index);
-    CHECK(p.effects[0].share == std::max(alone[pair].effects[0].share, alone[pair + 1].effects[0].share));
+    CHECK(p.active[0].strength == std::max(alone[pair].active[0].strength, alone[pair + 1].active[0].strength));
     CHECK(p.theta[3] >= 0.003);  // the case's 0.001 is the soft end: the stiffer half
   }
   CHECK(together[0].theta[3] == 0.01);
@@ -323,7 +324,7 @@ TEST_CASE("a nuisance apart is varied in a group of its own, and costs the other
     return s.contains("stiffness_factor") && s.contains(kRolling) && s.at("stiffness_factor") != "0.01";
   };
   const BankData few = data_of(q, fill_bank(q, fragile.workshop(), plan_bank(q), {0}), {0});
-  const auto is_rolling = [&](const BankRow& row) { return !row.effects.empty() && row.effects[0].candidate == rolling; };
+  const auto is_rolling = [&](const BankRow& row) { return row.candidate() == rolling; };
   CHECK(std::count_if(few.rows.begin(), few.rows.end(), is_rolling) == q.bank.each);
   REQUIRE(few.left_out.size() == 2);
   CHECK_THAT(few.left_out[0], Contains("simulations of the bank failed"));

@@ -12,6 +12,7 @@
 
 using namespace millscope;
 using namespace millscope::diagnose;
+using namespace millscope::naming;
 using Catch::WithinAbs;
 using Catch::WithinRel;
 using Catch::Matchers::Contains;
@@ -108,9 +109,9 @@ TEST_CASE("what is in the base is no candidate") {
 TEST_CASE("every candidate gives a case that can be run, at both ends of its range") {
   const std::vector<const Descriptor*> descriptors = registry().descriptors();
   for (const Candidate& c : library().candidates) {
-    for (const double share : {c.range.low, c.range.high}) {
-      INFO(c.name << " at " << share);
-      const config::Case with = config::read_case(kMill, settings_of(c, share));
+    for (const double strength : {c.range.low, c.range.high}) {
+      INFO(c.name << " at " << strength);
+      const config::Case with = config::read_case(kMill, settings_of(c, strength));
       CHECK_NOTHROW(config::finish(with, descriptors));
       CHECK_NOTHROW(config::resolved_yaml(with, descriptors));
     }
@@ -240,7 +241,7 @@ TEST_CASE("end faces that turn may be at rest, on or off") {
   const Candidate* c = find(l, "end_faces_at_rest");
   REQUIRE(c != nullptr);
   CHECK(c->on_or_off());
-  CHECK(rounded_share(*c, 1) == 1);
+  CHECK(rounded_strength(*c, 1) == 1);
   const std::vector<std::string> settings = settings_of(*c, 1);
   REQUIRE(settings.size() == 3);
   CHECK(settings[0] == "geometry.liner.end_faces=false");
@@ -249,13 +250,13 @@ TEST_CASE("end faces that turn may be at rest, on or off") {
   CHECK(find(library({}, MILLSCOPE_SOURCE_DIR "/configs/demo.yaml"), "end_faces_at_rest") == nullptr);
 }
 
-TEST_CASE("shares stand for values of four digits") {
+TEST_CASE("strengths stand for values of four digits") {
   Candidate c;
   c.paths = {"a"};
   c.null_value = 0.4, c.far = 0.1;
-  const double share = 0.123456789;
-  CHECK(c.value(rounded_share(c, share)) == Approx(rounded(c.value(share))).epsilon(1e-14));
-  CHECK(settings_of(c, share) == settings_of(c, rounded_share(c, share)));
+  const double strength = 0.123456789;
+  CHECK(c.value(rounded_strength(c, strength)) == Approx(rounded(c.value(strength))).epsilon(1e-14));
+  CHECK(settings_of(c, strength) == settings_of(c, rounded_strength(c, strength)));
   CHECK(rounded(0.123456) == 0.1235);
   CHECK(rounded(0) == 0);
   CHECK(rounded(-1234567) == -1235000);

@@ -11,6 +11,7 @@
 
 using namespace millscope;
 using namespace millscope::diagnose;
+using namespace millscope::naming;
 using Catch::WithinAbs;
 using Catch::Matchers::Contains;
 using testing::Scratch;
@@ -151,8 +152,8 @@ TEST_CASE("a reading names a tilt that the charge alone leaves open") {
       w.readings.push_back({{0, {"tilt by free flights", "mrad", "frame tilt"}, 1e3, 0.06, 0.012}});
       add_readings(w.readings.back(), w.recorded[c]);
     }
-    NamingOptions options;
-    options.draws = 400, options.rival_draws = 100;
+    naming::Options options;
+    options.draws = 400, options.comparison_draws = 100;
     return diagnose::diagnose(q, w, options);
   };
   CHECK(diagnosed(false).named.empty());

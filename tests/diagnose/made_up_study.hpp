@@ -19,7 +19,7 @@ const host::Registry& registry();
 std::filesystem::path write_study(const testing::Scratch& folder, const std::string& sections);
 Question question_of(const testing::Scratch& folder, const std::string& sections);
 
-/// What a value of the case does to the observables: `size` times its share along a direction of each condition.
+/// What a value of the case does to the observables: `size` times its strength along a direction of each condition.
 struct Physics {
   std::string path;
   double null_value = 0, far = 1;
@@ -43,7 +43,7 @@ class MadeUpMill {
  private:
   calibrate::Observation observation(std::size_t condition, const std::string& key, double noise) const;
 
-  std::vector<Coordinate> theta_;
+  std::vector<naming::Coordinate> theta_;
   std::vector<std::string> paths_;  ///< of θ
   std::vector<Physics> physics_;
   std::vector<std::string> truth_;

@@ -12,6 +12,7 @@
 
 using namespace millscope;
 using namespace millscope::diagnose;
+using namespace millscope::naming;
 using Catch::WithinAbs;
 using Catch::WithinRel;
 using Catch::Matchers::Contains;
@@ -30,8 +31,8 @@ nlohmann::json written(const Scratch& folder, const std::vector<std::string>& tr
                                              "observe: {beads: 300}\n");
   MadeUpMill mill(q, {{kRolling, 0, 0.2, 3, {21, 22, 23}}, {"geometry.liner.lifter_height", 0.005, 0.003, 3, {41, 42, 43}}}, truth,
                   recording_noise);
-  NamingOptions options;
-  options.draws = 240, options.rival_draws = 160;
+  naming::Options options;
+  options.draws = 240, options.comparison_draws = 160;
   Workshop workshop = mill.workshop();
   const Diagnosis d = diagnose::diagnose(q, workshop, options);
   write_outputs({q, workshop, d}, folder / "out");

@@ -11,6 +11,7 @@
 
 using namespace millscope;
 using namespace millscope::diagnose;
+using namespace millscope::naming;
 using Catch::WithinAbs;
 using Catch::WithinRel;
 using Catch::Matchers::Contains;

@@ -10,6 +10,7 @@
 
 using namespace millscope;
 using namespace millscope::diagnose;
+using namespace millscope::naming;
 using Catch::Matchers::Contains;
 using testing::Scratch;
 
@@ -93,6 +94,6 @@ TEST_CASE("runs with an effect, that failed or are too few tell nothing of their
   Bank failed = bank_of(folder, 60, {3, 0}, 8), with = failed;
   for (auto& point : failed.seen) point[0].reset();
   CHECK(unsettled(q, failed, {0, 1}).empty());
-  for (BankPoint& point : with.points) point.effects = {{0, 0.5}};
+  for (BankPoint& point : with.points) point.active = {{0, 0.5}};
   CHECK(unsettled(q, with, {0, 1}).empty());
 }

@@ -7,6 +7,7 @@
 #include "studies/emulate/random.hpp"
 
 using namespace millscope::diagnose;
+using namespace millscope::naming;
 using Catch::Matchers::Contains;
 using Catch::Matchers::WithinAbs;
 

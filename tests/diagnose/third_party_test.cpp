@@ -11,6 +11,7 @@
 
 using namespace millscope;
 using namespace millscope::diagnose;
+using namespace millscope::naming;
 using Catch::Matchers::Contains;
 using testing::Scratch;
 namespace fs = std::filesystem;

@@ -8,6 +8,7 @@
 
 using namespace millscope;
 using namespace millscope::diagnose;
+using namespace millscope::naming;
 using Catch::WithinAbs;
 using Catch::WithinRel;
 using Catch::Matchers::Contains;
@@ -35,15 +36,15 @@ std::vector<std::string> with(const std::string& more) {
   return truth;
 }
 
-NamingOptions quick() {
-  NamingOptions o;
-  o.draws = 240, o.rival_draws = 160;
+naming::Options quick() {
+  naming::Options o;
+  o.draws = 240, o.comparison_draws = 160;
   return o;
 }
 
 const Judged& judged(const Diagnosis& d, const std::string& name) {
-  for (std::size_t j = 0; j < d.problem.rivals.size(); ++j) {
-    if (d.problem.rivals[j].name == name) return d.naming.judged[j];
+  for (std::size_t j = 0; j < d.problem.alternatives.size(); ++j) {
+    if (d.problem.alternatives[j].name == name) return d.naming.judged[j];
   }
   throw std::runtime_error("not judged: " + name);
 }
@@ -93,24 +94,24 @@ TEST_CASE("what is missing is named, with its strength, the friction behind it a
   CHECK(d.next_experiment.empty());
   const Judged& found = judged(d, "rolling_resistance");
   CHECK(found.p_family < 0.05);
-  CHECK_THAT(found.share.value, WithinAbs(0.6, 0.15));  // naming_test.cpp counts how often intervals hold the truth
-  CHECK(found.share.low90 < found.share.value);
-  CHECK(found.share.high90 > found.share.value);
+  CHECK_THAT(found.strength.value, WithinAbs(0.6, 0.15));  // naming_test.cpp counts how often intervals hold the truth
+  CHECK(found.strength.low90 < found.strength.value);
+  CHECK(found.strength.high90 > found.strength.value);
   CHECK(found.theta[0].low90 < 0.3);
   CHECK(found.theta[0].high90 > 0.3);
   REQUIRE(d.held_out.size() == 1);
   const HeldOut& held = d.held_out[0];
   CHECK(held.improves);
   CHECK(held.scores[0].prediction.name == "corrected");
-  std::vector<std::string> rivals;
+  std::vector<std::string> rival_models;
   for (std::size_t k = 1; k < held.scores.size(); ++k) {
-    rivals.push_back(held.scores[k].prediction.name);
+    rival_models.push_back(held.scores[k].prediction.name);
     CHECK(held.scores[k].misfit > held.scores[0].misfit);
     CHECK(held.scores[k].low90 > 0);
     CHECK(held.scores[k].low90 < held.scores[k].improvement);
   }
-  CHECK(rivals == std::vector<std::string>{"effect removed", "retuned to power", "retuned to all observables", "placebo",
-                                           "Gaussian-process discrepancy"});
+  CHECK(rival_models == std::vector<std::string>{"effect removed", "retuned to power", "retuned to all observables", "placebo",
+                                                 "Gaussian-process discrepancy"});
   REQUIRE(d.alone.size() == 3);
   for (const Alone& a : d.alone) REQUIRE(a.after.size() == 3);
   // Friction fitted to each condition alone agrees once the effect is in.
@@ -130,9 +131,9 @@ TEST_CASE("a strength is right where the effect grows with what is varied apart"
   const Diagnosis d = found(q, mill);
   const Judged& found = judged(d, "rolling_resistance");
   CHECK(found.p_family < 0.05);
-  CHECK_THAT(found.share.value, WithinAbs(0.6, 0.15));
-  CHECK(found.share.low90 < 0.6);
-  CHECK(found.share.high90 > 0.6);
+  CHECK_THAT(found.strength.value, WithinAbs(0.6, 0.15));
+  CHECK(found.strength.low90 < 0.6);
+  CHECK(found.strength.high90 > 0.6);
 }
 
 TEST_CASE("two candidates with one effect are a class, and the condition that would separate them is said") {

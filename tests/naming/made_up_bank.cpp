@@ -5,7 +5,7 @@
 
 #include "studies/emulate/random.hpp"
 
-namespace millscope::diagnose {
+namespace millscope::naming {
 namespace {
 
 /// A fixed direction in the space of observables.
@@ -37,33 +37,33 @@ VectorXd truth_of(const MadeUp& mill, const VectorXd& u, const std::vector<doubl
   return y;
 }
 
-Problem made_up_problem(const MadeUp& mill, const VectorXd& coded, const std::vector<double>& shares, std::uint64_t seed) {
+Problem made_up_problem(const MadeUp& mill, const VectorXd& coded, const std::vector<double>& strengths, std::uint64_t seed) {
   Problem p;
   p.data.theta = {{"bead_friction", -1, 1, 0, 0, false}, {"wall_friction", -1, 1, 0, 0, false}, {"filling", -1, 1, 0, 0.35, false}};
   p.data.candidates = 3;
   const char* names[] = {"visible", "concealed", "faint"};
-  for (int j = 0; j < 3; ++j) p.rivals.push_back({names[j], j, -1, {}, {}});
-  p.rivals.push_back({"filling", -1, 2, {}, {}});
+  for (Index j = 0; j < 3; ++j) p.alternatives.push_back({.name = names[j], .candidate = j});
+  p.alternatives.push_back({.name = "filling", .freed = 2});
   const MatrixXd base = spread(mill.runs, 3), with = spread(3 * mill.each, 4);
   emulate::Random random(seed, 0);
   const Index n = mill.conditions * mill.observables;
   std::vector<VectorXd> values;
-  const auto add = [&](const VectorXd& u, int candidate, double share) {
+  const auto add = [&](const VectorXd& u, std::optional<Index> candidate, double strength) {
     std::vector<double> s(3, 0.0);
-    if (candidate >= 0) s[static_cast<std::size_t>(candidate)] = share;
-    p.data.rows.push_back({u, candidate < 0 ? std::vector<Effect>{} : std::vector<Effect>{{candidate, share}}});
-    values.push_back(truth_of(mill, u, s) + (candidate < 0 ? 1 : mill.chancier) * mill.run_noise * random.normals(n));
+    if (candidate) s[*candidate] = strength;
+    p.data.rows.push_back({u, candidate ? std::vector<ActiveCandidate>{{*candidate, strength}} : std::vector<ActiveCandidate>{}});
+    values.push_back(truth_of(mill, u, s) + (candidate ? mill.chancier : 1) * mill.run_noise * random.normals(n));
   };
-  for (Index r = 0; r < base.rows(); ++r) add(base.row(r).transpose(), -1, 0);
-  for (Index r = 0; r < mill.again; ++r) add(base.row(r).transpose(), -1, 0);
+  for (Index r = 0; r < base.rows(); ++r) add(base.row(r).transpose(), {}, 0);
+  for (Index r = 0; r < mill.again; ++r) add(base.row(r).transpose(), {}, 0);
   for (Index r = 0; r < with.rows(); ++r)
-    add(with.row(r).head(3).transpose(), static_cast<int>(r) % 3, mill.weakest + (1 - mill.weakest) * with(r, 3));
+    add(with.row(r).head(3).transpose(), r % 3, mill.weakest + (1 - mill.weakest) * with(r, 3));
   p.data.value.resize(static_cast<Index>(values.size()), n);
   for (std::size_t r = 0; r < values.size(); ++r) p.data.value.row(static_cast<Index>(r)) = values[r].transpose();
   for (Index i = 0; i < n; ++i) p.data.condition.push_back(static_cast<int>(i) / mill.observables);
-  p.observed = truth_of(mill, coded, shares) + mill.recording_noise * random.normals(n);
+  p.observed = truth_of(mill, coded, strengths) + mill.recording_noise * random.normals(n);
   p.covariance = MatrixXd::Identity(n, n) * mill.recording_noise * mill.recording_noise;
   return p;
 }
 
-}  // namespace millscope::diagnose
+}  // namespace millscope::naming

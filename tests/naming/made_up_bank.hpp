@@ -3,23 +3,23 @@
 
 #include "studies/diagnose/naming/naming.hpp"
 
-namespace millscope::diagnose {
+namespace millscope::naming {
 
 struct MadeUp {
   int runs = 24, each = 10, again = 0;  ///< of the runs without a candidate, as many are repeated
   double run_noise = 0.3, recording_noise = 1.0;
-  double weakest = 0.55;                 ///< share of a candidate in the bank
+  double weakest = 0.55;                 ///< strength of a candidate in the bank
   double chancier = 1;                   ///< noise of runs with an effect over that of the others
   int conditions = 2, observables = 18;  ///< of each
   double cubic = 0;                      ///< what no quadratic surface follows
   double flattens = 0;                   ///< 1: bead friction does nothing more at the upper end of its range
 };
 
-/// What the formula says at coded θ with shares of three candidates: "visible" changes what friction cannot, "concealed" does what
+/// What the formula says at coded θ with strengths of three candidates: "visible" changes what friction cannot, "concealed" does what
 /// bead friction does, "faint" nearly nothing.
-VectorXd truth_of(const MadeUp& mill, const VectorXd& coded, const std::vector<double>& shares);
+VectorXd truth_of(const MadeUp& mill, const VectorXd& coded, const std::vector<double>& strengths);
 
 /// Bank and recording of the formula with the truth given.
-Problem made_up_problem(const MadeUp& mill, const VectorXd& coded, const std::vector<double>& shares, std::uint64_t seed);
+Problem made_up_problem(const MadeUp& mill, const VectorXd& coded, const std::vector<double>& strengths, std::uint64_t seed);
 
-}  // namespace millscope::diagnose
+}  // namespace millscope::naming

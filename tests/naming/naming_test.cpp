@@ -11,17 +11,17 @@
 #include "studies/emulate/random.hpp"
 
 using namespace millscope;
-using namespace millscope::diagnose;
+using namespace millscope::naming;
 using Catch::WithinAbs;
 using Catch::WithinRel;
 
 namespace {
 
-VectorXd point(double a, double b, double c) { return (VectorXd(3) << a, b, c).finished(); }
+VectorXd point(double a, double b, double c) { return Eigen::Vector3d(a, b, c); }
 
-NamingOptions quick(int draws = 480) {
-  NamingOptions o;
-  o.draws = draws, o.rival_draws = 240;
+Options quick(int draws = 480) {
+  Options o;
+  o.draws = draws, o.comparison_draws = 240;
   return o;
 }
 
@@ -29,14 +29,14 @@ NamingOptions quick(int draws = 480) {
 
 TEST_CASE("an effect that is there is named, with its strength and the friction that it concealed") {
   const Problem p = made_up_problem({}, point(-0.3, 0.2, 0), {0.6, 0, 0}, 3);
-  const Naming n = name_physics(p, quick());
+  const Result n = name_candidates(p, quick());
   REQUIRE(n.best == 0);
-  CHECK(n.kept == std::vector<int>{0});
+  CHECK(n.kept == std::vector<Index>{0});
   CHECK(n.judged[0].p_family < 0.01);
   CHECK(n.base_p < 0.01);
   CHECK(n.judged[0].goodness_p > 0.05);
-  CHECK(n.judged[0].share.low90 < 0.6);
-  CHECK(n.judged[0].share.high90 > 0.6);
+  CHECK(n.judged[0].strength.low90 < 0.6);
+  CHECK(n.judged[0].strength.high90 > 0.6);
   CHECK(n.judged[0].theta[0].low90 < -0.3);
   CHECK(n.judged[0].theta[0].high90 > -0.3);
   CHECK(std::fabs(n.base_theta[0].value + 0.3) > std::fabs(n.judged[0].theta[0].value + 0.3));
@@ -45,13 +45,13 @@ TEST_CASE("an effect that is there is named, with its strength and the friction 
 
 TEST_CASE("what friction imitates is concealed, what does nothing is undetectable") {
   const Problem p = made_up_problem({}, point(0, 0, 0), {0, 0, 0}, 4);
-  const Naming n = name_physics(p, quick());
+  const Result n = name_candidates(p, quick());
   CHECK(n.judged[0].kappa > 0.5);
   CHECK_FALSE(n.judged[0].undetectable);
   CHECK(n.judged[1].kappa < 0.2);
   CHECK(n.judged[1].undetectable);
   CHECK(n.judged[2].undetectable);
-  CHECK(n.best == -1);
+  CHECK_FALSE(n.best);
 }
 
 TEST_CASE("lambda is what the nearest retuned base is away, wherever it lies") {
@@ -94,9 +94,9 @@ TEST_CASE("at the fitted strength lambda is what delta Q is on average, wherever
       const Surrogate s(p.data);
       const Weighting w(p.covariance, s);
       const FitResult base = Model(p.data, s, w, {}).fit(p.observed);
-      const FitResult with = Model(p.data, s, w, {{0}, std::vector<ShareRange>(3)}).fit(p.observed);
+      const FitResult with = Model(p.data, s, w, {{0}, std::vector<StrengthRange>(3)}).fit(p.observed);
       gained += (base.q - with.q) / 40;
-      expected += Visibility(p, s, w, with.coded, 0).at(with.shares[0]) / 40;
+      expected += Visibility(p, s, w, with.coded, 0).at(with.strengths[0]) / 40;
     }
     CHECK_THAT(expected, WithinRel(gained, 0.05));
   }
@@ -132,13 +132,13 @@ TEST_CASE("intervals hold a parameter that does less and less towards the end of
   MadeUp mill;
   mill.flattens = 1, mill.recording_noise = 4;
   const VectorXd truth = point(0.7, -0.2, 0);
-  NamingOptions o = quick();
+  Options o = quick();
   int inside = 0, sure = 0;
   constexpr int kMills = 60;
   for (std::uint64_t seed = 1; seed <= kMills; ++seed) {
     const Problem p = made_up_problem(mill, truth, {0, 0, 0}, seed);
     const PseudoData pseudo(p, o);
-    const Interval found = pseudo.intervals({}, pseudo.fit({}), o.rival_draws, 1).front();
+    const Interval found = pseudo.intervals({}, pseudo.fit({}), o.comparison_draws, 1).front();
     inside += found.holds(truth[0]) ? 1 : 0;
     sure += found.high90 - found.low90 < 1.5 ? 1 : 0;
   }
@@ -151,20 +151,20 @@ TEST_CASE("intervals hold a parameter that does less and less towards the end of
 TEST_CASE("where an effect is there its model is not rejected and its strength's interval holds it, at the end of its range too") {
   MadeUp mill;
   mill.each = 16, mill.again = 8, mill.run_noise = 0.7;
-  NamingOptions o = quick();
+  Options o = quick();
   constexpr int kMills = 40;
-  for (const double share : {0.15, 0.8, 1.0}) {
+  for (const double strength : {0.15, 0.8, 1.0}) {
     int inside = 0, rejected = 0;
     for (std::uint64_t seed = 1; seed <= kMills; ++seed) {
-      const Problem p = made_up_problem(mill, point(0.1, -0.2, 0.1), {share, 0, 0}, 100 + seed);
+      const Problem p = made_up_problem(mill, point(0.1, -0.2, 0.1), {strength, 0, 0}, 100 + seed);
       const PseudoData pseudo(p, o);
       const FitResult fit = pseudo.fit({0});
-      inside += pseudo.intervals({0}, fit, o.rival_draws, 1).back().holds(share) ? 1 : 0;
+      inside += pseudo.intervals({0}, fit, o.comparison_draws, 1).back().holds(strength) ? 1 : 0;
       int beyond = 0;
-      for (const auto& d : pseudo.draw(pseudo.truth({0}, fit), {{0}}, {o.rival_draws, 2})) beyond += d.fit[0].q >= fit.q ? 1 : 0;
-      rejected += beyond < 0.05 * o.rival_draws ? 1 : 0;
+      for (const auto& d : pseudo.draw(pseudo.truth({0}, fit), {{0}}, {o.comparison_draws, 2})) beyond += d.fit[0].q >= fit.q ? 1 : 0;
+      rejected += beyond < 0.05 * o.comparison_draws ? 1 : 0;
     }
-    CAPTURE(share, inside, rejected);
+    CAPTURE(strength, inside, rejected);
     CHECK(inside >= 31);   // of 36 expected
     CHECK(rejected <= 6);  // of 2 expected
   }
@@ -173,32 +173,32 @@ TEST_CASE("where an effect is there its model is not rejected and its strength's
 TEST_CASE("few chancy runs with an effect do not draw its strength towards nothing, and its interval knows of them") {
   MadeUp mill;
   mill.runs = 48, mill.again = 8, mill.each = 16, mill.run_noise = 0.4, mill.chancier = 5, mill.weakest = 0.15;
-  NamingOptions o = quick();
+  Options o = quick();
   constexpr int kMills = 60;
-  for (const double share : {0.3, 0.6, 0.9}) {
+  for (const double strength : {0.3, 0.6, 0.9}) {
     int inside = 0, rejected = 0;
     double mean = 0;
     for (std::uint64_t seed = 1; seed <= kMills; ++seed) {
-      const Problem p = made_up_problem(mill, point(0.1, -0.2, 0.1), {share, 0, 0}, 300 + seed);
+      const Problem p = made_up_problem(mill, point(0.1, -0.2, 0.1), {strength, 0, 0}, 300 + seed);
       const PseudoData pseudo(p, o);
       const FitResult fit = pseudo.fit({0});
-      mean += fit.shares[0] / kMills;
-      inside += pseudo.intervals({0}, fit, o.rival_draws, 1).back().holds(share) ? 1 : 0;
+      mean += fit.strengths[0] / kMills;
+      inside += pseudo.intervals({0}, fit, o.comparison_draws, 1).back().holds(strength) ? 1 : 0;
       int beyond = 0;
-      for (const auto& d : pseudo.draw(pseudo.truth({0}, fit), {{0}}, {o.rival_draws, 2})) beyond += d.fit[0].q >= fit.q ? 1 : 0;
-      rejected += beyond < 0.05 * o.rival_draws ? 1 : 0;
+      for (const auto& d : pseudo.draw(pseudo.truth({0}, fit), {{0}}, {o.comparison_draws, 2})) beyond += d.fit[0].q >= fit.q ? 1 : 0;
+      rejected += beyond < 0.05 * o.comparison_draws ? 1 : 0;
     }
-    CAPTURE(share, mean, inside, rejected);
-    CHECK_THAT(mean, WithinRel(share, share < 0.7 ? 0.08 : 0.15));  // 0.27, 0.54 and 0.74 without the correction
-    CHECK(inside >= 48);                                            // of 54 expected
-    CHECK(rejected <= 8);                                           // of 3 expected
+    CAPTURE(strength, mean, inside, rejected);
+    CHECK_THAT(mean, WithinRel(strength, strength < 0.7 ? 0.08 : 0.15));  // 0.27, 0.54 and 0.74 without the correction
+    CHECK(inside >= 48);                                                  // of 54 expected
+    CHECK(rejected <= 8);                                                 // of 3 expected
   }
 }
 
 TEST_CASE("a filling beyond its prior is a nuisance, not physics") {
   Problem p = made_up_problem({}, point(0.1, 0.1, 0.95), {0, 0, 0}, 5);
   p.data.theta[2].prior_sigma = 0.2;
-  const Naming n = name_physics(p, quick());
+  const Result n = name_candidates(p, quick());
   REQUIRE(n.best == 3);
   CHECK_THAT(n.judged[3].theta[2].value, WithinAbs(0.95, 0.25));
   CHECK(n.judged[3].theta[2].low90 > 0.3);  // it does not go back to its prior
@@ -217,8 +217,8 @@ Nothing nothing_missing(const MadeUp& mill, std::uint64_t seed) {
   for (int k = 0; k < Nothing::kSets; ++k) {
     emulate::Random random(seed, static_cast<std::uint64_t>(k));
     const VectorXd truth = point(1.2 * random.uniform() - 0.6, 1.2 * random.uniform() - 0.6, 0.3 * random.normal());
-    const Naming n = name_physics(made_up_problem(mill, truth, {0, 0, 0}, seed + 23 + static_cast<std::uint64_t>(k)), quick(240));
-    out.alarms += n.best >= 0 ? 1 : 0;
+    const Result n = name_candidates(made_up_problem(mill, truth, {0, 0, 0}, seed + 23 + static_cast<std::uint64_t>(k)), quick(240));
+    out.alarms += n.best ? 1 : 0;
     out.below_half += n.base_p < 0.5 ? 1 : 0;
     for (std::size_t i = 0; i < out.inside.size(); ++i) {
       const Interval& found = n.base_theta[i];
@@ -283,16 +283,16 @@ TEST_CASE("false alarms stay at the level where errors are correlated in the one
     p.observed += 0.7 * (together * random.normal() + 0.3 * random.normals(n));  // beside the independent noise that it has
     p.noise = {1.5 * MatrixXd::Identity(n, n), MatrixXd::Identity(n, n) + 0.5 * correlated};
     p.covariance = 0.5 * (p.noise[0] + p.noise[1]);
-    alarms += name_physics(p, quick(240)).best >= 0 ? 1 : 0;
+    alarms += name_candidates(p, quick(240)).best ? 1 : 0;
   }
   CHECK(alarms <= 6);
 }
 
 TEST_CASE("what was screened out is neither named nor in a class, and the others do not pay for it") {
   Problem p = made_up_problem({}, point(-0.3, 0.2, 0), {0.6, 0, 0}, 3);
-  const Naming all = name_physics(p, quick());
-  p.rivals[0].screened_out = true;
-  const Naming without = name_physics(p, quick());
+  const Result all = name_candidates(p, quick());
+  p.alternatives[0].screened_out = true;
+  const Result without = name_candidates(p, quick());
   CHECK(all.best == 0);
   CHECK(without.best != 0);
   CHECK(std::find(without.kept.begin(), without.kept.end(), 0) == without.kept.end());
@@ -305,17 +305,17 @@ TEST_CASE("what was screened out is neither named nor in a class, and the others
 
 TEST_CASE("many candidates pay for their number") {
   Problem p = made_up_problem({}, point(0, 0, 0), {0, 0, 0}, 8);
-  const Naming n = name_physics(p, quick());
+  const Result n = name_candidates(p, quick());
   for (const Judged& j : n.judged) CHECK(j.p_family >= j.p - 1e-12);
-  const Naming strong = name_physics(made_up_problem({}, point(0, 0, 0), {1, 0, 0}, 9), quick());
+  const Result strong = name_candidates(made_up_problem({}, point(0, 0, 0), {1, 0, 0}, 9), quick());
   CHECK(strong.judged[0].p_family > strong.judged[0].p);
 }
 
 TEST_CASE("draws do not depend on the number of threads") {
   const Problem p = made_up_problem({}, point(0.1, 0.1, 0), {0.5, 0, 0}, 6);
-  NamingOptions one = quick(120), two = quick(120);
+  Options one = quick(120), two = quick(120);
   one.threads = 1, two.threads = 3;
-  const Naming a = name_physics(p, one), b = name_physics(p, two);
+  const Result a = name_candidates(p, one), b = name_candidates(p, two);
   for (std::size_t j = 0; j < a.judged.size(); ++j) CHECK(a.judged[j].p_family == b.judged[j].p_family);
 }
 
@@ -323,5 +323,5 @@ TEST_CASE("a bank that is too small is refused with the remedy") {
   MadeUp mill;
   mill.runs = 6, mill.each = 2;
   const Problem p = made_up_problem(mill, point(0, 0, 0), {0, 0, 0}, 7);
-  CHECK_THROWS_AS(name_physics(p, quick()), base::UserError);
+  CHECK_THROWS_AS(name_candidates(p, quick()), base::UserError);
 }

@@ -6,15 +6,16 @@
 
 #include "made_up_bank.hpp"
 #include "studies/diagnose/naming/fit.hpp"
+#include "studies/diagnose/naming/shrinkage.hpp"
 
 using namespace millscope;
-using namespace millscope::diagnose;
+using namespace millscope::naming;
 using Catch::WithinAbs;
 using Catch::WithinRel;
 
 namespace {
 
-VectorXd point(double a, double b, double c) { return (VectorXd(3) << a, b, c).finished(); }
+VectorXd point(double a, double b, double c) { return Eigen::Vector3d(a, b, c); }
 
 }  // namespace
 
@@ -52,7 +53,7 @@ TEST_CASE("the surrogate's error is the same whether the noise of the observable
   const auto difference = [](Problem p) {
     const MatrixXd independent = Surrogate(p.data).residual_covariance(p.covariance);
     const Index n = independent.rows();
-    MatrixXd mixed = MatrixXd::Zero(n, n);  // every observable shares nine tenths with the one before
+    MatrixXd mixed = MatrixXd::Zero(n, n);  // every observable strengths nine tenths with the one before
     for (Index i = 0; i < n; ++i) {
       for (Index j = 0; j <= i; ++j) mixed(i, j) = std::pow(0.9, static_cast<double>(i - j));
     }
@@ -62,7 +63,7 @@ TEST_CASE("the surrogate's error is the same whether the noise of the observable
   };
   Problem p = made_up_problem({}, point(0, 0, 0), {0, 0, 0}, 1);
   CHECK(difference(p) < 0.1);  // the weights of runs with an effect go by the observables as they are
-  std::erase_if(p.data.rows, [](const BankRow& row) { return !row.effects.empty(); });
+  std::erase_if(p.data.rows, [](const BankRow& row) { return !row.active.empty(); });
   p.data.value.conservativeResize(static_cast<Index>(p.data.rows.size()), Eigen::NoChange);  // those without come first
   CHECK(difference(p) < 1e-9);
 }
@@ -93,12 +94,12 @@ TEST_CASE("a fit finds its truth without noise, at limits too") {
   const Features features(p.data);
   const Surrogate s(p.data, features, std::vector<bool>(p.data.rows.size(), true));
   const Weighting weighting(p.covariance, s);
-  const Model model(p.data, s, weighting, {{0}, std::vector<ShareRange>(3)});
-  for (const double share : {0.0, 0.4, 1.0}) {
-    const FitResult f = model.fit(truth_of(mill, point(0.4, -0.6, 0), {share, 0, 0}));
+  const Model model(p.data, s, weighting, {{0}, std::vector<StrengthRange>(3)});
+  for (const double strength : {0.0, 0.4, 1.0}) {
+    const FitResult f = model.fit(truth_of(mill, point(0.4, -0.6, 0), {strength, 0, 0}));
     CHECK_THAT(f.coded[0], WithinAbs(0.4, 1e-3));
     CHECK_THAT(f.coded[1], WithinAbs(-0.6, 1e-3));
-    CHECK_THAT(f.shares[0], WithinAbs(share, 1e-3));
+    CHECK_THAT(f.strengths[0], WithinAbs(strength, 1e-3));
     CHECK(f.q < 1e-3);
   }
 }
@@ -113,8 +114,19 @@ TEST_CASE("with an effect at nothing a model is the base, however little the ban
     const Model base(p.data, s, w, {});
     const FitResult none = base.fit(p.observed);
     for (const int j : {0, 1, 2}) {
-      const Model with(p.data, s, w, {{j}, std::vector<ShareRange>(3)});
+      const Model with(p.data, s, w, {{j}, std::vector<StrengthRange>(3)});
       CHECK_THAT(with.fit_holding(3, 0, p.observed).q, WithinRel(none.q, 1e-6));
     }
   }
+}
+
+TEST_CASE("correlations of chance are shrunk away, real ones stay") {
+  std::srand(3);
+  const Eigen::MatrixXd independent = Eigen::MatrixXd::Random(400, 4);
+  Eigen::MatrixXd joint = independent;
+  for (int c = 1; c < 4; ++c) joint.col(c) = independent.col(0) + 0.3 * independent.col(c);
+  const Eigen::MatrixXd a = shrunk_covariance(independent, 12), b = shrunk_covariance(joint, 200);
+  CHECK(std::abs(a(0, 1)) < 0.2 * std::sqrt(a(0, 0) * a(1, 1)));
+  CHECK(b(0, 1) > 0.85 * std::sqrt(b(0, 0) * b(1, 1)));
+  CHECK(a(0, 0) == Approx(1.0 / 3.0).epsilon(0.15));
 }

@@ -16,9 +16,9 @@
 namespace millscope::diagnose {
 namespace {
 
-constexpr double kLeastShare = 0.1;
+constexpr double kLeastStrength = 0.1;
 constexpr int kAgain = 8;               // parameter sets: eight degrees of freedom of each of about 70 observables
-constexpr std::size_t kSpareApart = 2;  // runs beyond the coefficients of a nuisance apart: linear, square, × every parameter
+constexpr std::size_t kSpareApart = 2;  // runs beyond the coefficients of what is varied apart: linear, square, × every parameter
 constexpr int kSeedBits = 53;           // of a run's seed: as many as a whole number of a case may have, so that no two runs share one
 constexpr std::uint64_t kOffsets = 16;  // blocks of Sobol's sequence among which groups are spread, of as many points
 
@@ -29,28 +29,27 @@ MatrixXd unit_points(Index points, Index dimensions) {
   return 0.5 * (doe::sobol(std::move(factors), static_cast<int>(points)).coded.array() + 1);
 }
 
-std::string name_of(const Question& q, const Group& group) {
+std::string name_of(const Question& question, const Group& group) {
   if (group.base()) return "base";
-  return group.candidate >= 0 ? q.candidates[static_cast<std::size_t>(group.candidate)].name
-                              : q.coordinates()[static_cast<std::size_t>(group.apart)].name;
+  return group.candidate ? question.candidates[*group.candidate].name : question.coordinates()[*group.nuisance].name;
 }
 
-/// Where a nuisance apart stands beside a candidate, coded. A case near the middle of the range: its two ends, in Thue's and Morse's order,
-/// in which no digit of a Sobol' point goes along with it; else three places of the other half.
+/// Where a nuisance that is varied apart stands beside a candidate, coded. A case near the middle of the range: its two ends, in Thue's and
+/// Morse's order, in which no digit of a Sobol' point goes along with it; else three places of the other half.
 double far_from(double usual, int turn) {
   if (std::fabs(usual) < 0.5) return std::popcount(static_cast<unsigned>(turn)) % 2 == 0 ? 1 : -1;
-  return std::copysign(std::array{1.0, 0.5, 0.0}[static_cast<std::size_t>(turn % 3)], -usual);
+  return std::copysign(std::array{1.0, 0.5, 0.0}[turn % 3], -usual);
 }
 
-/// Coordinates of the case, then what is varied in this group alone (the share of an effect, a nuisance apart), then those of the camera.
-VectorXd theta_of(const Question& q, const VectorXd& unit, const Group& group) {
-  VectorXd theta(static_cast<Index>(q.dimensions()));
-  const std::vector<Coordinate> coordinates = q.coordinates();
-  const auto own = static_cast<Index>(q.case_dimensions());
+/// Coordinates of the case, then what is varied in this group alone (the strength of a candidate, a nuisance), then those of the camera.
+VectorXd theta_of(const Question& question, const VectorXd& unit, const Group& group) {
+  VectorXd theta(question.dimensions());
+  const std::vector<naming::Coordinate> coordinates = question.coordinates();
+  const Index own = question.case_dimensions();
   Index next = own + (group.base() ? 0 : 1);
   for (Index i = 0; i < theta.size(); ++i) {
-    const Coordinate& c = coordinates[static_cast<std::size_t>(i)];
-    if (i == group.apart)
+    const naming::Coordinate& c = coordinates[i];
+    if (i == group.nuisance)
       theta[i] = rounded(c.natural(2 * unit[own] - 1));
     else if (c.usual)
       theta[i] = *c.usual;
@@ -60,11 +59,12 @@ VectorXd theta_of(const Question& q, const VectorXd& unit, const Group& group) {
   return theta;
 }
 
-campaign::Simulation simulation(const Question& q, const VectorXd& theta, const std::vector<Effect>& effects, std::size_t condition) {
+campaign::Simulation simulation(const Question& question, const VectorXd& theta, const std::vector<naming::ActiveCandidate>& active,
+                                std::size_t condition) {
   campaign::Simulation s;
-  s.case_file = q.study.base;
-  s.settings = q.study.conditions[condition].settings;
-  for (std::string& setting : q.settings(theta, effects)) s.settings.push_back(std::move(setting));
+  s.case_file = question.study.base;
+  s.settings = question.study.conditions[condition].settings;
+  for (std::string& setting : question.settings(theta, active)) s.settings.push_back(std::move(setting));
   for (std::string& setting : calibrate::observed_outputs()) s.settings.push_back(std::move(setting));
   return s;
 }
@@ -73,21 +73,21 @@ void append(std::vector<BankPoint>& to, std::vector<BankPoint> more) {
   to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-/// Runs of a candidate with a nuisance apart that are too few for their product, or stand beside too few without it, would be taken for
+/// Runs of a candidate with another nuisance that are too few for their product, or stand beside too few without it, would be taken for
 /// what the candidate does. One sentence for each candidate that loses runs.
-std::vector<std::string> leave_out_too_few(const Question& q, std::vector<BankRow>& rows, std::vector<VectorXd>& values) {
+std::vector<std::string> leave_out_too_few(const Question& question, std::vector<naming::BankRow>& rows, std::vector<VectorXd>& values) {
   std::vector<std::string> told;
-  for (const Group& group : groups_apart(q)) {
-    const double usual = *q.coordinates()[static_cast<std::size_t>(group.apart)].usual;
-    for (std::size_t j = 0; j < q.candidates.size(); ++j) {
-      const auto with = [&](const BankRow& row) { return !row.effects.empty() && row.effects[0].candidate == static_cast<int>(j); };
-      const auto together = [&](const BankRow& row) { return with(row) && row.theta[group.apart] != usual; };
+  for (const Index nuisance : varied_apart(question)) {
+    const double usual = *question.coordinates()[nuisance].usual;
+    for (Index j = 0; j < std::ssize(question.candidates); ++j) {
+      const auto with = [&](const naming::BankRow& row) { return row.candidate() == j; };
+      const auto together = [&](const naming::BankRow& row) { return with(row) && row.theta[nuisance] != usual; };
       const auto runs = std::count_if(rows.begin(), rows.end(), together), all = std::count_if(rows.begin(), rows.end(), with);
-      if (runs == 0 || static_cast<std::size_t>(std::min(runs, all - runs)) >= kLeastTogether) continue;
+      if (runs == 0 || std::min(runs, all - runs) >= naming::kLeastTogether) continue;
       told.push_back(
           fmt::format("{} with another {} was left out: {} and {} simulations with the usual one came to their end, {} of each are needed "
                       "(bank.each; or see why others failed)",
-                      q.candidates[j].name, name_of(q, group), runs, all - runs, kLeastTogether));
+                      question.candidates[j].name, question.coordinates()[nuisance].name, runs, all - runs, naming::kLeastTogether));
       for (std::size_t r = rows.size(); r-- > 0;) {
         if (!together(rows[r])) continue;
         rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(r));
@@ -98,13 +98,14 @@ std::vector<std::string> leave_out_too_few(const Question& q, std::vector<BankRo
   return told;
 }
 
-/// The surrogate has no other runs that tell what a nuisance apart does.
-void check_apart(const Question& q, const BankData& data) {
-  for (const Group& group : groups_apart(q)) {
-    const Coordinate& c = data.theta[static_cast<std::size_t>(group.apart)];
-    const auto varied = static_cast<std::size_t>(std::count_if(
-        data.rows.begin(), data.rows.end(), [&](const BankRow& row) { return row.effects.empty() && row.theta[group.apart] != *c.usual; }));
-    const std::size_t least = 2 + q.study.parameters.size() + kSpareApart;
+/// The surrogate has no other runs that tell what a nuisance does that is varied apart.
+void check_varied_apart(const Question& question, const naming::BankData& data) {
+  for (const Index nuisance : varied_apart(question)) {
+    const naming::Coordinate& c = data.theta[nuisance];
+    const std::size_t varied = std::count_if(data.rows.begin(), data.rows.end(), [&](const naming::BankRow& row) {
+      return row.active.empty() && row.theta[nuisance] != *c.usual;
+    });
+    const std::size_t least = 2 + question.study.parameters.size() + kSpareApart;
     if (varied < least)
       throw base::UserError(fmt::format(
           "{} finished simulations of the bank without a candidate vary the nuisance '{}', {} are needed; raise bank.base, or leave "
@@ -115,99 +116,99 @@ void check_apart(const Question& q, const BankData& data) {
 
 }  // namespace
 
-std::vector<Group> groups_apart(const Question& q) {
-  std::vector<Group> out;
-  const std::vector<Coordinate> coordinates = q.coordinates();
+std::vector<Index> varied_apart(const Question& question) {
+  std::vector<Index> out;
+  const std::vector<naming::Coordinate> coordinates = question.coordinates();
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    if (coordinates[i].usual) out.push_back({-1, static_cast<Index>(i)});
+    if (coordinates[i].usual) out.push_back(i);
   }
   return out;
 }
 
-std::vector<BankPoint> plan_group(const Question& q, const Group& of, int count) {
-  const bool effect = of.candidate >= 0;
-  const std::string group = name_of(q, of);
+std::vector<BankPoint> plan_group(const Question& question, const Group& of, int count) {
+  const std::string group = name_of(question, of);
   const auto offset = of.base() ? 0 : static_cast<Index>(kOffsets * (base::Hash().add(group).value() % kOffsets));
-  const auto d = static_cast<Index>(q.dimensions() - groups_apart(q).size());
+  const Index d = question.dimensions() - varied_apart(question).size();
   const MatrixXd unit = unit_points(offset + count, d + (of.base() ? 0 : 1));
   std::vector<BankPoint> points;
   for (int i = 0; i < count; ++i) {
     const VectorXd u = unit.row(offset + i).transpose();
-    BankPoint point{group, i, theta_of(q, u, of), {}};
-    if (effect) {
-      const Candidate& c = q.candidates[static_cast<std::size_t>(of.candidate)];
-      const double unit_share = u[static_cast<Index>(q.case_dimensions())];
-      const double share = c.on_or_off()     ? 1
-                           : c.range.low < 0 ? c.range.low + (1 - c.range.low) * unit_share
-                                             : kLeastShare + (1 - kLeastShare) * unit_share;
-      point.effects = {{of.candidate, rounded_share(c, share)}};
+    BankPoint point{group, i, theta_of(question, u, of), {}};
+    if (of.candidate) {
+      const Candidate& c = question.candidates[*of.candidate];
+      const double unit_strength = u[question.case_dimensions()];
+      const double strength = c.on_or_off()     ? 1
+                              : c.range.low < 0 ? c.range.low + (1 - c.range.low) * unit_strength
+                                                : kLeastStrength + (1 - kLeastStrength) * unit_strength;
+      point.active = {{*of.candidate, rounded_strength(c, strength)}};
     }
-    if (q.study.allowed(point.theta.head(static_cast<Index>(q.study.parameters.size())))) points.push_back(std::move(point));
+    if (question.study.allowed(point.theta.head(std::ssize(question.study.parameters)))) points.push_back(std::move(point));
   }
   return points;
 }
 
-std::vector<BankPoint> plan_again(const Question& q) {
-  std::vector<BankPoint> points = plan_group(q, {}, std::min(kAgain, q.bank.base));
+std::vector<BankPoint> plan_again(const Question& question) {
+  std::vector<BankPoint> points = plan_group(question, {}, std::min(kAgain, question.bank.base));
   for (BankPoint& p : points) p.group = "again";
   return points;
 }
 
-std::vector<BankPoint> plan_screening(const Question& q) {
-  std::vector<BankPoint> all = plan_group(q, {}, q.bank.base);
-  append(all, plan_again(q));
-  for (const Group& group : groups_apart(q)) append(all, plan_group(q, group, q.bank.base));
-  for (int j = 0; j < static_cast<int>(q.candidates.size()); ++j) append(all, plan_group(q, {j, -1}, std::min(q.bank.first, q.bank.each)));
+std::vector<BankPoint> plan_screening(const Question& question) {
+  std::vector<BankPoint> all = plan_group(question, {}, question.bank.base);
+  append(all, plan_again(question));
+  for (const Index nuisance : varied_apart(question)) append(all, plan_group(question, {{}, nuisance}, question.bank.base));
+  for (Index j = 0; j < std::ssize(question.candidates); ++j)
+    append(all, plan_group(question, {j, {}}, std::min(question.bank.first, question.bank.each)));
   return all;
 }
 
-std::vector<BankPoint> plan_together(const Question& q, int candidate, Index apart) {
-  const Coordinate c = q.coordinates()[static_cast<std::size_t>(apart)];
-  const int pairs = (q.bank.each + 1) / 2;
+std::vector<BankPoint> plan_together(const Question& question, Index candidate, Index nuisance) {
+  const naming::Coordinate c = question.coordinates()[nuisance];
+  const int pairs = (question.bank.each + 1) / 2;
   std::vector<BankPoint> all;
-  for (BankPoint& p : plan_group(q, {candidate, -1}, 2 * pairs)) {
+  for (BankPoint& p : plan_group(question, {candidate, {}}, 2 * pairs)) {
     const bool second = p.index % 2 != 0 && !all.empty() && all.back().index == p.index / 2;
     p.index /= 2;
     if (second) {
-      const double before = std::fabs(all.back().effects[0].share), now = std::fabs(p.effects[0].share);
+      const double before = std::fabs(all.back().active[0].strength), now = std::fabs(p.active[0].strength);
       if (now < before || (now == before && std::popcount(static_cast<unsigned>(p.index)) % 2 == 0)) continue;
       all.pop_back();
     }
     p.group += "*" + c.name;
-    p.theta[apart] = rounded(c.natural(far_from(c.coded(*c.usual), p.index)));
+    p.theta[nuisance] = rounded(c.natural(far_from(c.coded(*c.usual), p.index)));
     all.push_back(std::move(p));
   }
-  if (all.size() < kLeastTogether) all.clear();
+  if (std::ssize(all) < naming::kLeastTogether) all.clear();
   return all;
 }
 
-std::vector<BankPoint> plan_rest(const Question& q, int candidate) {
-  std::vector<BankPoint> all = plan_group(q, {candidate, -1}, q.bank.each);
-  std::erase_if(all, [&](const BankPoint& p) { return p.index < q.bank.first; });
-  for (const Group& group : groups_apart(q)) append(all, plan_together(q, candidate, group.apart));
+std::vector<BankPoint> plan_rest(const Question& question, Index candidate) {
+  std::vector<BankPoint> all = plan_group(question, {candidate, {}}, question.bank.each);
+  std::erase_if(all, [&](const BankPoint& p) { return p.index < question.bank.first; });
+  for (const Index nuisance : varied_apart(question)) append(all, plan_together(question, candidate, nuisance));
   return all;
 }
 
-std::vector<BankPoint> plan_bank(const Question& q) {
-  std::vector<BankPoint> all = plan_screening(q);
-  for (int j = 0; j < static_cast<int>(q.candidates.size()); ++j) append(all, plan_rest(q, j));
+std::vector<BankPoint> plan_bank(const Question& question) {
+  std::vector<BankPoint> all = plan_screening(question);
+  for (Index j = 0; j < std::ssize(question.candidates); ++j) append(all, plan_rest(question, j));
   return all;
 }
 
-campaign::Simulation simulation_of(const Question& q, const BankPoint& point, std::size_t condition) {
-  const std::string& name = q.study.conditions[condition].name;
-  campaign::Simulation s = simulation(q, point.theta, point.effects, condition);
+campaign::Simulation simulation_of(const Question& question, const BankPoint& point, std::size_t condition) {
+  const std::string& name = question.study.conditions[condition].name;
+  campaign::Simulation s = simulation(question, point.theta, point.active, condition);
   const std::uint64_t own = base::Hash().add(fmt::format("{}/{}/{}", point.group, name, point.index)).value();
   s.settings.push_back(fmt::format("seed={}", own >> (64 - kSeedBits)));
   s.label = fmt::format("{}_{}_{}", point.group, point.index, name);
   return s;
 }
 
-campaign::Simulation simulation_at(const Question& q, const VectorXd& theta, const std::vector<Effect>& effects, std::size_t condition,
-                                   int replicate, const std::string& label) {
-  campaign::Simulation s = simulation(q, theta, effects, condition);
+campaign::Simulation simulation_at(const Question& question, const VectorXd& theta, const std::vector<naming::ActiveCandidate>& active,
+                                   std::size_t condition, int replicate, const std::string& label) {
+  campaign::Simulation s = simulation(question, theta, active, condition);
   s.settings.push_back(fmt::format("seed={}", 7919 * replicate + 17));
-  s.label = fmt::format("{}, seed {}, {}", label, replicate, q.study.conditions[condition].name);
+  s.label = fmt::format("{}, seed {}, {}", label, replicate, question.study.conditions[condition].name);
   return s;
 }
 
@@ -220,10 +221,10 @@ calibrate::Observation Workshop::look(const Question& question, std::size_t cond
   return o;
 }
 
-Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoint> points, std::vector<std::size_t> conditions) {
+Bank fill_bank(const Question& question, const Workshop& workshop, std::vector<BankPoint> points, std::vector<std::size_t> conditions) {
   std::vector<campaign::Simulation> simulations;
   for (const BankPoint& p : points) {
-    for (const std::size_t c : conditions) simulations.push_back(simulation_of(q, p, c));
+    for (const std::size_t c : conditions) simulations.push_back(simulation_of(question, p, c));
   }
   const std::vector<campaign::Outcome> outcomes = workshop.run(simulations);
   if (workshop.say) workshop.say(fmt::format("looking at {} simulations through the recordings' cameras", outcomes.size()));
@@ -237,7 +238,7 @@ Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoin
   base::for_each_item(outcomes.size(), base::worker_count(0, outcomes.size()), [&](std::size_t i, std::size_t) {
     try {
       bank.seen[i / per_point][i % per_point] =
-          workshop.look(q, bank.conditions[i % per_point], outcomes[i], bank.points[i / per_point].theta);
+          workshop.look(question, bank.conditions[i % per_point], outcomes[i], bank.points[i / per_point].theta);
     } catch (const base::UserError& e) {
       failures[i] = fmt::format("{}: {}", simulations[i].label, e.what());
     }
@@ -246,29 +247,29 @@ Bank fill_bank(const Question& q, const Workshop& workshop, std::vector<BankPoin
   return bank;
 }
 
-BankData data_of(const Question& q, const Bank& bank, const std::vector<std::size_t>& conditions) {
-  BankData data;
-  data.theta = q.coordinates();
-  data.candidates = static_cast<Index>(q.candidates.size());
+naming::BankData data_of(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions) {
+  naming::BankData data;
+  data.theta = question.coordinates();
+  data.candidates = std::ssize(question.candidates);
   std::vector<VectorXd> values;
   for (std::size_t p = 0; p < bank.points.size(); ++p) {
     std::vector<double> row;
     bool whole = true;
     for (const std::size_t c : conditions) {
-      const auto k = static_cast<std::size_t>(std::find(bank.conditions.begin(), bank.conditions.end(), c) - bank.conditions.begin());
+      const std::size_t k = bank.place_of(c);
       const auto& seen = bank.seen[p].at(k);
       if (!seen) {
         whole = false;
         break;
       }
       row.insert(row.end(), seen->value.data(), seen->value.data() + seen->value.size());
-      if (values.empty() && data.condition.size() < row.size()) data.condition.resize(row.size(), static_cast<int>(c));
+      if (values.empty() && data.condition.size() < row.size()) data.condition.resize(row.size(), c);
     }
     if (!whole) continue;
-    data.rows.push_back({bank.points[p].theta, bank.points[p].effects});
-    values.emplace_back(Eigen::Map<const VectorXd>(row.data(), static_cast<Index>(row.size())));
+    data.rows.push_back({bank.points[p].theta, bank.points[p].active});
+    values.emplace_back(Eigen::Map<const VectorXd>(row.data(), std::ssize(row)));
   }
-  data.left_out = leave_out_too_few(q, data.rows, values);
+  data.left_out = leave_out_too_few(question, data.rows, values);
   if (!bank.failures.empty())
     data.left_out.insert(data.left_out.begin(), fmt::format("{} simulations of the bank failed and are left out, the first: {}",
                                                             bank.failures.size(), bank.failures.front()));
@@ -276,9 +277,9 @@ BankData data_of(const Question& q, const Bank& bank, const std::vector<std::siz
     throw base::UserError(fmt::format("no simulation of the bank has come to its end{}{}; correct the base case or the ranges",
                                       bank.failures.empty() ? "" : "; the first: ", bank.failures.empty() ? "" : bank.failures.front()));
   }
-  data.value.resize(static_cast<Index>(values.size()), values.front().size());
-  for (std::size_t r = 0; r < values.size(); ++r) data.value.row(static_cast<Index>(r)) = values[r].transpose();
-  check_apart(q, data);
+  data.value.resize(std::ssize(values), values.front().size());
+  for (std::size_t r = 0; r < values.size(); ++r) data.value.row(r) = values[r].transpose();
+  check_varied_apart(question, data);
   return data;
 }
 

@@ -1,6 +1,7 @@
 // The bank: simulations of the mill over θ, without and with each candidate, in every condition; computed once, kept by content.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -20,37 +21,38 @@ struct BankPoint {
   std::string group;  ///< "base", "again", a candidate's or a nuisance's name, or "candidate*nuisance"
   int index = 0;      ///< within the group
   VectorXd theta;
-  std::vector<Effect> effects;
+  std::vector<naming::ActiveCandidate> active;
 };
 
-/// What is varied in some of the bank's simulations beside the parameters: nothing, a candidate's share, or a nuisance apart.
+/// What is varied in some of the bank's simulations beside the parameters: nothing, a candidate's strength, or a nuisance.
 struct Group {
-  int candidate = -1;
-  Index apart = -1;  ///< coordinate of θ
-  bool base() const { return candidate < 0 && apart < 0; }
+  std::optional<Index> candidate = {};
+  std::optional<Index> nuisance = {};  ///< coordinate of θ
+  bool base() const { return !candidate && !nuisance; }
 };
-/// One of every nuisance apart.
-std::vector<Group> groups_apart(const Question& question);
+/// The coordinates of nuisances that are varied apart, in groups of their own.
+std::vector<Index> varied_apart(const Question& question);
 
 /// Sobol' points over the ranges; what is simulated of a group does not depend on the other groups, on how many are asked for, nor on the
-/// camera's nuisances, so that a bank grows without losing a run. One-sided shares lie in 0.1 … 1.
+/// camera's nuisances, so that a bank grows without losing a run. One-sided strengths lie in 0.1 … 1.
 std::vector<BankPoint> plan_group(const Question& question, const Group& group, int count);
 /// The first without a candidate, each once more with another seed: what runs differ by alone, Surrogate::chance().
 std::vector<BankPoint> plan_again(const Question& question);
 /// What tells which candidates cannot matter: all without a candidate, the first with every candidate alone.
 std::vector<BankPoint> plan_screening(const Question& question);
-/// A candidate together with a nuisance apart, which tells whether it acts otherwise there (rolling friction does in stiffer contacts): of
-/// every two of its parameter sets the stronger, with the nuisance far from the case's value. None where they would be too few.
-std::vector<BankPoint> plan_together(const Question& question, int candidate, Index apart);
-/// What a candidate that may matter has besides: the rest of those with it alone, and those with it and each nuisance apart.
-std::vector<BankPoint> plan_rest(const Question& question, int candidate);
+/// A candidate together with a nuisance that is varied apart, which tells whether it acts otherwise there (rolling friction does in stiffer
+/// contacts): of every two of its parameter sets the stronger, with the nuisance far from the case's value. None where they would be too
+/// few.
+std::vector<BankPoint> plan_together(const Question& question, Index candidate, Index nuisance);
+/// What a candidate that may matter has besides: the rest of those with it alone, and those with it and each nuisance that is varied apart.
+std::vector<BankPoint> plan_rest(const Question& question, Index candidate);
 /// Both, for all candidates.
 std::vector<BankPoint> plan_bank(const Question& question);
 
 campaign::Simulation simulation_of(const Question& question, const BankPoint& point, std::size_t condition);
 
 /// A simulation at a chosen parameter set; `replicate`: seed.
-campaign::Simulation simulation_at(const Question& question, const VectorXd& theta, const std::vector<Effect>& effects,
+campaign::Simulation simulation_at(const Question& question, const VectorXd& theta, const std::vector<naming::ActiveCandidate>& active,
                                    std::size_t condition, int replicate, const std::string& label);
 
 /// What runs and what looks; tests put their own in place. `observe` is called from several threads at once. `camera`: Question::camera.
@@ -80,6 +82,11 @@ struct Bank {
   std::vector<std::vector<std::optional<calibrate::Observation>>> seen;  ///< [points][conditions]; nothing: it failed
   std::vector<std::string> failures;                                     ///< one line each
   std::vector<std::vector<std::filesystem::path>> runs = {};             ///< [points][conditions] where each simulation is
+
+  /// Where a condition of the study stands among `conditions`; their number: nowhere.
+  std::size_t place_of(std::size_t condition) const {
+    return std::find(conditions.begin(), conditions.end(), condition) - conditions.begin();
+  }
 };
 
 /// Runs what is not in the cache. What is undefined is NaN.
@@ -90,10 +97,10 @@ Bank fill_bank(const Question& question, const Workshop& workshop, std::vector<B
 std::vector<std::string> leave_out_undefined(const Question& question, Workshop& workshop, Bank& bank);
 
 /// Which of some conditions' simulations are not steady yet when they begin to be looked at, by all of them together: one run's chance
-/// hides what they share, and what they share is wrong in all of the surrogate. One sentence for each.
+/// hides what they strength, and what they strength is wrong in all of the surrogate. One sentence for each.
 std::vector<std::string> unsettled(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions);
 
 /// The numbers of some of the bank's conditions; points of which one failed are left out.
-BankData data_of(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions);
+naming::BankData data_of(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions);
 
 }  // namespace millscope::diagnose

@@ -71,7 +71,7 @@ BankStatus bank_status(const Question& q, const campaign::Options& options) {
     }
     const campaign::Identity identity = identifier.identify(run.simulation);
     const campaign::TaskRecord record = campaign::Entry(options.cache, identity.key).read();
-    count(record, identity.work, *cell, work[static_cast<std::size_t>(cell - status.cells.begin())]);
+    count(record, identity.work, *cell, work[cell - status.cells.begin()]);
     if (record.stage == campaign::Stage::failed) status.failures.push_back(fmt::format("{}: {}", run.simulation.label, record.message));
   }
   for (const BankCell& c : status.cells) {

@@ -11,12 +11,12 @@ namespace millscope::diagnose {
 
 /// One simulation of the bank in full.
 struct PlannedRun {
-  std::string group;          ///< "base", the name of a nuisance apart or of a candidate, or "candidate*nuisance"
+  std::string group;          ///< "base", the name of a candidate or of a nuisance that is varied apart, or "candidate*nuisance"
   std::size_t condition = 0;  ///< of the study
   campaign::Simulation simulation;
 };
 
-/// The base group first, then those of nuisances apart, then every candidate's, first alone and then with the nuisances apart; the
+/// The base group first, then those of nuisances that are varied apart, then every candidate's, first alone and then with these; the
 /// conditions that are fitted before those that are held out. A diagnosis asks for no more than these, and for less where it screens a
 /// candidate out.
 std::vector<PlannedRun> planned_runs(const Question& question);

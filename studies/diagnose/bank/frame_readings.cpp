@@ -82,7 +82,7 @@ void append(const std::vector<FrameReading>& readings, const VectorXd& values, d
   o.value.conservativeResize(n + more);
   o.covariance.conservativeResizeLike(MatrixXd::Zero(n + more, n + more));
   for (Index k = 0; k < more; ++k) {
-    const FrameReading& r = readings[static_cast<std::size_t>(k)];
+    const FrameReading& r = readings[k];
     o.observables.push_back(r.observable);
     o.value[n + k] = r.per_unit * values[k];
     o.covariance(n + k, n + k) = std::pow(error * r.per_unit * r.sem, 2);
@@ -134,23 +134,22 @@ void share_errors(std::vector<std::vector<FrameReading>>& of_conditions) {
 }
 
 void add_readings(const std::vector<FrameReading>& readings, calibrate::Observation& recorded) {
-  VectorXd values(static_cast<Index>(readings.size()));
-  for (std::size_t k = 0; k < readings.size(); ++k) values[static_cast<Index>(k)] = readings[k].value;
+  VectorXd values(readings.size());
+  for (std::size_t k = 0; k < readings.size(); ++k) values[k] = readings[k].value;
   append(readings, values, 1, recorded);
 }
 
 void add_readings(const Question& question, const std::vector<FrameReading>& readings, const VectorXd& theta,
                   calibrate::Observation& simulated) {
-  VectorXd values(static_cast<Index>(readings.size()));
-  for (std::size_t k = 0; k < readings.size(); ++k)
-    values[static_cast<Index>(k)] = theta[static_cast<Index>(question.study.parameters.size() + readings[k].nuisance)];
+  VectorXd values(readings.size());
+  for (std::size_t k = 0; k < readings.size(); ++k) values[k] = theta[question.study.parameters.size() + readings[k].nuisance];
   append(readings, values, kExact, simulated);
 }
 
 std::string text_of(const std::vector<FrameReading>& readings) {
   std::string text;
   for (const FrameReading& r : readings) {
-    const Interval i = interval_about(r.per_unit * r.value, r.per_unit * r.sem);
+    const naming::Interval i = naming::interval_about(r.per_unit * r.value, r.per_unit * r.sem);
     fmt::format_to(std::back_inserter(text), "{}{} {:.3g} {} ({:.3g} … {:.3g})", text.empty() ? "" : ", ", r.observable.name, i.value,
                    r.observable.unit, i.low90, i.high90);
   }

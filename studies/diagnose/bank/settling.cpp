@@ -123,13 +123,13 @@ std::string sentence(const std::string& condition, const Quantity& quantity, con
 
 }  // namespace
 
-std::vector<std::string> unsettled(const Question& q, const Bank& bank, const std::vector<std::size_t>& conditions) {
+std::vector<std::string> unsettled(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions) {
   std::vector<std::string> told;
   for (const std::size_t condition : conditions) {
-    const auto k = static_cast<std::size_t>(std::find(bank.conditions.begin(), bank.conditions.end(), condition) - bank.conditions.begin());
+    const std::size_t k = bank.place_of(condition);
     std::vector<std::optional<Parts>> of_point(bank.points.size());
     base::for_each_item(of_point.size(), base::worker_count(0, of_point.size()), [&](std::size_t p, std::size_t) {
-      if (bank.points[p].effects.empty() && bank.seen[p][k]) of_point[p] = parts_of(bank.runs[p][k]);
+      if (bank.points[p].active.empty() && bank.seen[p][k]) of_point[p] = parts_of(bank.runs[p][k]);
     });
     std::vector<Parts> runs;
     for (const std::optional<Parts>& parts : of_point) {
@@ -142,7 +142,8 @@ std::vector<std::string> unsettled(const Question& q, const Bank& bank, const st
       const Excess e = excess_of(runs, i);
       if (e.sureness > surest.sureness) surest = e, quantity = i;
     }
-    if (surest.sureness >= kSure) told.push_back(sentence(q.study.conditions[condition].name, kQuantities[quantity], surest, runs.size()));
+    if (surest.sureness >= kSure)
+      told.push_back(sentence(question.study.conditions[condition].name, kQuantities[quantity], surest, runs.size()));
   }
   return told;
 }

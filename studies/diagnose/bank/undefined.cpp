@@ -8,7 +8,7 @@
 
 namespace millscope::diagnose {
 
-std::vector<std::string> leave_out_undefined(const Question& q, Workshop& workshop, Bank& bank) {
+std::vector<std::string> leave_out_undefined(const Question& question, Workshop& workshop, Bank& bank) {
   workshop.without.resize(workshop.recorded.size());
   std::vector<std::string> told;
   for (std::size_t k = 0; k < bank.conditions.size(); ++k) {
@@ -18,14 +18,14 @@ std::vector<std::string> leave_out_undefined(const Question& q, Workshop& worksh
       if (!point[k]) continue;
       ++seen;
       for (Index i = 0; i < point[k]->value.size(); ++i) {
-        if (!std::isfinite(point[k]->value[i])) ++lacking[point[k]->observables[static_cast<std::size_t>(i)].name];
+        if (!std::isfinite(point[k]->value[i])) ++lacking[point[k]->observables[i].name];
       }
     }
     const std::size_t condition = bank.conditions[k];
     for (const auto& [name, runs] : lacking) {
       workshop.without[condition].insert(name);
       told.push_back(fmt::format("'{}' of condition '{}' was compared nowhere: in {} of {} simulations no bead was seen there", name,
-                                 q.study.conditions[condition].name, runs, seen));
+                                 question.study.conditions[condition].name, runs, seen));
     }
     if (lacking.empty()) continue;
     calibrate::leave_out(workshop.recorded[condition], workshop.without[condition]);

@@ -11,7 +11,7 @@
 
 #include "kernel/base/error.hpp"
 
-namespace millscope::diagnose {
+namespace millscope::naming {
 namespace {
 
 constexpr int kIterations = 40;
@@ -39,7 +39,7 @@ MatrixXd whitener(const MatrixXd& covariance) {
 Weighting::Weighting(const MatrixXd& recording, const Surrogate& surrogate, double longer)
     : run(surrogate.residual_covariance(recording)),
       covariance(recording / longer + surrogate.error_covariance(recording)),
-      whitener(diagnose::whitener(covariance)),
+      whitener(naming::whitener(covariance)),
       run_noise((whitener * run * whitener.transpose()).trace()) {}
 
 Model::Model(const BankData& data, const Surrogate& surrogate, const Weighting& weighting, const Switched& switched)
@@ -48,49 +48,49 @@ Model::Model(const BankData& data, const Surrogate& surrogate, const Weighting& 
       weighting_(&weighting),
       active_(switched.on),
       columns_(surrogate.features().columns(switched.on)),
-      theta_(static_cast<Index>(data.theta.size())) {
+      theta_(std::ssize(data.theta)) {
   use(surrogate.coefficients());
-  const Index all = theta_ + static_cast<Index>(active_.size());
+  const Index all = theta_ + std::ssize(active_);
   low_ = VectorXd::Constant(all, -1), high_ = VectorXd::Constant(all, 1);
   prior_ = VectorXd::Zero(all), weight_ = VectorXd::Zero(all);
   for (Index i = 0; i < theta_; ++i) {
-    const Coordinate& c = data.theta[static_cast<std::size_t>(i)];
+    const Coordinate& c = data.theta[i];
     if (!c.nuisance()) continue;
     prior_[i] = c.coded(c.prior_mean);
     if (i != switched.freed) weight_[i] = c.prior_weight();
   }
-  for (std::size_t k = 0; k < active_.size(); ++k) {
-    const ShareRange& range = switched.ranges[static_cast<std::size_t>(active_[k])];
-    low_[theta_ + static_cast<Index>(k)] = range.low;
-    high_[theta_ + static_cast<Index>(k)] = range.high;
+  for (Index k = 0; k < std::ssize(active_); ++k) {
+    const StrengthRange& range = switched.ranges[active_[k]];
+    low_[theta_ + k] = range.low;
+    high_[theta_ + k] = range.high;
   }
 }
 
 void Model::use(const MatrixXd& coefficients) {
   const MatrixXd& w = weighting_->whitener;
-  const Index kept = std::min(static_cast<Index>(columns_.size()), w.rows());
+  const Index kept = std::min<Index>(std::ssize(columns_), w.rows());
   const Eigen::HouseholderQR<MatrixXd> qr(w * coefficients(columns_, Eigen::all).transpose());
   r_ = qr.matrixQR().topRows(kept).triangularView<Eigen::Upper>();
   qt_ = (qr.householderQ() * MatrixXd::Identity(w.rows(), kept)).transpose();
   if (r_.cols() > features_->base_size() && r_.rows() == r_.cols()) correct();
 }
 
-/// tr(Σ⁻¹ S) (h(u, s) − h(u, 0)) = xᵀ D x with the features x and D = tr(Σ⁻¹ S) C less its block of the base. What of the effects' slopes
-/// the base could not do itself has the squares G_e in noise units; with C_e V = G_e V diag(μ) and Vᵀ G_e V = 1 a direction of V is
+/// tr(Σ⁻¹ S) (h(u, s) − h(u, 0)) = xᵀ D x with the features x and D = tr(Σ⁻¹ S) C less its block of the base. What of the candidates'
+/// slopes the base could not do itself has the squares G_e in noise units; with C_e V = G_e V diag(μ) and Vᵀ G_e V = 1 a direction of V is
 /// reliable by 1 − μ, about the part of its square that is no chance. Where that is below `kReliable` chance alone often leaves as much,
 /// and D has less and less of it, nothing at μ = 1: D = [0, C_be T; Tᵀ C_eb, Tᵀ C_e T], T = V diag(t) Vᵀ G_e.
 MatrixXd Model::chance_of_slopes(double ridge) const {
-  const Index base = features_->base_size(), effects = r_.cols() - base;
+  const Index base = features_->base_size(), own = r_.cols() - base;
   const MatrixXd c = weighting_->run_noise * surrogate_->coefficient_error()(columns_, columns_);
-  const MatrixXd own = r_.bottomRightCorner(effects, effects), c_e = c.bottomRightCorner(effects, effects);
-  const MatrixXd g_e = own.transpose() * own + ridge * MatrixXd::Identity(effects, effects);
+  const MatrixXd slopes = r_.bottomRightCorner(own, own), c_e = c.bottomRightCorner(own, own);
+  const MatrixXd g_e = slopes.transpose() * slopes + ridge * MatrixXd::Identity(own, own);
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(c_e, g_e);
   const VectorXd t = ((1 - solver.eigenvalues().array()) / kReliable).max(0).min(1).sqrt();
   const MatrixXd taper = solver.eigenvectors() * t.asDiagonal() * solver.eigenvectors().transpose() * g_e;
   MatrixXd d = MatrixXd::Zero(r_.cols(), r_.cols());
-  d.topRightCorner(base, effects) = c.topRightCorner(base, effects) * taper;
-  d.bottomLeftCorner(effects, base) = d.topRightCorner(base, effects).transpose();
-  d.bottomRightCorner(effects, effects) = taper.transpose() * c_e * taper;
+  d.topRightCorner(base, own) = c.topRightCorner(base, own) * taper;
+  d.bottomLeftCorner(own, base) = d.topRightCorner(base, own).transpose();
+  d.bottomRightCorner(own, own) = taper.transpose() * c_e * taper;
   return d;
 }
 
@@ -121,9 +121,9 @@ VectorXd Model::features(const VectorXd& t) const {
   VectorXd x(r_.cols());
   x.head(features_->base_size()) = features_->base(u);
   Index next = features_->base_size();
-  for (std::size_t k = 0; k < active_.size(); ++k) {
+  for (Index k = 0; k < std::ssize(active_); ++k) {
     const Index n = features_->count(active_[k]);
-    x.segment(next, n) = features_->block(active_[k], u, t[theta_ + static_cast<Index>(k)]);
+    x.segment(next, n) = features_->block(active_[k], u, t[theta_ + k]);
     next += n;
   }
   return x;
@@ -216,7 +216,7 @@ FitResult Model::fit(const VectorXd& observed) const {
     if (q >= best.q) continue;
     best.q = q;
     best.coded = t.head(theta_);
-    best.shares.assign(t.data() + theta_, t.data() + t.size());
+    best.strengths.assign(t.data() + theta_, t.data() + t.size());
   }
   return best;
 }
@@ -227,10 +227,10 @@ FitResult Model::fit_holding(Index coordinate, double value, const VectorXd& obs
   return held.fit(observed);
 }
 
-std::vector<Effect> Model::effects(const FitResult& fit) const {
-  std::vector<Effect> out;
-  for (std::size_t k = 0; k < active_.size(); ++k) out.push_back({active_[k], fit.shares[k]});
+std::vector<ActiveCandidate> Model::active(const FitResult& fit) const {
+  std::vector<ActiveCandidate> out;
+  for (std::size_t k = 0; k < active_.size(); ++k) out.push_back({active_[k], fit.strengths[k]});
   return out;
 }
 
-}  // namespace millscope::diagnose
+}  // namespace millscope::naming

@@ -3,21 +3,22 @@
 //   Q(u, s) = (y − m(u, s))ᵀ Σ⁻¹ (y − m(u, s)) − tr(Σ⁻¹ S) (h(u, s) − h(u, 0)) + Σ ((θ_n − prior)/σ_n)² over the nuisances
 //
 // S is the covariance of one run about the surrogate and h its leverage: the second term is what the chance of the bank's runs adds to the
-// first on average where effects are on. Without it a strength is drawn towards nothing, as every slope is whose abscissae have errors
+// first on average where candidates are on. Without it a strength is drawn towards nothing, as every slope is whose abscissae have errors
 // (regression dilution; corrected as in Fuller 1987, Measurement Error Models, ch. 2). The less of a slope is sure, below
 // three tenths of its square, the less is corrected: where chance may have made all of it a correction would fit chance with more of it.
 // Nothing is corrected where there are fewer observables than coefficients: they do not tell slopes apart.
 //
-// u stays within the bank's ranges, a one-sided share within 0 … 1. y enters through factors of the whitened coefficients, so that a
+// u stays within the bank's ranges, a one-sided strength within 0 … 1. y enters through factors of the whitened coefficients, so that a
 // fit costs the number of coefficients, not of observables.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "studies/diagnose/naming/surrogate.hpp"
 
-namespace millscope::diagnose {
+namespace millscope::naming {
 
 /// Lower triangular L⁻¹ with Σ = L Lᵀ. Throws base::UserError when Σ is not positive definite.
 MatrixXd whitener(const MatrixXd& covariance);
@@ -36,21 +37,21 @@ struct Weighting {
 };
 
 struct FitResult {
-  VectorXd coded;              ///< θ
-  std::vector<double> shares;  ///< of the active candidates
+  VectorXd coded;                 ///< θ
+  std::vector<double> strengths;  ///< of the active candidates
   double q = 0;
 };
 
-/// Limits of a candidate's share.
-struct ShareRange {
+/// Limits of a candidate's strength.
+struct StrengthRange {
   double low = 0, high = 1;
 };
 
 /// What a model may do besides turning θ within its priors.
 struct Switched {
-  std::vector<int> on = {};             ///< candidates
-  std::vector<ShareRange> ranges = {};  ///< of all candidates
-  Index freed = -1;                     ///< a nuisance whose prior does not count; −1: none
+  std::vector<Index> on = {};              ///< candidates
+  std::vector<StrengthRange> ranges = {};  ///< of all candidates
+  std::optional<Index> freed = {};         ///< a nuisance whose prior does not count
 };
 
 /// Surrogate and weighting must outlive it.
@@ -63,11 +64,11 @@ class Model {
   /// The same on a bank that has turned out other: coefficients of all features × observables.
   Model with(const MatrixXd& coefficients) const;
   FitResult fit(const VectorXd& observed) const;
-  /// The same with one of θ and the shares, in that order, held at a value within its limits.
+  /// The same with one of θ and the strengths, in that order, held at a value within its limits.
   FitResult fit_holding(Index coordinate, double value, const VectorXd& observed) const;
   double low(Index coordinate) const { return low_[coordinate]; }
   double high(Index coordinate) const { return high_[coordinate]; }
-  std::vector<Effect> effects(const FitResult& fit) const;
+  std::vector<ActiveCandidate> active(const FitResult& fit) const;
 
  private:
   struct Target {
@@ -87,10 +88,10 @@ class Model {
   const Features* features_;
   const Weighting* weighting_;
   MatrixXd r_, qt_;
-  std::vector<int> active_;
+  std::vector<Index> active_;
   std::vector<Index> columns_;            ///< of all features those that are in use
   VectorXd low_, high_, prior_, weight_;  ///< of (u, s); weight 1/σ in coded units, 0: flat
   Index theta_ = 0;
 };
 
-}  // namespace millscope::diagnose
+}  // namespace millscope::naming

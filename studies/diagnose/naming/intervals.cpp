@@ -11,7 +11,7 @@
 #include "kernel/base/statistics.hpp"
 #include "studies/diagnose/naming/pseudo_data.hpp"
 
-namespace millscope::diagnose {
+namespace millscope::naming {
 namespace {
 
 constexpr double kInside = 0.9;
@@ -36,9 +36,9 @@ double edge(double limit, double found, Inside inside) {
 
 }  // namespace
 
-VectorXd coordinates_of(const VectorXd& coded, const std::vector<double>& shares) {
-  VectorXd t(coded.size() + static_cast<Index>(shares.size()));
-  t << coded, Eigen::Map<const VectorXd>(shares.data(), static_cast<Index>(shares.size()));
+VectorXd coordinates_of(const VectorXd& coded, const std::vector<double>& strengths) {
+  VectorXd t(coded.size() + std::ssize(strengths));
+  t << coded, Eigen::Map<const VectorXd>(strengths.data(), std::ssize(strengths));
   return t;
 }
 
@@ -49,7 +49,7 @@ double PseudoData::allowed(const std::vector<Drawn>& drawn, const Model& fitted,
   for (std::size_t law = 0; law < laws(); ++law) {
     std::vector<double> all, free;
     for (std::size_t b = law; b < drawn.size(); b += laws()) {
-      const double found = coordinates_of(drawn[b].fit[0].coded, drawn[b].fit[0].shares)[i], rise = drawn[b].rise[i];
+      const double found = coordinates_of(drawn[b].fit[0].coded, drawn[b].fit[0].strengths)[i], rise = drawn[b].rise[i];
       all.push_back(rise);
       if (found > fitted.low(i) && found < fitted.high(i)) free.push_back(rise);
     }
@@ -62,10 +62,10 @@ double PseudoData::allowed(const std::vector<Drawn>& drawn, const Model& fitted,
 std::vector<Interval> PseudoData::intervals(const Choice& choice, const FitResult& fit, int draws, std::uint64_t stream) const {
   const auto drawn = draw(truth(choice, fit), {choice}, {draws, stream, true});
   const Model fitted = model(*surrogate_, choice);
-  const VectorXd found = coordinates_of(fit.coded, fit.shares);
-  std::vector<Interval> out(static_cast<std::size_t>(found.size()));
+  const VectorXd found = coordinates_of(fit.coded, fit.strengths);
+  std::vector<Interval> out(found.size());
   base::for_each_item(out.size(), base::worker_count(options_.threads, out.size()), [&](std::size_t k, std::size_t) {
-    const auto i = static_cast<Index>(k);
+    const Index i = k;
     const double most = fit.q + allowed(drawn, fitted, i);
     const auto inside = [&](double v) { return fitted.fit_holding(i, v, problem_.observed).q <= most; };
     out[k] = {found[i], edge(fitted.low(i), found[i], inside), edge(fitted.high(i), found[i], inside)};
@@ -73,4 +73,4 @@ std::vector<Interval> PseudoData::intervals(const Choice& choice, const FitResul
   return out;
 }
 
-}  // namespace millscope::diagnose
+}  // namespace millscope::naming

@@ -9,12 +9,12 @@
 #include "studies/diagnose/naming/pseudo_data.hpp"
 #include "studies/diagnose/naming/visibility.hpp"
 
-namespace millscope::diagnose {
+namespace millscope::naming {
 namespace {
 
 constexpr double kAtLimit = 0.999;  // of the coded range
 
-/// Share of draws that are at least `value`, the value itself counted among them; the largest over the laws of noise, whose draws follow
+/// Part of the draws that are at least `value`, the value itself counted among them; the largest over the laws of noise, whose draws follow
 /// each other in turn.
 double tail(const std::vector<double>& draws, double value, std::size_t laws) {
   double largest = 0;
@@ -45,16 +45,16 @@ std::vector<Interval> of_theta(const BankData& data, const std::vector<Interval>
 
 class Namer {
  public:
-  Namer(const Problem& problem, const NamingOptions& options) : p_(problem), o_(options), pseudo_(problem, options) {}
+  Namer(const Problem& problem, const Options& options) : p_(problem), o_(options), pseudo_(problem, options) {}
 
-  Naming run() {
+  Result run() {
     out_.covariance = pseudo_.weighting().covariance;
     out_.chance = pseudo_.chance();
     against_base();
     choose_best();
-    if (out_.best >= 0) {
-      look_closer(out_.best);
-      compare_rivals();
+    if (out_.best) {
+      look_closer(*out_.best);
+      compare_others();
       look_for_second();
     }
     return std::move(out_);
@@ -62,8 +62,8 @@ class Namer {
 
  private:
   double p_of(const std::vector<double>& draws, double value) const { return tail(draws, value, pseudo_.laws()); }
-  std::size_t count() const { return p_.rivals.size(); }
-  bool tested(std::size_t j) const { return out_.judged[j].tested; }
+  Index count() const { return std::ssize(p_.alternatives); }
+  bool tested(Index j) const { return out_.judged[j].tested; }
   void say(const std::string& line) const {
     if (o_.say) o_.say(line);
   }
@@ -72,22 +72,22 @@ class Namer {
     say(fmt::format("null distribution: {} pseudo-recordings, {} candidates", o_.draws, count()));
     out_.base = pseudo_.fit({});
     std::vector<Choice> choices{{}};
-    for (std::size_t j = 0; j < count(); ++j) choices.push_back({static_cast<int>(j)});
+    for (Index j = 0; j < count(); ++j) choices.push_back({j});
     const auto drawn = pseudo_.draw(pseudo_.truth({}, out_.base), choices, {o_.draws, 1});
     out_.base_p = p_of(collect(drawn, [](const auto& d) { return d.fit[0].q; }), out_.base.q);
-    out_.base_theta = of_theta(p_.data, pseudo_.intervals({}, out_.base, o_.rival_draws, 2));
+    out_.base_theta = of_theta(p_.data, pseudo_.intervals({}, out_.base, o_.comparison_draws, 2));
     for (Index i = 0; i < out_.base.coded.size(); ++i) {
-      const Coordinate& c = p_.data.theta[static_cast<std::size_t>(i)];
+      const Coordinate& c = p_.data.theta[i];
       if (std::fabs(out_.base.coded[i]) > kAtLimit) out_.at_limit.push_back(c.name);
     }
     std::vector<std::vector<double>> delta(count());
-    for (std::size_t j = 0; j < count(); ++j) {
+    for (Index j = 0; j < count(); ++j) {
       delta[j] = collect(drawn, [j](const auto& d) { return d.fit[0].q - d.fit[j + 1].q; });
       Judged judged;
-      judged.fit = pseudo_.fit({static_cast<int>(j)});
+      judged.fit = pseudo_.fit({j});
       judged.delta_q = out_.base.q - judged.fit.q;
       out_.judged.push_back(judged);
-      visibility(static_cast<int>(j));
+      visibility(j);
       if (tested(j)) out_.judged[j].p = p_of(delta[j], judged.delta_q);
     }
     correct_family(delta);
@@ -126,22 +126,21 @@ class Namer {
     }
   }
 
-  void visibility(int j) {
-    Judged& judged = out_.judged[static_cast<std::size_t>(j)];
+  void visibility(Index j) {
+    Judged& judged = out_.judged[j];
     const Visibility seen(p_, pseudo_.surrogate(), pseudo_.weighting(), judged.fit.coded, j);
-    const double found =
-        judged.fit.shares.empty() ? judged.fit.coded[p_.rivals[static_cast<std::size_t>(j)].freed] : judged.fit.shares.front();
+    const double found = judged.fit.strengths.empty() ? judged.fit.coded[*p_.alternatives[j].freed] : judged.fit.strengths.front();
     for (const BankRow& row : p_.data.rows) {
-      for (const Effect& e : row.effects) judged.runs += e.candidate == p_.rivals[static_cast<std::size_t>(j)].candidate ? 1 : 0;
+      for (const ActiveCandidate& e : row.active) judged.runs += e.candidate == p_.alternatives[j].candidate ? 1 : 0;
     }
-    const Rival& rival = p_.rivals[static_cast<std::size_t>(j)];
-    judged.tested = rival.candidate < 0 || (judged.runs > 0 && !rival.screened_out);
+    const Alternative& alternative = p_.alternatives[j];
+    judged.tested = !alternative.candidate || (judged.runs > 0 && !alternative.screened_out);
     judged.lambda = seen.lambda(), judged.kappa = seen.kappa(), judged.lambda_found = seen.at(found);
     judged.lambda_curve = seen.curve();
-    judged.undetectable = rival.screened_out || std::sqrt(judged.lambda) < o_.noise_units;
-    judged.share = without_interval(found);
+    judged.undetectable = alternative.screened_out || std::sqrt(judged.lambda) < o_.noise_units;
+    judged.strength = without_interval(found);
     for (Index i = 0; i < judged.fit.coded.size(); ++i) {
-      judged.theta.push_back(without_interval(p_.data.theta[static_cast<std::size_t>(i)].natural(judged.fit.coded[i])));
+      judged.theta.push_back(without_interval(p_.data.theta[i].natural(judged.fit.coded[i])));
     }
   }
 
@@ -160,71 +159,71 @@ class Namer {
   }
 
   void choose_best() {
-    for (std::size_t j = 0; j < count(); ++j) {
+    for (Index j = 0; j < count(); ++j) {
       const Judged& judged = out_.judged[j];
       if (judged.p_family > o_.level || !judged.tested) continue;
-      if (out_.best < 0 || judged.fit.q < out_.judged[static_cast<std::size_t>(out_.best)].fit.q) out_.best = static_cast<int>(j);
+      if (!out_.best || judged.fit.q < out_.judged[*out_.best].fit.q) out_.best = j;
     }
   }
 
   /// Intervals and goodness from draws under candidate j.
-  void look_closer(int j) {
-    Judged& judged = out_.judged[static_cast<std::size_t>(j)];
+  void look_closer(Index j) {
+    Judged& judged = out_.judged[j];
     const Truth truth = pseudo_.truth({j}, judged.fit);
     const auto stream = static_cast<std::uint64_t>(j);
-    const auto strict = pseudo_.draw(truth, {{j}}, {o_.rival_draws, 100 + stream});
+    const auto strict = pseudo_.draw(truth, {{j}}, {o_.comparison_draws, 100 + stream});
     judged.goodness_p = p_of(collect(strict, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
-    const std::vector<Interval> found = pseudo_.intervals({j}, judged.fit, o_.rival_draws, 200 + stream);
+    const std::vector<Interval> found = pseudo_.intervals({j}, judged.fit, o_.comparison_draws, 200 + stream);
     judged.theta = of_theta(p_.data, found);
-    if (!judged.fit.shares.empty()) judged.share = found[p_.data.theta.size()];
+    if (!judged.fit.strengths.empty()) judged.strength = found[p_.data.theta.size()];
   }
 
   /// Under every other candidate: how often the best of all, whichever that is in the draw, would seem better by so much.
-  void compare_rivals() {
-    const int best = out_.best;
+  void compare_others() {
+    const Index best = *out_.best;
     out_.kept = {best};
-    for (std::size_t k = 0; k < count(); ++k) {
-      if (static_cast<int>(k) == best || !tested(k)) continue;
+    for (Index k = 0; k < count(); ++k) {
+      if (k == best || !tested(k)) continue;
       Judged& judged = out_.judged[k];
-      const double excess = judged.fit.q - out_.judged[static_cast<std::size_t>(best)].fit.q;
-      const Choice own{static_cast<int>(k)};
+      const double excess = judged.fit.q - out_.judged[best].fit.q;
+      const Choice own{k};
       std::vector<Choice> choices{own};
-      for (std::size_t j = 0; j < count(); ++j) {
-        if (j != k && tested(j)) choices.push_back({static_cast<int>(j)});
+      for (Index j = 0; j < count(); ++j) {
+        if (j != k && tested(j)) choices.push_back({j});
       }
-      const auto drawn = pseudo_.draw(pseudo_.truth(own, judged.fit), choices, {o_.rival_draws, 300 + k});
+      const auto drawn = pseudo_.draw(pseudo_.truth(own, judged.fit), choices, {o_.comparison_draws, 300 + static_cast<std::uint64_t>(k)});
       const auto lead = collect(drawn, [](const auto& d) {
         double least = d.fit[0].q;
         for (const FitResult& fit : d.fit) least = std::min(least, fit.q);
         return d.fit[0].q - least;
       });
       judged.against_best_p = p_of(lead, excess);
-      look_closer(static_cast<int>(k));
-      if (judged.against_best_p > o_.level) out_.kept.push_back(static_cast<int>(k));
+      look_closer(k);
+      if (judged.against_best_p > o_.level) out_.kept.push_back(k);
     }
   }
 
-  bool together(int a, int b) const {
-    const Rival &one = p_.rivals[static_cast<std::size_t>(a)], &other = p_.rivals[static_cast<std::size_t>(b)];
+  bool together(Index a, Index b) const {
+    const Alternative &one = p_.alternatives[a], &other = p_.alternatives[b];
     const auto has = [](const std::vector<std::string>& list, const std::string& name) {
       return std::find(list.begin(), list.end(), name) != list.end();
     };
-    return a != b && !has(one.excludes, other.name) && !has(other.excludes, one.name) && !(one.freed >= 0 && other.freed >= 0);
+    return a != b && !has(one.excludes, other.name) && !has(other.excludes, one.name) && !(one.freed && other.freed);
   }
 
   /// Forward selection: a second candidate beside the best, and the best tested again beside it.
   void look_for_second() {
-    const int first = out_.best;
-    std::vector<int> others;
+    const Index first = *out_.best;
+    std::vector<Index> others;
     std::vector<Choice> choices{{first}};
-    for (std::size_t k = 0; k < count(); ++k) {
-      if (!tested(k) || !together(first, static_cast<int>(k))) continue;
-      others.push_back(static_cast<int>(k));
-      choices.push_back({first, static_cast<int>(k)});
+    for (Index k = 0; k < count(); ++k) {
+      if (!tested(k) || !together(first, k)) continue;
+      others.push_back(k);
+      choices.push_back({first, k});
     }
     if (others.empty()) return;
-    const FitResult& alone = out_.judged[static_cast<std::size_t>(first)].fit;
-    const auto drawn = pseudo_.draw(pseudo_.truth({first}, alone), choices, {o_.rival_draws, 500});
+    const FitResult& alone = out_.judged[first].fit;
+    const auto drawn = pseudo_.draw(pseudo_.truth({first}, alone), choices, {o_.comparison_draws, 500});
     const auto gain = collect(drawn, [](const auto& d) {
       double most = 0;
       for (std::size_t k = 1; k < d.fit.size(); ++k) most = std::max(most, d.fit[0].q - d.fit[k].q);
@@ -238,23 +237,23 @@ class Namer {
       if (alone.q - fit.q > most) most = alone.q - fit.q, pair.second = others[k], pair.fit = fit;
     }
     pair.p = p_of(gain, most);
-    const FitResult& second = out_.judged[static_cast<std::size_t>(pair.second)].fit;
+    const FitResult& second = out_.judged[pair.second].fit;
     const Choice own{pair.second}, both{first, pair.second};
-    const auto reverse = pseudo_.draw(pseudo_.truth(own, second), {own, both}, {o_.rival_draws, 600});
+    const auto reverse = pseudo_.draw(pseudo_.truth(own, second), {own, both}, {o_.comparison_draws, 600});
     pair.p_first = p_of(collect(reverse, [](const auto& d) { return d.fit[0].q - d.fit[1].q; }), second.q - pair.fit.q);
-    const auto under = pseudo_.draw(pseudo_.truth(both, pair.fit), {both}, {o_.rival_draws, 700});
+    const auto under = pseudo_.draw(pseudo_.truth(both, pair.fit), {both}, {o_.comparison_draws, 700});
     pair.goodness_p = p_of(collect(under, [](const auto& d) { return d.fit[0].q; }), pair.fit.q);
     out_.pairs.push_back(pair);
   }
 
   const Problem& p_;
-  const NamingOptions& o_;
+  const Options& o_;
   PseudoData pseudo_;
-  Naming out_;
+  Result out_;
 };
 
 }  // namespace
 
-Naming name_physics(const Problem& problem, const NamingOptions& options) { return Namer(problem, options).run(); }
+Result name_candidates(const Problem& problem, const Options& options) { return Namer(problem, options).run(); }
 
-}  // namespace millscope::diagnose
+}  // namespace millscope::naming

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,36 +21,37 @@
 #include "studies/diagnose/naming/fit.hpp"
 #include "studies/inspect/estimate.hpp"
 
-namespace millscope::diagnose {
+namespace millscope::naming {
 
-/// What may be named: a candidate of the bank, or a nuisance that leaves its prior.
-struct Rival {
+/// What may be named: a candidate, or a nuisance that leaves its prior.
+struct Alternative {
   std::string name;
-  int candidate = -1;  ///< of the bank
-  Index freed = -1;    ///< else: the coordinate whose prior does not count
-  ShareRange range;    ///< of the candidate's share
-  std::vector<std::string> excludes;
+  std::optional<Index> candidate = {};  ///< of the bank
+  std::optional<Index> freed = {};      ///< else: the coordinate whose prior does not count
+  StrengthRange range = {};             ///< of the candidate's strength
+  std::vector<std::string> excludes = {};
   bool screened_out = false;  ///< its first runs showed that it cannot matter: it is not tested
 };
 
-/// What a fit with this rival alone switches on; nothing for a nuisance.
-inline std::vector<Effect> effects_of(const Rival& rival, const FitResult& fit) {
-  return rival.candidate < 0 ? std::vector<Effect>{} : std::vector<Effect>{{rival.candidate, fit.shares.front()}};
+/// What a fit of this alternative alone has on; nothing for a nuisance.
+inline std::vector<ActiveCandidate> active_of(const Alternative& alternative, const FitResult& fit) {
+  if (!alternative.candidate) return {};
+  return {{*alternative.candidate, fit.strengths.front()}};
 }
 
 struct Problem {
   BankData data;
-  std::vector<Rival> rivals;
+  std::vector<Alternative> alternatives;
   VectorXd observed;
   MatrixXd covariance;          ///< of the recording, block by condition: the weight of the observables
   std::vector<MatrixXd> noise;  ///< laws that the recording's noise may have; every p is the largest over them. Empty: `covariance`
 };
 
-struct NamingOptions {
-  int draws = 2016;        ///< behind the null
-  int rival_draws = 500;   ///< behind every comparison of two candidates
-  double level = 0.05;     ///< for all candidates together
-  double noise_units = 3;  ///< an effect below them, orthogonal to θ, cannot be seen
+struct Options {
+  int draws = 2016;            ///< behind the null
+  int comparison_draws = 500;  ///< behind every comparison of two candidates
+  double level = 0.05;         ///< for all candidates together
+  double noise_units = 3;      ///< a candidate that does less, orthogonal to θ, cannot be seen
   std::uint64_t seed = 1;
   int threads = 0;
   std::function<void(const std::string&)> say;
@@ -73,14 +75,14 @@ inline Interval interval_about(double value, double sem) { return {value, value 
 struct Judged {
   FitResult fit;
   double delta_q = 0, p = 1, p_family = 1;
-  double kappa = 0;         ///< part of the effect that θ cannot imitate, at full strength: 0 is fully concealed
+  double kappa = 0;         ///< part of what it does that θ cannot imitate, at full strength: 0 is fully concealed
   double lambda = 0;        ///< visibility.hpp, about what was fitted with the candidate: at full strength
-  double lambda_found = 0;  ///< at the fitted share
-  std::vector<std::pair<double, double>> lambda_curve;  ///< (share, λ), shares rising; of candidates
+  double lambda_found = 0;  ///< at the fitted strength
+  std::vector<std::pair<double, double>> lambda_curve;  ///< (strength, λ), strengths rising; of candidates
   bool undetectable = false;
   int runs = 0;                       ///< of the bank with this candidate
   bool tested = true;                 ///< else it has no runs, or its first ones showed that it cannot matter; its p are 1
-  Interval share;                     ///< its interval is worked out when some candidate is significant
+  Interval strength;                  ///< its interval is worked out when some candidate is significant
   std::vector<Interval> theta;        ///< natural units; the same
   double goodness_p = kNotWorkedOut;  ///< whether the data look like a draw of this model; the same
   double against_best_p = 1;          ///< under this candidate: how often the best would be better by so much
@@ -95,27 +97,27 @@ struct Mismatch {
 };
 
 struct Pair {
-  int first = -1, second = -1;
+  Index first = 0, second = 0;  ///< alternatives
   FitResult fit;
   double p = 1;        ///< of the second beside the first
   double p_first = 1;  ///< of the first beside the second
   double goodness_p = 1;
 };
 
-struct Naming {
+struct Result {
   FitResult base;
   double base_p = 1;                  ///< whether the data look like a draw of the base
   std::vector<Interval> base_theta;   ///< the retuned parameters
-  std::vector<Judged> judged;         ///< one for each rival of the problem
+  std::vector<Judged> judged;         ///< one for each alternative
   std::vector<std::string> at_limit;  ///< parameters whose retuned value lies at an end of the bank's range
-  int best = -1;                      ///< −1: none is significant
-  std::vector<int> kept;              ///< the best and all that are not rejected against it
-  std::vector<Pair> pairs;            ///< at most one: two effects together
+  std::optional<Index> best;          ///< of the alternatives; nothing: none is significant
+  std::vector<Index> kept;            ///< the best and all that are not rejected against it
+  std::vector<Pair> pairs;            ///< at most one: two together
   std::vector<Mismatch> mismatch;     ///< the largest |z| first
   MatrixXd covariance;                ///< Σ: recording and surrogate
   double chance = 0;                  ///< ρ, Surrogate::chance()
 };
 
-Naming name_physics(const Problem& problem, const NamingOptions& options);
+Result name_candidates(const Problem& problem, const Options& options);
 
-}  // namespace millscope::diagnose
+}  // namespace millscope::naming

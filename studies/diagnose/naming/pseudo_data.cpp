@@ -10,18 +10,18 @@
 #include "kernel/base/error.hpp"
 #include "kernel/base/parallel.hpp"
 
-namespace millscope::diagnose {
+namespace millscope::naming {
 namespace {
 
 constexpr std::size_t kLeastBase = 8;
-constexpr std::size_t kEnoughWith = 12;  // runs with an effect, for intervals from them alone
-constexpr double kFaint = 0.1;           // of a share: the bank has no runs with less
+constexpr std::size_t kEnoughWith = 12;  // runs with a candidate, for intervals from them alone
+constexpr double kFaint = 0.1;           // of a strength: the bank has no runs with less
 constexpr double kSingular = 1e-12;
 
-std::vector<ShareRange> ranges_of(const Problem& problem) {
-  std::vector<ShareRange> ranges(static_cast<std::size_t>(problem.data.candidates));
-  for (const Rival& r : problem.rivals) {
-    if (r.candidate >= 0) ranges[static_cast<std::size_t>(r.candidate)] = r.range;
+std::vector<StrengthRange> ranges_of(const Problem& problem) {
+  std::vector<StrengthRange> ranges(problem.data.candidates);
+  for (const Alternative& r : problem.alternatives) {
+    if (r.candidate) ranges[*r.candidate] = r.range;
   }
   return ranges;
 }
@@ -43,7 +43,7 @@ Root root_of(const MatrixXd& a) {
 
 }  // namespace
 
-PseudoData::PseudoData(const Problem& problem, const NamingOptions& options)
+PseudoData::PseudoData(const Problem& problem, const Options& options)
     : problem_(problem), options_(options), features_(std::make_unique<Features>(problem.data)), ranges_(ranges_of(problem)) {
   const BankData& data = problem.data;
   const std::vector<bool> all(data.rows.size(), true);
@@ -60,64 +60,64 @@ PseudoData::PseudoData(const Problem& problem, const NamingOptions& options)
     for (std::size_t other = 0; other < used.size(); ++other) used[other] = !repeats(data.rows[other], data.rows[r]);
     left.surrogate = std::make_unique<Surrogate>(data, *features_, used);
     const VectorXd u = data.coded(data.rows[r].theta);
-    const std::vector<Effect>& effects = data.rows[r].effects;
-    left.deviation = data.value.row(static_cast<Index>(r)).transpose() - left.surrogate->at(u, effects);
-    left.leverage = left.surrogate->leverage(u, effects);
-    left.effects = effects;
-    left.candidate = effects.empty() ? -1 : effects.front().candidate;
-    base += effects.empty() && data.usual(data.rows[r]) ? 1 : 0;
+    const std::vector<ActiveCandidate>& active = data.rows[r].active;
+    left.deviation = data.value.row(r).transpose() - left.surrogate->at(u, active);
+    left.leverage = left.surrogate->leverage(u, active);
+    left.active = active;
+    left.candidate = data.rows[r].candidate();
+    base += active.empty() && data.usual(data.rows[r]) ? 1 : 0;
     left_out_.push_back(std::move(left));
   }
   if (base < kLeastBase)
     throw base::UserError(
-        fmt::format("the bank has {} finished runs without an effect, the null needs {}; raise bank.base", base, kLeastBase));
+        fmt::format("the bank has {} finished runs without a candidate, the null needs {}; raise bank.base", base, kLeastBase));
 }
 
-double PseudoData::scatter_of(const std::vector<Effect>& effects) const {
+double PseudoData::scatter_of(const std::vector<ActiveCandidate>& active) const {
   double out = 1;
-  for (const Effect& e : effects) out += std::fabs(e.share) < kFaint ? 0 : surrogate_->scatter_with(e.candidate) - 1;
+  for (const ActiveCandidate& e : active) out += std::fabs(e.strength) < kFaint ? 0 : surrogate_->scatter_with(e.candidate) - 1;
   return out;
 }
 
 std::vector<const PseudoData::LeftOut*> PseudoData::runs_for(const Truth& truth, bool for_intervals) const {
   std::vector<const LeftOut*> out, with;
   for (const LeftOut& left : left_out_) {
-    const auto has = [&](const Effect& e) { return e.candidate == left.candidate && std::fabs(e.share) >= kFaint; };
-    const bool shares = std::any_of(truth.effects.begin(), truth.effects.end(), has);
-    if (shares) with.push_back(&left);
-    if (shares || left.candidate < 0) out.push_back(&left);
+    const auto has = [&](const ActiveCandidate& e) { return e.candidate == left.candidate && std::fabs(e.strength) >= kFaint; };
+    const bool shared = std::any_of(truth.active.begin(), truth.active.end(), has);
+    if (shared) with.push_back(&left);
+    if (shared || !left.candidate) out.push_back(&left);
   }
   return for_intervals && with.size() >= kEnoughWith ? with : out;
 }
 
 Model PseudoData::model(const Surrogate& surrogate, const Choice& choice) const {
-  Switched switched{{}, ranges_, -1};
-  for (const int r : choice) {
-    const Rival& rival = problem_.rivals[static_cast<std::size_t>(r)];
-    if (rival.candidate >= 0) switched.on.push_back(rival.candidate);
-    if (rival.freed >= 0) switched.freed = rival.freed;
+  Switched switched{{}, ranges_, {}};
+  for (const Index r : choice) {
+    const Alternative& alternative = problem_.alternatives[r];
+    if (alternative.candidate) switched.on.push_back(*alternative.candidate);
+    if (alternative.freed) switched.freed = alternative.freed;
   }
   return {problem_.data, surrogate, *weighting_, switched};
 }
 
 VectorXd Truth::coordinates() const {
-  std::vector<double> shares;
-  for (const Effect& e : effects) shares.push_back(e.share);
-  return coordinates_of(coded, shares);
+  std::vector<double> strengths;
+  for (const ActiveCandidate& e : active) strengths.push_back(e.strength);
+  return coordinates_of(coded, strengths);
 }
 
 FitResult PseudoData::fit(const Choice& choice) const { return model(*surrogate_, choice).fit(problem_.observed); }
 
 Truth PseudoData::truth(const Choice& choice, const FitResult& fit) const {
-  Truth truth{fit.coded, model(*surrogate_, choice).effects(fit), -1};
-  for (const int r : choice) truth.freed = std::max(truth.freed, problem_.rivals[static_cast<std::size_t>(r)].freed);
+  Truth truth{fit.coded, model(*surrogate_, choice).active(fit), {}};
+  for (const Index r : choice) truth.freed = std::max(truth.freed, problem_.alternatives[r].freed);
   return truth;
 }
 
 VectorXd PseudoData::drawn_theta(const Truth& truth, emulate::Random& random) const {
   VectorXd u = truth.coded;
   for (Index i = 0; i < u.size(); ++i) {
-    const Coordinate& c = problem_.data.theta[static_cast<std::size_t>(i)];
+    const Coordinate& c = problem_.data.theta[i];
     if (!c.nuisance() || i == truth.freed) continue;
     const double centre = c.coded(c.prior_mean), sigma = 1 / c.prior_weight();
     do u[i] = centre + sigma * random.normal();
@@ -127,13 +127,13 @@ VectorXd PseudoData::drawn_theta(const Truth& truth, emulate::Random& random) co
 }
 
 double PseudoData::part_of(const LeftOut& left, const Truth& truth, double chance) const {
-  const double wanted =
-      truth.effects.empty() ? 1 - chance + left.surrogate->leverage(truth.coded) : (1 - chance) * scatter_of(truth.effects);
-  return std::sqrt(wanted / (scatter_of(left.effects) + left.leverage));
+  const double wanted = truth.active.empty() ? 1 - chance + left.surrogate->leverage(truth.coded) : (1 - chance) * scatter_of(truth.active);
+  return std::sqrt(wanted / (scatter_of(left.active) + left.leverage));
 }
 
-double PseudoData::reliability(const Truth& truth, const Effect& effect) const {
-  const std::vector<Effect> some{{effect.candidate, std::copysign(std::max(kFaint, std::fabs(effect.share)), effect.share)}};
+double PseudoData::reliability(const Truth& truth, const ActiveCandidate& candidate) const {
+  const double strength = std::copysign(std::max(kFaint, std::fabs(candidate.strength)), candidate.strength);
+  const std::vector<ActiveCandidate> some{{candidate.candidate, strength}};
   const double square = (weighting_->whitener * (surrogate_->at(truth.coded, some) - surrogate_->at(truth.coded))).squaredNorm();
   const double chance = weighting_->run_noise * surrogate_->leverage_of(truth.coded, some);
   return square > 0 ? std::max(0.0, 1 - chance / square) : 1;
@@ -149,13 +149,13 @@ VectorXd PseudoData::rise(const Model& model, const Truth& truth, double least, 
 PseudoData::Refit PseudoData::refit(const LeftOut& left, const Truth& truth, const std::vector<Choice>& choices) const {
   Refit out{&left, left.surrogate->coefficients(), {}, {}};
   for (const Choice& choice : choices) out.models.push_back(model(*left.surrogate, choice));
-  if (truth.effects.empty()) return out;
-  std::vector<int> on;
-  for (const Effect& e : truth.effects) {
+  if (truth.active.empty()) return out;
+  std::vector<Index> on;
+  for (const ActiveCandidate& e : truth.active) {
     on.push_back(e.candidate);
     out.coefficients.middleRows(features_->first(e.candidate), features_->count(e.candidate)) *= std::sqrt(reliability(truth, e));
   }
-  // Base and effects of the truth are drawn again; the other candidates' coefficients move as they do with those on average.
+  // Base and candidates of the truth are drawn again; the other candidates' coefficients move as they do with those on average.
   const std::vector<Index> columns = features_->columns(on);
   const MatrixXd& error = left.surrogate->coefficient_error();
   out.again = error(Eigen::all, columns) * root_of(error(columns, columns)).inverse;
@@ -164,10 +164,10 @@ PseudoData::Refit PseudoData::refit(const LeftOut& left, const Truth& truth, con
 
 PseudoData::Drawn PseudoData::drawn(const Refit& refit, const Truth& truth, const Draws& how, std::size_t b) const {
   emulate::Random random(options_.seed + how.stream, b);
-  const Truth at{drawn_theta(truth, random), truth.effects, truth.freed};
+  const Truth at{drawn_theta(truth, random), truth.active, truth.freed};
   const LeftOut& left = *refit.left;
   const Index n = left.deviation.size();
-  const VectorXd y = refit.coefficients.transpose() * features_->all(at.coded, at.effects) +
+  const VectorXd y = refit.coefficients.transpose() * features_->all(at.coded, at.active) +
                      part_of(left, at, how.for_intervals ? 0 : chance_) * left.deviation + noise_factors_[b % laws()] * random.normals(n);
   MatrixXd coefficients = refit.coefficients;
   if (refit.again.size() > 0) {
@@ -182,7 +182,7 @@ PseudoData::Drawn PseudoData::drawn(const Refit& refit, const Truth& truth, cons
     if (!first) first = again;
   }
   const FitResult& found = out.fit.front();
-  out.residual = y - coefficients.transpose() * features_->all(found.coded, first->effects(found));
+  out.residual = y - coefficients.transpose() * features_->all(found.coded, first->active(found));
   if (how.for_intervals) out.rise = rise(*first, at, found.q, y);
   return out;
 }
@@ -190,10 +190,10 @@ PseudoData::Drawn PseudoData::drawn(const Refit& refit, const Truth& truth, cons
 std::vector<PseudoData::Drawn> PseudoData::draw(const Truth& truth, const std::vector<Choice>& choices, const Draws& how) const {
   std::vector<Refit> refits;
   for (const LeftOut* left : runs_for(truth, how.for_intervals)) refits.push_back(refit(*left, truth, choices));
-  std::vector<Drawn> out(static_cast<std::size_t>(how.count));
+  std::vector<Drawn> out(how.count);
   base::for_each_item(out.size(), base::worker_count(options_.threads, out.size()),
                       [&](std::size_t b, std::size_t) { out[b] = drawn(refits[b / laws() % refits.size()], truth, how, b); });
   return out;
 }
 
-}  // namespace millscope::diagnose
+}  // namespace millscope::naming

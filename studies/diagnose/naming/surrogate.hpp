@@ -1,14 +1,14 @@
-// One emulator for the whole bank: quadratic in θ; for each candidate linear and square in its share, and its product with the fitted
-// parameters and with the nuisances apart. All observables share the runs, so that one factorisation serves them all.
+// One emulator for the whole bank: quadratic in θ; for each candidate linear and square in its strength, and its product with the fitted
+// parameters and with the nuisances that are varied apart. All observables share the runs, so that one factorisation serves them all.
 //
-//   m(u, s) = b₀ + Σ b_i u_i + Σ b_ij u_i u_j + Σ_j (c_j s_j + d_j s_j² + Σ_i e_ji s_j u_i),  u: coded θ, s: shares
+//   m(u, s) = b₀ + Σ b_i u_i + Σ b_ij u_i u_j + Σ_j (c_j s_j + d_j s_j² + Σ_i e_ji s_j u_i),  u: coded θ, s: strengths
 #pragma once
 
 #include <utility>
 
 #include "studies/diagnose/naming/bank_data.hpp"
 
-namespace millscope::diagnose {
+namespace millscope::naming {
 
 /// Which columns the model has.
 class Features {
@@ -17,25 +17,25 @@ class Features {
 
   Index size() const { return size_; }
   Index coordinates() const { return coordinates_; }
-  int candidates() const { return static_cast<int>(first_.size()); }
+  Index candidates() const { return std::ssize(first_); }
   Index base_size() const { return base_size_; }
   VectorXd base(const VectorXd& coded) const;
   /// First column of a candidate's block and its length; 0: the bank has no run with it.
-  Index first(int candidate) const { return first_[static_cast<std::size_t>(candidate)]; }
-  Index count(int candidate) const { return count_[static_cast<std::size_t>(candidate)]; }
-  VectorXd block(int candidate, const VectorXd& coded, double share) const;
-  VectorXd all(const VectorXd& coded, const std::vector<Effect>& effects) const;
+  Index first(Index candidate) const { return first_[candidate]; }
+  Index count(Index candidate) const { return count_[candidate]; }
+  VectorXd block(Index candidate, const VectorXd& coded, double strength) const;
+  VectorXd all(const VectorXd& coded, const std::vector<ActiveCandidate>& active) const;
   /// Of all columns those of the base and of some candidates, one after the other.
-  std::vector<Index> columns(const std::vector<int>& candidates) const;
+  std::vector<Index> columns(const std::vector<Index>& candidates) const;
 
  private:
-  void add_candidate(const BankData& data, int candidate);
+  void add_candidate(const BankData& data, Index candidate);
 
   Index size_ = 0, base_size_ = 0, coordinates_ = 0;
   std::vector<std::pair<Index, Index>> products_;  ///< of coordinates, squares among them
   std::vector<Index> first_, count_;
-  std::vector<bool> square_;                  ///< of candidates: enough different shares
-  std::vector<std::vector<Index>> multiply_;  ///< of candidates: coordinates that multiply the share, as far as there are runs enough
+  std::vector<bool> square_;                  ///< of candidates: enough different strengths
+  std::vector<std::vector<Index>> multiply_;  ///< of candidates: coordinates that multiply the strength, as far as there are runs enough
 };
 
 class Surrogate {
@@ -45,15 +45,15 @@ class Surrogate {
   /// On all rows, with all features that they support.
   explicit Surrogate(const BankData& data);
 
-  VectorXd at(const VectorXd& coded, const std::vector<Effect>& effects = {}) const;
+  VectorXd at(const VectorXd& coded, const std::vector<ActiveCandidate>& active = {}) const;
   /// Covariance of the coefficients' errors over S: runs that scatter more tell less. Features × features.
   const MatrixXd& coefficient_error() const { return coefficient_error_; }
   /// By how much larger than S the covariance of runs with a candidate is, at least 1.
-  double scatter_with(int candidate) const { return scatter_with_[static_cast<std::size_t>(candidate)]; }
+  double scatter_with(Index candidate) const { return scatter_with_[candidate]; }
   /// Variance of the prediction over that of one run's residual without a candidate.
-  double leverage(const VectorXd& coded, const std::vector<Effect>& effects = {}) const;
-  /// The same of the difference that effects make.
-  double leverage_of(const VectorXd& coded, const std::vector<Effect>& effects) const;
+  double leverage(const VectorXd& coded, const std::vector<ActiveCandidate>& active = {}) const;
+  /// The same of the difference that candidates make.
+  double leverage_of(const VectorXd& coded, const std::vector<ActiveCandidate>& active) const;
   const MatrixXd& coefficients() const { return coefficients_; }  ///< features × observables
   const Features& features() const { return features_; }
   Index degrees() const { return degrees_; }  ///< points − coefficients
@@ -64,7 +64,7 @@ class Surrogate {
   MatrixXd residual_covariance(const MatrixXd& recording) const;
   /// ρ, the part of S that is chance, of which a recording has its own instead: by what runs of equal parameters and other seeds differ
   /// (pure error; Montgomery 2013, ch. 10). The low end of its 90 % interval, over all observables or in the span of what coordinates
-  /// and candidates do, whichever is lower: what a surface cannot follow there would pass for an effect. 0: no run is repeated.
+  /// and candidates do, whichever is lower: what a surface cannot follow there would pass for a candidate. 0: no run is repeated.
   double chance(const MatrixXd& recording) const;
   /// Covariance of the surrogate's error, (1 − ρ + h̄) S with the mean leverage h̄ of the runs without a candidate.
   MatrixXd error_covariance(const MatrixXd& recording) const;
@@ -86,4 +86,4 @@ class Surrogate {
 /// squared left-out residuals over their spread.
 void choose_scales(BankData& data);
 
-}  // namespace millscope::diagnose
+}  // namespace millscope::naming

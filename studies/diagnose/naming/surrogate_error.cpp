@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "studies/calibrate/observation.hpp"
 #include "studies/diagnose/naming/fit.hpp"
+#include "studies/diagnose/naming/shrinkage.hpp"
 #include "studies/diagnose/naming/surrogate.hpp"
 #include "studies/inspect/estimate.hpp"
 
-namespace millscope::diagnose {
+namespace millscope::naming {
 
 bool repeats(const BankRow& a, const BankRow& b) {
-  return a.theta == b.theta &&
-         std::equal(a.effects.begin(), a.effects.end(), b.effects.begin(), b.effects.end(),
-                    [](const Effect& e, const Effect& f) { return e.candidate == f.candidate && e.share == f.share; });
+  return a.theta == b.theta && std::equal(a.active.begin(), a.active.end(), b.active.begin(), b.active.end(),
+                                          [](const ActiveCandidate& e, const ActiveCandidate& f) {
+                                            return e.candidate == f.candidate && e.strength == f.strength;
+                                          });
 }
 
 std::vector<std::vector<Index>> points_of(const BankData& data, const std::vector<bool>& used) {
@@ -26,7 +27,7 @@ std::vector<std::vector<Index>> points_of(const BankData& data, const std::vecto
     if (same == first.end())
       first.push_back(r), points.push_back({k});
     else
-      points[static_cast<std::size_t>(same - first.begin())].push_back(k);
+      points[same - first.begin()].push_back(k);
     ++k;
   }
   return points;
@@ -35,14 +36,13 @@ std::vector<std::vector<Index>> points_of(const BankData& data, const std::vecto
 /// Of k runs at one point: √k times their mean residual, whose variance is that of one run where nothing is left unfollowed, and more than
 /// that where something is; and what they differ by. `more`: how much more each row scatters than rows without a candidate.
 void Surrogate::keep_scatter(const std::vector<std::vector<Index>>& points, const MatrixXd& y, const VectorXd& more) {
-  scatter_ = MatrixXd::Zero(static_cast<Index>(points.size()), y.cols());
+  scatter_ = MatrixXd::Zero(std::ssize(points), y.cols());
   degrees_repeated_ = y.rows() - scatter_.rows();
   repeated_ = MatrixXd::Zero(y.rows(), y.cols());
   for (std::size_t p = 0; p < points.size(); ++p) {
     const auto runs = static_cast<double>(points[p].size());
     Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(y.cols());
-    for (const Index r : points[p])
-      mean += y.row(r) / runs, scatter_.row(static_cast<Index>(p)) += residual_.row(r) / std::sqrt(runs * more[r]);
+    for (const Index r : points[p]) mean += y.row(r) / runs, scatter_.row(p) += residual_.row(r) / std::sqrt(runs * more[r]);
     for (const Index r : points[p]) repeated_.row(r) = (y.row(r) - mean) / std::sqrt(more[r]);
   }
 }
@@ -55,7 +55,7 @@ MatrixXd Surrogate::residual_covariance(const MatrixXd& recording) const {
   // Rows scaled so that their mean square is the unbiased variance of one run.
   const MatrixXd scaled = scatter_ * std::sqrt(static_cast<double>(scatter_.rows()) / degrees);
   const MatrixXd apart = l.triangularView<Eigen::Lower>().solve(scaled.transpose()).transpose();
-  MatrixXd out = l * calibrate::shrunk_covariance(apart, degrees) * l.transpose();
+  MatrixXd out = l * shrunk_covariance(apart, degrees) * l.transpose();
   for (Index i = 0; i < out.rows(); ++i) {  // what has no scatter gets none of its neighbours'
     if (scatter_.col(i).isZero(0)) out.row(i).setZero(), out.col(i).setZero();
   }
@@ -76,8 +76,8 @@ double Surrogate::chance(const MatrixXd& recording) const {
     return p / trace / (1 + studies::kNormal90 * std::sqrt(2 / degrees));
   };
   const Index n = s.rows();
-  Eigen::ColPivHouseholderQR<MatrixXd> effects(w * first_order().transpose());
-  const MatrixXd span = effects.householderQ() * MatrixXd::Identity(n, effects.rank());
+  Eigen::ColPivHouseholderQR<MatrixXd> directions(w * first_order().transpose());
+  const MatrixXd span = directions.householderQ() * MatrixXd::Identity(n, directions.rank());
   return std::min({1.0, low_end(MatrixXd::Identity(n, n)), low_end(span)});
 }
 
@@ -85,11 +85,11 @@ double Surrogate::chance(const MatrixXd& recording) const {
 MatrixXd Surrogate::first_order() const {
   std::vector<Index> rows;
   for (Index i = 0; i < features_.coordinates(); ++i) rows.push_back(1 + i);
-  for (int j = 0; j < features_.candidates(); ++j) {
+  for (Index j = 0; j < features_.candidates(); ++j) {
     if (features_.count(j) > 0) rows.push_back(features_.first(j));
   }
-  MatrixXd out(static_cast<Index>(rows.size()), coefficients_.cols());
-  for (std::size_t k = 0; k < rows.size(); ++k) out.row(static_cast<Index>(k)) = coefficients_.row(rows[k]);
+  MatrixXd out(rows.size(), coefficients_.cols());
+  for (std::size_t k = 0; k < rows.size(); ++k) out.row(k) = coefficients_.row(rows[k]);
   return out;
 }
 
@@ -97,4 +97,4 @@ MatrixXd Surrogate::error_covariance(const MatrixXd& recording) const {
   return (1 - chance(recording) + mean_leverage_) * residual_covariance(recording);
 }
 
-}  // namespace millscope::diagnose
+}  // namespace millscope::naming

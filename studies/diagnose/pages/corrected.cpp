@@ -78,18 +78,20 @@ std::string study_text(const Told& t, const VectorXd& theta, const fs::path& fol
 }  // namespace
 
 void write_corrected(const Told& t, const fs::path& folder) {
-  const Naming& n = t.diagnosis.naming;
-  if (n.best < 0 || t.diagnosis.verdict == Verdict::outside_library) return;
+  const naming::Result& n = t.diagnosis.naming;
+  if (!n.best || t.diagnosis.verdict == Verdict::outside_library) return;
   const bool two = t.diagnosis.two_effects;
-  const FitResult& fit = two ? n.pairs.front().fit : n.judged[static_cast<std::size_t>(n.best)].fit;
-  std::vector<Effect> effects;
-  for (const int r : two ? std::vector<int>{n.best, n.pairs.front().second} : std::vector<int>{n.best}) {
-    const int candidate = t.diagnosis.problem.rivals[static_cast<std::size_t>(r)].candidate;
-    if (candidate >= 0) effects.push_back({candidate, fit.shares.at(effects.size())});
+  const naming::FitResult& fit = two ? n.pairs.front().fit : n.judged[*n.best].fit;
+  std::vector<naming::ActiveCandidate> active;
+  std::vector<Index> found{*n.best};
+  if (two) found.push_back(n.pairs.front().second);
+  for (const Index alternative : found) {
+    const std::optional<Index> candidate = t.diagnosis.problem.alternatives[alternative].candidate;
+    if (candidate) active.push_back({*candidate, fit.strengths.at(active.size())});
   }
   const VectorXd theta = t.diagnosis.problem.data.natural(fit.coded);
   std::vector<std::string> settings = base_speeds(t.question.study.base);
-  for (const std::string& s : t.question.settings(theta, effects)) settings.push_back(s);
+  for (const std::string& s : t.question.settings(theta, active)) settings.push_back(s);
   const bool of_camera = std::any_of(t.question.nuisances.begin(), t.question.nuisances.end(),
                                      [&](const Nuisance& nuisance) { return nuisance.of_camera() && is_named(t, nuisance); });
   fs::create_directories(folder);

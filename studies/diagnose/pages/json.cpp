@@ -1,4 +1,5 @@
 // diagnosis.json.
+#include <algorithm>
 #include <cmath>
 
 #include "studies/diagnose/pages/outputs.hpp"
@@ -8,37 +9,34 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json interval(const Interval& i) { return {{"value", i.value}, {"low90", i.low90}, {"high90", i.high90}}; }
+Json interval(const naming::Interval& i) { return {{"value", i.value}, {"low90", i.low90}, {"high90", i.high90}}; }
 
-Json parameters(const Told& t, const std::vector<Interval>& theta) {
+Json parameters(const Told& t, const std::vector<naming::Interval>& theta) {
   Json out = Json::object();
   for (std::size_t i = 0; i < theta.size(); ++i) out[t.diagnosis.problem.data.theta[i].name] = interval(theta[i]);
   return out;
 }
 
 /// The fitted value of the candidate's own parameter.
-Json strength(const Told& t, std::size_t j) {
-  const Rival& rival = t.diagnosis.problem.rivals[j];
-  const Judged& judged = t.diagnosis.naming.judged[j];
-  if (rival.freed >= 0) {
-    const Coordinate& c = t.diagnosis.problem.data.theta[static_cast<std::size_t>(rival.freed)];
-    return {{c.name, interval(judged.theta[static_cast<std::size_t>(rival.freed)])}};
+Json own_parameter(const Told& t, Index j) {
+  const naming::Alternative& alternative = t.diagnosis.problem.alternatives[j];
+  const naming::Judged& judged = t.diagnosis.naming.judged[j];
+  if (alternative.freed) {
+    const naming::Coordinate& c = t.diagnosis.problem.data.theta[*alternative.freed];
+    return {{c.name, interval(judged.theta[*alternative.freed])}};
   }
-  const Candidate& c = t.question.candidates[static_cast<std::size_t>(rival.candidate)];
-  if (c.on_or_off()) return {{"share", interval(without_interval(judged.share.value))}};  // there is nothing between
-  Json out = interval(strength_of(c, judged.share));
+  const Candidate& c = t.question.candidates[*alternative.candidate];
+  if (c.on_or_off()) return {{"share", interval(naming::without_interval(judged.strength.value))}};  // there is nothing between
+  Json out = interval(parameter_at(c, judged.strength));
   out["unit"] = c.unit;
   out["vanishes_at"] = c.null_value;
   return {{c.parameter, out}};
 }
 
-std::string class_of(const Diagnosis& d, std::size_t j) {
-  const int rival = static_cast<int>(j);
-  if (rival == d.naming.best) return "best";
-  for (const int k : d.naming.kept) {
-    if (k == rival) return "not rejected";
-  }
-  return d.naming.judged[j].undetectable ? "undetectable" : d.naming.best >= 0 ? "rejected" : "not needed";
+std::string class_of(const Diagnosis& d, Index j) {
+  if (d.naming.best == j) return "best";
+  if (std::find(d.naming.kept.begin(), d.naming.kept.end(), j) != d.naming.kept.end()) return "not rejected";
+  return d.naming.judged[j].undetectable ? "undetectable" : d.naming.best ? "rejected" : "not needed";
 }
 
 /// Part of the mill that an observable of a fitted condition looks at: names of regional ones are "speed toe".
@@ -48,26 +46,27 @@ std::string region_of(const Told& t, std::size_t condition, Index observable) {
     if (c == condition) break;
     first += t.workshop.recorded[c].value.size();
   }
-  const calibrate::Observable& o = t.workshop.recorded[condition].observables[static_cast<std::size_t>(observable - first)];
+  const calibrate::Observable& o = t.workshop.recorded[condition].observables[observable - first];
   const bool regional = o.group == "occupancy" || o.group == "region_speed";
   return regional ? o.name.substr(o.name.find(' ') + 1) : "whole mill";
 }
 
-/// λ of a candidate against its share; nothing for a nuisance.
-Json lambda_curve(const Told& t, std::size_t rival) {
+/// λ of a candidate against its strength; nothing for a nuisance.
+Json lambda_curve(const Told& t, Index alternative) {
   Json out = Json::array();
-  for (const auto& [share, lambda] : t.diagnosis.naming.judged[rival].lambda_curve) out.push_back({{"share", share}, {"lambda", lambda}});
+  for (const auto& [strength, lambda] : t.diagnosis.naming.judged[alternative].lambda_curve)
+    out.push_back({{"share", strength}, {"lambda", lambda}});
   return out;
 }
 
 Json hypotheses(const Told& t) {
   Json out = Json::array();
   const Diagnosis& d = t.diagnosis;
-  for (std::size_t j = 0; j < d.naming.judged.size(); ++j) {
-    const Judged& g = d.naming.judged[j];
-    const bool compared = d.naming.best >= 0 && static_cast<int>(j) != d.naming.best;
-    out.push_back({{"name", d.problem.rivals[j].name},
-                   {"kind", d.problem.rivals[j].freed >= 0 ? "nuisance" : "physics"},
+  for (Index j = 0; j < std::ssize(d.naming.judged); ++j) {
+    const naming::Judged& g = d.naming.judged[j];
+    const bool compared = d.naming.best && d.naming.best != j;
+    out.push_back({{"name", d.problem.alternatives[j].name},
+                   {"kind", d.problem.alternatives[j].freed ? "nuisance" : "physics"},
                    {"class", class_of(d, j)},
                    {"p_value", g.p_family},
                    {"p_value_alone", g.p},
@@ -80,7 +79,7 @@ Json hypotheses(const Told& t) {
                    {"tested", g.tested},
                    {"p_against_best", compared ? Json(g.against_best_p) : Json()},
                    {"p_goodness", g.goodness_p},
-                   {"parameters", strength(t, j)},
+                   {"parameters", own_parameter(t, j)},
                    {"contact_parameters", parameters(t, g.theta)}});
   }
   return out;
@@ -93,17 +92,15 @@ Json held_out(const Told& t) {
     for (const Score& s : h.scores) {
       Json one = {{"model", s.prediction.name}, {"is", s.prediction.sentence},   {"simulated", s.prediction.simulated},
                   {"misfit", s.misfit},         {"power_W", s.prediction.power}, {"power_percent", s.power_percent}};
-      if (t.diagnosis.naming.best >= 0 && s.prediction.name != "corrected")
+      if (t.diagnosis.naming.best && s.prediction.name != "corrected")
         one["improvement_of_corrected"] = {{"value", s.improvement}, {"low90", s.low90}, {"high90", s.high90}};
       scores.push_back(std::move(one));
     }
     Json names = Json::array();
     const calibrate::Observation& recorded = t.workshop.recorded[h.condition];
     for (std::size_t i = 0; i < recorded.observables.size(); ++i) {
-      Json row = {{"observable", recorded.observables[i].name},
-                  {"unit", recorded.observables[i].unit},
-                  {"recorded", recorded.value[static_cast<Index>(i)]}};
-      for (const Score& s : h.scores) row[s.prediction.name] = s.prediction.value[static_cast<Index>(i)];
+      Json row = {{"observable", recorded.observables[i].name}, {"unit", recorded.observables[i].unit}, {"recorded", recorded.value[i]}};
+      for (const Score& s : h.scores) row[s.prediction.name] = s.prediction.value[i];
       names.push_back(std::move(row));
     }
     out.push_back({{"condition", t.question.study.conditions[h.condition].name},
@@ -162,8 +159,8 @@ Json offered(const TermOffer& offer) {
 Json diagnosis_json(const Told& t) {
   const Diagnosis& d = t.diagnosis;
   Json mismatch = Json::array();
-  for (const Mismatch& m : d.naming.mismatch) {
-    const auto c = static_cast<std::size_t>(d.problem.data.condition[static_cast<std::size_t>(m.observable)]);
+  for (const naming::Mismatch& m : d.naming.mismatch) {
+    const Index c = d.problem.data.condition[m.observable];
     mismatch.push_back({{"observable", observable_name(t, m.observable)},
                         {"region", region_of(t, c, m.observable)},
                         {"number", m.observable + 1},
@@ -173,11 +170,11 @@ Json diagnosis_json(const Told& t) {
                         {"sentence", mismatch_sentence(t, m)}});
   }
   Json contact = {{"retuned", parameters(t, d.naming.base_theta)}};
-  if (d.naming.best >= 0) contact["unmasked"] = parameters(t, d.naming.judged[static_cast<std::size_t>(d.naming.best)].theta);
+  if (d.naming.best) contact["unmasked"] = parameters(t, d.naming.judged[*d.naming.best].theta);
   Json pairs = Json::array();
-  for (const Pair& p : d.naming.pairs) {
-    pairs.push_back({{"first", d.problem.rivals[static_cast<std::size_t>(p.first)].name},
-                     {"second", d.problem.rivals[static_cast<std::size_t>(p.second)].name},
+  for (const naming::Pair& p : d.naming.pairs) {
+    pairs.push_back({{"first", d.problem.alternatives[p.first].name},
+                     {"second", d.problem.alternatives[p.second].name},
                      {"p_second", p.p},
                      {"p_first", p.p_first},
                      {"p_goodness", p.goodness_p}});

@@ -26,12 +26,12 @@ std::vector<std::filesystem::path> draw(const Told& told, const std::filesystem:
 /// corrected/case.yaml and corrected/study.yaml: the base with the best candidate's physics and parameters; nothing where none was found.
 void write_corrected(const Told& told, const std::filesystem::path& folder);
 
-/// The candidate's own parameter over the interval of its share, low end first.
-Interval strength_of(const Candidate& candidate, const Interval& share);
+/// The candidate's own parameter over the interval of its strength, low end first.
+naming::Interval parameter_at(const Candidate& candidate, const naming::Interval& strength);
 /// An observable's name with its condition: "speed75: speed in region 3 (m/s)".
 std::string observable_name(const Told& told, Index observable);
 /// "recording 0.30, retuned base 0.27 (z = 3.1 …)" of one row of the mismatch.
-std::string mismatch_sentence(const Told& told, const Mismatch& m);
+std::string mismatch_sentence(const Told& told, const naming::Mismatch& m);
 
 /// All of the above into `folder`.
 void write_outputs(const Told& told, const std::filesystem::path& folder);

@@ -26,7 +26,7 @@ struct Drawer {
 /// Standardised differences of every observable, the retuned base and the best candidate.
 void mismatch(const Told& t, Drawer& drawer) {
   const Diagnosis& d = t.diagnosis;
-  const Surrogate s(d.problem.data);
+  const naming::Surrogate s(d.problem.data);
   const auto curve = [&](const char* label, const VectorXd& model) {
     Curve c{label, {}, {}, {}, {}};
     for (Index i = 0; i < model.size(); ++i) {
@@ -40,10 +40,10 @@ void mismatch(const Told& t, Drawer& drawer) {
   p.zero_line = true, p.points = true;
   p.note = "'number' of a mismatch in diagnosis.json; beyond 3 is rare by chance";
   p.curves.push_back(curve("retuned base", s.at(d.naming.base.coded)));
-  if (d.naming.best >= 0) {
-    const Judged& best = d.naming.judged[static_cast<std::size_t>(d.naming.best)];
-    const Rival& rival = d.problem.rivals[static_cast<std::size_t>(d.naming.best)];
-    p.curves.push_back(curve(("with " + rival.name).c_str(), s.at(best.fit.coded, effects_of(rival, best.fit))));
+  if (d.naming.best) {
+    const naming::Judged& best = d.naming.judged[*d.naming.best];
+    const naming::Alternative& alternative = d.problem.alternatives[*d.naming.best];
+    p.curves.push_back(curve(("with " + alternative.name).c_str(), s.at(best.fit.coded, naming::active_of(alternative, best.fit))));
   }
   drawer.curves(p, "mismatch");
 }
@@ -55,8 +55,8 @@ void drift(const Told& t, Drawer& drawer) {
     p.title = t.question.study.parameters[i].name + " fitted to each condition alone";
     p.x_label = "speed of the mill", p.x_unit = "rad/s", p.value_label = t.question.study.parameters[i].name;
     p.points = true;
-    Curve before{"base", {}, {}, {}, {}}, after{"with the named effect", {}, {}, {}, {}};
-    const auto add = [](Curve& c, double x, const Interval& v) {
+    Curve before{"base", {}, {}, {}, {}}, after{"with what is named", {}, {}, {}, {}};
+    const auto add = [](Curve& c, double x, const naming::Interval& v) {
       c.x.push_back(x), c.value.push_back(v.value), c.low.push_back(v.low90), c.high.push_back(v.high90);
     };
     for (const Alone& a : t.diagnosis.alone) {
@@ -84,7 +84,7 @@ void held_out(const Told& t, Drawer& drawer) {
       for (Index i = 0; i < recorded.value.size(); ++i) {
         if (!std::isfinite(s.prediction.value[i])) continue;
         c.x.push_back(static_cast<double>(i + 1));
-        const bool power = recorded.observables[static_cast<std::size_t>(i)].group == "power";
+        const bool power = recorded.observables[i].group == "power";
         const double meter = power ? t.question.study.power_error * recorded.value[i] : 0;
         c.value.push_back((recorded.value[i] - s.prediction.value[i]) /
                           std::sqrt(recorded.covariance(i, i) + s.prediction.covariance(i, i) + meter * meter));

@@ -20,21 +20,21 @@ void add(std::string& out, fmt::format_string<Values...> text, Values&&... value
   fmt::format_to(std::back_inserter(out), text, std::forward<Values>(values)...);
 }
 
-std::string text(const Interval& i) {
+std::string text(const naming::Interval& i) {
   return i.known() ? fmt::format("{:.3g} ({:.3g} … {:.3g})", i.value, i.low90, i.high90) : fmt::format("{:.3g}", i.value);
 }
 
-std::string strength(const Told& t, std::size_t j) {
-  const Rival& rival = t.diagnosis.problem.rivals[j];
-  const Judged& judged = t.diagnosis.naming.judged[j];
-  if (rival.freed >= 0) return fmt::format("{} = {}", rival.name, text(judged.theta[static_cast<std::size_t>(rival.freed)]));
-  const Candidate& c = t.question.candidates[static_cast<std::size_t>(rival.candidate)];
-  if (c.on_or_off()) return fmt::format("share {:.3g}", judged.share.value);
-  return fmt::format("{} = {}{}", c.parameter, text(strength_of(c, judged.share)), c.unit.empty() || c.unit == "1" ? "" : " " + c.unit);
+std::string fitted(const Told& t, Index j) {
+  const naming::Alternative& alternative = t.diagnosis.problem.alternatives[j];
+  const naming::Judged& judged = t.diagnosis.naming.judged[j];
+  if (alternative.freed) return fmt::format("{} = {}", alternative.name, text(judged.theta[*alternative.freed]));
+  const Candidate& c = t.question.candidates[*alternative.candidate];
+  if (c.on_or_off()) return fmt::format("strength {:.3g}", judged.strength.value);
+  return fmt::format("{} = {}{}", c.parameter, text(parameter_at(c, judged.strength)), c.unit.empty() || c.unit == "1" ? "" : " " + c.unit);
 }
 
 void where_it_differs(const Told& t, std::string& out) {
-  const Naming& n = t.diagnosis.naming;
+  const naming::Result& n = t.diagnosis.naming;
   add(out,
       "## Where the retuned base differs\n\nThe base with its parameters refitted to everything: Q = {:.1f} over {} observables, p = "
       "{:.2g} that a recording of this very model looks as bad.\n\n",
@@ -50,43 +50,43 @@ void what_was_tried(const Told& t, std::string& out) {
   out +=
       "## What was tried\n\n| candidate | fitted | ΔQ | p, family-wise | visible at full strength (noise units) | concealed by the "
       "parameters | p against the best |\n|---|---|---|---|---|---|---|\n";
-  for (std::size_t j = 0; j < d.naming.judged.size(); ++j) {
-    const Judged& g = d.naming.judged[j];
-    const bool best = static_cast<int>(j) == d.naming.best;
-    if (g.runs == 0 && d.problem.rivals[j].candidate >= 0) continue;
+  for (Index j = 0; j < std::ssize(d.naming.judged); ++j) {
+    const naming::Judged& g = d.naming.judged[j];
+    const bool best = d.naming.best == j;
+    if (g.runs == 0 && d.problem.alternatives[j].candidate) continue;
     if (!g.tested) {
-      add(out, "| {} | not tested | | | cannot be seen | | |\n", d.problem.rivals[j].name);
+      add(out, "| {} | not tested | | | cannot be seen | | |\n", d.problem.alternatives[j].name);
       continue;
     }
-    const std::string against = best ? "the best" : d.naming.best < 0 ? "" : fmt::format("{:.2g}", g.against_best_p);
-    add(out, "| {}{}{} | {} | {:.1f} | {:.2g} | {:.1f}{} | {:.0f} % | {} |\n", best ? "**" : "", d.problem.rivals[j].name, best ? "**" : "",
-        strength(t, j), g.delta_q, g.p_family, std::sqrt(g.lambda), g.undetectable ? ", cannot be seen" : "", 100 * (1 - g.kappa), against);
+    const std::string against = best ? "the best" : !d.naming.best ? "" : fmt::format("{:.2g}", g.against_best_p);
+    add(out, "| {}{}{} | {} | {:.1f} | {:.2g} | {:.1f}{} | {:.0f} % | {} |\n", best ? "**" : "", d.problem.alternatives[j].name,
+        best ? "**" : "", fitted(t, j), g.delta_q, g.p_family, std::sqrt(g.lambda), g.undetectable ? ", cannot be seen" : "",
+        100 * (1 - g.kappa), against);
   }
   out += "\n";
   for (const Candidate& c : t.question.candidates)
     add(out, "- **{}**: {}{}{}\n", c.name, c.sentence, c.equation.empty() ? "" : " `" + c.equation + "`",
         c.citation.empty() ? "" : " " + c.citation);
-  for (const Pair& p : d.naming.pairs)
-    add(out, "- Two effects: {} beside {} has p = {:.2g}, the other way round {:.2g}.\n",
-        d.problem.rivals[static_cast<std::size_t>(p.second)].name, d.problem.rivals[static_cast<std::size_t>(p.first)].name, p.p,
-        p.p_first);
+  for (const naming::Pair& p : d.naming.pairs)
+    add(out, "- Two together: {} beside {} has p = {:.2g}, the other way round {:.2g}.\n", d.problem.alternatives[p.second].name,
+        d.problem.alternatives[p.first].name, p.p, p.p_first);
   out += "\n";
 }
 
 void parameters(const Told& t, std::string& out) {
   const Diagnosis& d = t.diagnosis;
   out += "## Parameters\n\n| | retuned base |";
-  if (d.naming.best >= 0) add(out, " with {} |", d.problem.rivals[static_cast<std::size_t>(d.naming.best)].name);
-  out += d.naming.best >= 0 ? "\n|---|---|---|\n" : "\n|---|---|\n";
+  if (d.naming.best) add(out, " with {} |", d.problem.alternatives[*d.naming.best].name);
+  out += d.naming.best ? "\n|---|---|---|\n" : "\n|---|---|\n";
   for (std::size_t i = 0; i < d.problem.data.theta.size(); ++i) {
     add(out, "| {} | {} |", d.problem.data.theta[i].name, text(d.naming.base_theta[i]));
-    if (d.naming.best >= 0) add(out, " {} |", text(d.naming.judged[static_cast<std::size_t>(d.naming.best)].theta[i]));
+    if (d.naming.best) add(out, " {} |", text(d.naming.judged[*d.naming.best].theta[i]));
     out += "\n";
   }
   out +=
       "\nFitted to each condition alone (intervals from the curvature at the optimum, too narrow where two parameters trade places):\n\n| "
       "condition | parameter | base | "
-      "with the named effect |\n|---|---|---|---|\n";
+      "with what is named |\n|---|---|---|---|\n";
   for (const Alone& a : d.alone) {
     for (std::size_t i = 0; i < t.question.study.parameters.size(); ++i)
       add(out, "| {} | {} | {} | {} |\n", t.question.study.conditions[a.condition].name, d.problem.data.theta[i].name, text(a.before[i]),
@@ -105,7 +105,7 @@ void held_out(const Told& t, std::string& out) {
         "| model | misfit | power | improvement of the corrected model (90 %) |\n|---|---|---|---|\n",
         t.question.study.conditions[h.condition].name, recorded.known() ? fmt::format("{:.4g} W", recorded.value) : "unknown");
     for (const Score& s : h.scores) {
-      const bool compared = t.diagnosis.naming.best >= 0 && s.prediction.name != "corrected";
+      const bool compared = t.diagnosis.naming.best && s.prediction.name != "corrected";
       add(out, "| {}: {} | {:.2f} | {:.4g} W{} | {} |\n", s.prediction.name, s.prediction.sentence, s.misfit, s.prediction.power,
           recorded.known() ? fmt::format(" ({:+.1f} %)", s.power_percent) : "",
           compared ? fmt::format("{:.2f} ({:.2f} … {:.2f})", s.improvement, s.low90, s.high90) : "");
@@ -129,9 +129,9 @@ void missing(const Told& t, std::string& out) {
 
 }  // namespace
 
-Interval strength_of(const Candidate& c, const Interval& share) {
-  const auto [low, high] = std::minmax({c.value(share.low90), c.value(share.high90)});
-  return {c.value(share.value), low, high};
+naming::Interval parameter_at(const Candidate& c, const naming::Interval& strength) {
+  const auto [low, high] = std::minmax({c.value(strength.low90), c.value(strength.high90)});
+  return {c.value(strength.value), low, high};
 }
 
 std::string observable_name(const Told& t, Index observable) {
@@ -139,13 +139,13 @@ std::string observable_name(const Told& t, Index observable) {
   for (const std::size_t c : t.diagnosis.fit) {
     const calibrate::Observation& o = t.workshop.recorded[c];
     if (observable < at + o.value.size())
-      return fmt::format("{}: {}", t.question.study.conditions[c].name, o.observables[static_cast<std::size_t>(observable - at)].name);
+      return fmt::format("{}: {}", t.question.study.conditions[c].name, o.observables[observable - at].name);
     at += o.value.size();
   }
   return "";
 }
 
-std::string mismatch_sentence(const Told& t, const Mismatch& m) {
+std::string mismatch_sentence(const Told& t, const naming::Mismatch& m) {
   Index at = 0;
   for (const std::size_t c : t.diagnosis.fit) {
     const calibrate::Observation& o = t.workshop.recorded[c];
@@ -155,8 +155,8 @@ std::string mismatch_sentence(const Told& t, const Mismatch& m) {
     }
     return fmt::format(
         "{}: recording {:.4g}, retuned base {:.4g} {}: {:.1f} standard deviations {} (p = {:.2g} for all observables together).",
-        observable_name(t, m.observable), o.value[m.observable - at], m.base,
-        o.observables[static_cast<std::size_t>(m.observable - at)].unit, std::fabs(m.z), m.z > 0 ? "above" : "below", m.p);
+        observable_name(t, m.observable), o.value[m.observable - at], m.base, o.observables[m.observable - at].unit, std::fabs(m.z),
+        m.z > 0 ? "above" : "below", m.p);
   }
   return "";
 }

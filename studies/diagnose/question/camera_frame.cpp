@@ -43,18 +43,18 @@ void check_camera_frame(const Nuisance& n, const host::Registry& registry) {
   }
 }
 
-void check_recorded_frames(const Question& q, const calibrate::Observer& observer) {
-  for (const Nuisance& n : q.nuisances) {
+void check_recorded_frames(const Question& question, const calibrate::Observer& observer) {
+  for (const Nuisance& n : question.nuisances) {
     if (!n.of_camera()) continue;
-    for (std::size_t c = 0; c < q.study.conditions.size(); ++c) {
-      const calibrate::Condition& condition = q.study.conditions[c];
+    for (std::size_t c = 0; c < question.study.conditions.size(); ++c) {
+      const calibrate::Condition& condition = question.study.conditions[c];
       if (!observer.recorded(c).of_tracks())
         throw base::UserError(n.where, fmt::format("nuisance '{}': no camera saw {}, it is a velocity profile; leave the nuisance out",
                                                    n.name, condition.recording.string()));
       if (observer.turns_other_way(c))
         throw base::UserError(n.where, fmt::format("nuisance '{}' would change its sign in condition '{}': {} turns the other way than the "
                                                    "recording; give its mill.direction as recorded",
-                                                   n.name, condition.name, q.study.base.string()));
+                                                   n.name, condition.name, question.study.base.string()));
       if (camera_frame_parameter(n).starts_with("offset_") && !studies::read_description(condition.recording).frame)
         throw base::UserError(n.where,
                               fmt::format("nuisance '{}': {} states no axis that could be doubted, it is found from the points; give "

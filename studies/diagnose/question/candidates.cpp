@@ -19,23 +19,23 @@ std::vector<std::string> words(const std::string& text) {
   return out;
 }
 
-bool uses(const config::Case& base, const Descriptor& d) {
+bool uses(const config::Case& base, const Descriptor& descriptor) {
   const auto among = [&](const std::vector<config::PluginInstance>& list) {
-    return std::any_of(list.begin(), list.end(), [&](const auto& i) { return i.kind == d.name; });
+    return std::any_of(list.begin(), list.end(), [&](const auto& i) { return i.kind == descriptor.name; });
   };
-  return base.contact.law.kind == d.name || among(base.contact.interactions) || among(base.contact.pair_parameters) ||
+  return base.contact.law.kind == descriptor.name || among(base.contact.interactions) || among(base.contact.pair_parameters) ||
          among(base.body_forces);
 }
 
 /// Where an instance of the plugin stands in a case, and what switches it on; nothing for kinds that no case names.
-std::optional<std::string> place_of(const Descriptor& d) {
-  switch (static_cast<Kind>(d.kind)) {
+std::optional<std::string> place_of(const Descriptor& descriptor) {
+  switch (static_cast<Kind>(descriptor.kind)) {
     case Kind::interaction:
-      return fmt::format("contact.interactions.{}", d.name);
+      return fmt::format("contact.interactions.{}", descriptor.name);
     case Kind::pair_parameter:
-      return fmt::format("contact.pair_parameters.{}", d.name);
+      return fmt::format("contact.pair_parameters.{}", descriptor.name);
     case Kind::body_force:
-      return fmt::format("body_forces.{}", d.name);
+      return fmt::format("body_forces.{}", descriptor.name);
     case Kind::contact_law:
       return "contact.law";
     default:
@@ -43,17 +43,17 @@ std::optional<std::string> place_of(const Descriptor& d) {
   }
 }
 
-const Parameter* find(const Descriptor& d, const std::string& name) {
-  for (std::uint64_t i = 0; i < d.parameter_count; ++i) {
-    if (d.parameters[i].name == name) return &d.parameters[i];
+const Parameter* find(const Descriptor& descriptor, const std::string& name) {
+  for (std::uint64_t i = 0; i < descriptor.parameter_count; ++i) {
+    if (descriptor.parameters[i].name == name) return &descriptor.parameters[i];
   }
   return nullptr;
 }
 
 /// Pairs of the case that lack a value which the plugin requires beside the hypothesis' own; "" when none does.
-std::string missing(const config::Case& base, const Descriptor& d, const std::string& own) {
-  for (std::uint64_t i = 0; i < d.parameter_count; ++i) {
-    const Parameter& p = d.parameters[i];
+std::string missing(const config::Case& base, const Descriptor& descriptor, const std::string& own) {
+  for (std::uint64_t i = 0; i < descriptor.parameter_count; ++i) {
+    const Parameter& p = descriptor.parameters[i];
     const bool number =
         p.type == ValueType::number || p.type == ValueType::integer || p.type == ValueType::boolean || p.type == ValueType::vector;
     const bool required = p.optional == 0 && (number ? !(p.fallback == p.fallback) : p.fallback_text == nullptr);
@@ -66,31 +66,31 @@ std::string missing(const config::Case& base, const Descriptor& d, const std::st
   return "";
 }
 
-void add_plugin(const config::Case& base, const Descriptor& d, Library& library) {
-  const auto place = place_of(d);
-  for (std::uint64_t h = 0; h < d.hypothesis_count; ++h) {
-    const Hypothesis& of = d.hypotheses[h];
-    const Parameter* parameter = find(d, of.parameter);
+void add_plugin(const config::Case& base, const Descriptor& descriptor, Library& library) {
+  const auto place = place_of(descriptor);
+  for (std::uint64_t h = 0; h < descriptor.hypothesis_count; ++h) {
+    const Hypothesis& of = descriptor.hypotheses[h];
+    const Parameter* parameter = find(descriptor, of.parameter);
     if (!place) {
       library.left_out.push_back(
           fmt::format("{}: an effect of the camera; of these only nuisances camera.frame_error.* are tested", of.name));
-    } else if (uses(base, d)) {
-      library.left_out.push_back(fmt::format("{}: {} is in the base case already", of.name, d.name));
+    } else if (uses(base, descriptor)) {
+      library.left_out.push_back(fmt::format("{}: {} is in the base case already", of.name, descriptor.name));
     } else if (parameter == nullptr) {
       library.left_out.push_back(
-          fmt::format("{}: {} has no parameter '{}'; its author has to correct that", of.name, d.name, of.parameter));
+          fmt::format("{}: {} has no parameter '{}'; its author has to correct that", of.name, descriptor.name, of.parameter));
     } else {
       Candidate c{of.name, of.sentence, of.equation,   of.citation,   of.parameter, parameter->unit,
                   {},      {},          of.null_value, of.prior_high, {},           words(of.excludes)};
       const bool downwards = std::abs(of.prior_low - of.null_value) > std::abs(of.prior_high - of.null_value);
       if (downwards) c.far = of.prior_low;
       if (of.two_sided != 0) c.range.low = ((downwards ? of.prior_high : of.prior_low) - of.null_value) / (c.far - of.null_value);
-      c.set.push_back(fmt::format("{}.kind={}", *place, d.name));
+      c.set.push_back(fmt::format("{}.kind={}", *place, descriptor.name));
       if (parameter->scope == Scope::instance) c.paths.push_back(fmt::format("{}.{}", *place, of.parameter));
       if (parameter->scope == Scope::pair) {
         for (const std::string& key : base.pairs.keys()) c.paths.push_back(fmt::format("pairs.{}.{}", key, of.parameter));
       }
-      const std::string lacks = missing(base, d, of.parameter);
+      const std::string lacks = missing(base, descriptor, of.parameter);
       if (!lacks.empty())
         library.left_out.push_back(
             fmt::format("{}: needs {}; give it in the base case or under hypotheses.{}.set", of.name, lacks, of.name));
@@ -108,19 +108,19 @@ double rounded(double value) {
   return out;
 }
 
-double rounded_share(const Candidate& c, double share) {
-  return c.on_or_off() ? share : (rounded(c.value(share)) - c.null_value) / (c.far - c.null_value);
+double rounded_strength(const Candidate& c, double strength) {
+  return c.on_or_off() ? strength : (rounded(c.value(strength)) - c.null_value) / (c.far - c.null_value);
 }
 
-std::vector<std::string> settings_of(const Candidate& candidate, double share) {
+std::vector<std::string> settings_of(const Candidate& candidate, double strength) {
   std::vector<std::string> settings = candidate.set;
-  for (const std::string& path : candidate.paths) settings.push_back(fmt::format("{}={:.4g}", path, candidate.value(share)));
+  for (const std::string& path : candidate.paths) settings.push_back(fmt::format("{}={:.4g}", path, candidate.value(strength)));
   return settings;
 }
 
 Library library_of(const config::Case& base, const host::Registry& registry) {
   Library library;
-  for (const Descriptor* d : registry.descriptors()) add_plugin(base, *d, library);
+  for (const Descriptor* descriptor : registry.descriptors()) add_plugin(base, *descriptor, library);
   add_targets(base, library);
   std::sort(library.candidates.begin(), library.candidates.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
   return library;

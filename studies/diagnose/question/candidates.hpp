@@ -11,6 +11,10 @@
 
 namespace millscope::diagnose {
 
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
 struct Candidate {
   std::string name;
   std::string sentence;  ///< what to say when it is found
@@ -18,18 +22,18 @@ struct Candidate {
   std::string parameter, unit;     ///< for tables: "rolling_friction", "1"
   std::vector<std::string> set;    ///< "path=value" that switch it on
   std::vector<std::string> paths;  ///< of the case, that take the value; empty: it is on or off
-  double null_value = 0, far = 1;  ///< where it vanishes; the far end of its prior range, share 1
-  ShareRange range;                ///< of the share (value − null)/(far − null)
+  double null_value = 0, far = 1;  ///< where it vanishes; the far end of its prior range, strength 1
+  naming::StrengthRange range;     ///< of the strength (value − null)/(far − null)
   std::vector<std::string> excludes;
 
   bool on_or_off() const { return paths.empty(); }
-  double value(double share) const { return null_value + share * (far - null_value); }
+  double value(double strength) const { return null_value + strength * (far - null_value); }
 };
 
-/// "path=value" for a share; values have four significant digits, so that they mean the same run wherever they are written.
-std::vector<std::string> settings_of(const Candidate& candidate, double share);
-/// The share that the rounded value stands for.
-double rounded_share(const Candidate& candidate, double share);
+/// "path=value" for a strength; values have four significant digits, so that they mean the same run wherever they are written.
+std::vector<std::string> settings_of(const Candidate& candidate, double strength);
+/// The strength that the rounded value stands for.
+double rounded_strength(const Candidate& candidate, double strength);
 double rounded(double value);
 
 /// Candidates of a base case, in alphabetical order, and why others do not apply.

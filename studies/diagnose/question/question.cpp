@@ -17,10 +17,10 @@ namespace {
 using config::Node;
 
 double number(const Node& node) {
-  const config::Quantity q = config::read_quantity(node);
-  if (q.has_unit && q.unit.dimension == config::parse_unit("%critical").dimension)
+  const config::Quantity quantity = config::read_quantity(node);
+  if (quantity.has_unit && quantity.unit.dimension == config::parse_unit("%critical").dimension)
     node.fail("is in %critical, which depends on the case; give rad/s or rpm");
-  return q.has_unit ? q.unit.to_si(q.number) : q.number;
+  return quantity.has_unit ? quantity.unit.to_si(quantity.number) : quantity.number;
 }
 
 template <class Read>
@@ -101,7 +101,7 @@ Candidate read_candidate(const Node& node, const Library& library) {
     const bool downwards = std::fabs(low - c.null_value) > std::fabs(high - c.null_value);
     c.far = downwards ? low : high;
     const double near = ((downwards ? high : low) - c.null_value) / (c.far - c.null_value);
-    if (near > 0) node.at("range").fail(fmt::format("does not hold {:.6g}, where the effect vanishes", c.null_value));
+    if (near > 0) node.at("range").fail(fmt::format("does not hold {:.6g}, where it vanishes", c.null_value));
     c.range = {near, 1};
   } else if (node.has("path")) {
     node.fail("has a 'path' but no 'range'; give both ends, e.g. [3 mm, 5 mm]");
@@ -120,27 +120,28 @@ std::string resolved(const calibrate::Study& study, const std::vector<std::strin
 }
 
 /// The parameters in the middle of their ranges must give a case that can be run.
-void check_parameters(const Question& q, const host::Registry& registry) {
+void check_parameters(const Question& question, const host::Registry& registry) {
   try {
     std::vector<std::string> settings;
-    for (const calibrate::Parameter& p : q.study.parameters) settings.push_back(fmt::format("{}={:.6g}", p.path, 0.5 * (p.low + p.high)));
-    resolved(q.study, settings, registry);
+    for (const calibrate::Parameter& p : question.study.parameters)
+      settings.push_back(fmt::format("{}={:.6g}", p.path, 0.5 * (p.low + p.high)));
+    resolved(question.study, settings, registry);
   } catch (const base::UserError& e) {
-    throw base::UserError(q.study.parameters.front().where, fmt::format("parameters in the middle of their ranges: {}", e.what()));
+    throw base::UserError(question.study.parameters.front().where, fmt::format("parameters in the middle of their ranges: {}", e.what()));
   }
 }
 
 /// Simulations without a candidate are called so.
 bool bank_group(const std::string& name) { return name == "base" || name == "again"; }
 
-void check_nuisance(const Question& q, const Nuisance& n, const host::Registry& registry) {
+void check_nuisance(const Question& question, const Nuisance& n, const host::Registry& registry) {
   if (bank_group(n.name))
     throw base::UserError(n.where, fmt::format("nuisance '{}' has the name of a group of the bank; give it another 'name'", n.name));
-  for (const Nuisance& other : q.nuisances) {
+  for (const Nuisance& other : question.nuisances) {
     if (&other != &n && other.name == n.name)
       throw base::UserError(n.where, fmt::format("there are two nuisances '{}'; give one of them another 'name'", n.name));
   }
-  for (const calibrate::Parameter& p : q.study.parameters) {
+  for (const calibrate::Parameter& p : question.study.parameters) {
     if (p.path == n.path || p.name == n.name)
       throw base::UserError(n.where, fmt::format("nuisance '{}' is a parameter, too; keep one of them, or give it another 'name'", n.name));
   }
@@ -148,64 +149,64 @@ void check_nuisance(const Question& q, const Nuisance& n, const host::Registry& 
   if (n.usual && !(rounded(*n.usual) >= rounded(n.low) && rounded(*n.usual) <= rounded(n.high)))
     throw base::UserError(n.where, fmt::format("nuisance '{}' is apart, and its range {:.6g} … {:.6g} does not hold {:.6g}, which it is "
                                                "in {}; widen the range",
-                                               n.name, n.low, n.high, *n.usual, q.study.base.string()));
+                                               n.name, n.low, n.high, *n.usual, question.study.base.string()));
   try {
-    const std::string low = resolved(q.study, {fmt::format("{}={:.17g}", n.path, n.low)}, registry);
-    if (low != resolved(q.study, {fmt::format("{}={:.17g}", n.path, n.high)}, registry)) return;
+    const std::string low = resolved(question.study, {fmt::format("{}={:.17g}", n.path, n.low)}, registry);
+    if (low != resolved(question.study, {fmt::format("{}={:.17g}", n.path, n.high)}, registry)) return;
   } catch (const base::UserError& e) {
     throw base::UserError(n.where, fmt::format("nuisance '{}': {}", n.name, e.what()));
   }
-  throw base::UserError(
-      n.where, fmt::format("nuisance '{}' changes nothing in {}: the case overrides it; leave it out", n.path, q.study.base.string()));
+  throw base::UserError(n.where, fmt::format("nuisance '{}' changes nothing in {}: the case overrides it; leave it out", n.path,
+                                             question.study.base.string()));
 }
 
 /// Why the candidate gives no case that can be run; "" when it does.
-std::string refused(const Question& q, const Candidate& c, const host::Registry& registry) {
+std::string refused(const Question& question, const Candidate& c, const host::Registry& registry) {
   if (bank_group(c.name)) return "has the name of a group of the bank; give it another";
-  for (const Nuisance& n : q.nuisances) {
+  for (const Nuisance& n : question.nuisances) {
     if (n.name == c.name) return "is the name of a nuisance, too; give that another 'name'";
     const bool sets = std::any_of(c.set.begin(), c.set.end(), [&](const std::string& s) { return s.starts_with(n.path + "="); });
     if (sets || std::find(c.paths.begin(), c.paths.end(), n.path) != c.paths.end())
       return fmt::format("changes {}, which is the nuisance '{}' already; keep one of them", n.path, n.name);
   }
   try {
-    const std::string without = resolved(q.study, {}, registry);
-    if (c.range.low < 0) resolved(q.study, settings_of(c, c.range.low), registry);
-    if (resolved(q.study, settings_of(c, 1), registry) == without) return "changes nothing in the base case; leave it out";
+    const std::string without = resolved(question.study, {}, registry);
+    if (c.range.low < 0) resolved(question.study, settings_of(c, c.range.low), registry);
+    if (resolved(question.study, settings_of(c, 1), registry) == without) return "changes nothing in the base case; leave it out";
   } catch (const base::UserError& e) {
     return e.what();
   }
   return "";
 }
 
-void read_candidates(const Node& node, const Library& library, const host::Registry& registry, Question& q) {
+void read_candidates(const Node& node, const Library& library, const host::Registry& registry, Question& question) {
   for (const std::string& key : node.keys()) {
     const Node one = node.at(key);
-    q.candidates.push_back(read_candidate(one, library));
-    if (const std::string why = refused(q, q.candidates.back(), registry); !why.empty())
+    question.candidates.push_back(read_candidate(one, library));
+    if (const std::string why = refused(question, question.candidates.back(), registry); !why.empty())
       throw base::UserError(one.where(), fmt::format("hypothesis '{}': {}", key, why));
   }
 }
 
-/// What nuisances apart are in the case: the same in all conditions.
-void read_usual(Question& q) {
-  for (Nuisance& n : q.nuisances) {
+/// What nuisances that are varied apart are in the case: the same in all conditions.
+void read_usual(Question& question) {
+  for (Nuisance& n : question.nuisances) {
     if (!n.usual) continue;
-    for (const calibrate::Condition& c : q.study.conditions) {
-      const double value = value_in(config::read_case(q.study.base.string(), c.settings), n.path, n.where);
-      if (&c != &q.study.conditions.front() && value != *n.usual)
+    for (const calibrate::Condition& c : question.study.conditions) {
+      const double value = value_in(config::read_case(question.study.base.string(), c.settings), n.path, n.where);
+      if (&c != &question.study.conditions.front() && value != *n.usual)
         throw base::UserError(n.where, fmt::format("nuisance '{}' is apart, and is {:.6g} in condition '{}', {:.6g} in '{}'; give it one "
                                                    "value in all",
-                                                   n.name, *n.usual, q.study.conditions.front().name, value, c.name));
+                                                   n.name, *n.usual, question.study.conditions.front().name, value, c.name));
       n.usual = value;
     }
   }
 }
 
-void settle_speeds(Question& q) {
-  for (calibrate::Condition& c : q.study.conditions) {
-    const config::Case at = config::read_case(q.study.base.string(), c.settings);
-    q.speed.push_back(at.mill ? std::fabs(at.mill->speed) : 0.0);
+void settle_speeds(Question& question) {
+  for (calibrate::Condition& c : question.study.conditions) {
+    const config::Case at = config::read_case(question.study.base.string(), c.settings);
+    question.speed.push_back(at.mill ? std::fabs(at.mill->speed) : 0.0);
     for (const std::string& settled : speeds_settled(at)) {
       std::erase_if(c.settings, [&](const std::string& setting) { return setting.starts_with(settled.substr(0, settled.find('=') + 1)); });
       c.settings.push_back(settled);
@@ -214,12 +215,12 @@ void settle_speeds(Question& q) {
 }
 
 /// Every candidate of the library that gives a case which can be run.
-void take_all(const Library& library, const host::Registry& registry, Question& q) {
+void take_all(const Library& library, const host::Registry& registry, Question& question) {
   for (const Candidate& c : library.candidates) {
-    if (const std::string why = refused(q, c, registry); why.empty())
-      q.candidates.push_back(c);
+    if (const std::string why = refused(question, c, registry); why.empty())
+      question.candidates.push_back(c);
     else
-      q.left_out.push_back(c.name + ": " + why);
+      question.left_out.push_back(c.name + ": " + why);
   }
 }
 
@@ -234,19 +235,19 @@ double value_in(const config::Case& c, const std::string& path, const base::Loca
     node = *found;
     begin = end + 1;
   }
-  const config::Quantity q = config::read_quantity(node);
-  return q.has_unit ? q.unit.to_si(q.number) : q.number;
+  const config::Quantity quantity = config::read_quantity(node);
+  return quantity.has_unit ? quantity.unit.to_si(quantity.number) : quantity.number;
 }
 
-std::vector<Coordinate> Question::coordinates() const {
-  std::vector<Coordinate> out;
-  for (const calibrate::Parameter& p : study.parameters) out.push_back({p.name, p.low, p.high, 0, 0, false, Products::all, {}});
+std::vector<naming::Coordinate> Question::coordinates() const {
+  std::vector<naming::Coordinate> out;
+  for (const calibrate::Parameter& p : study.parameters) out.push_back({p.name, p.low, p.high, 0, 0, false, naming::Products::all, {}});
   for (const Nuisance& n : nuisances) {
-    const bool wide = n.usual && n.low > 0 && n.high >= kWideRange * n.low;
+    const bool wide = n.usual && n.low > 0 && n.high >= naming::kWideRange * n.low;
     out.push_back({n.name, n.low, n.high, n.mean, n.sigma, wide,
-                   n.of_camera() ? Products::none
-                   : n.usual     ? Products::parameters
-                                 : Products::all,
+                   n.of_camera() ? naming::Products::none
+                   : n.usual     ? naming::Products::parameters
+                                 : naming::Products::all,
                    n.usual});
   }
   return out;
@@ -254,55 +255,57 @@ std::vector<Coordinate> Question::coordinates() const {
 
 std::size_t Question::case_dimensions() const {
   const auto of_case = std::count_if(nuisances.begin(), nuisances.end(), [](const Nuisance& n) { return !n.of_camera() && !n.usual; });
-  return study.parameters.size() + static_cast<std::size_t>(of_case);
+  return study.parameters.size() + of_case;
 }
 
 std::string Question::camera(const VectorXd& theta) const {
   std::vector<std::pair<const Nuisance*, double>> of;
   for (std::size_t i = 0; i < nuisances.size(); ++i) {
-    if (nuisances[i].of_camera()) of.emplace_back(&nuisances[i], theta[static_cast<Index>(study.parameters.size() + i)]);
+    if (nuisances[i].of_camera()) of.emplace_back(&nuisances[i], theta[study.parameters.size() + i]);
   }
   return of.empty() ? "" : camera_frame_text(of);
 }
 
-std::vector<std::string> Question::settings(const VectorXd& theta, const std::vector<Effect>& effects) const {
+std::vector<std::string> Question::settings(const VectorXd& theta, const std::vector<naming::ActiveCandidate>& active) const {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < study.parameters.size(); ++i) {
-    const std::string value = fmt::format("{:.4g}", theta[static_cast<Index>(i)]);
+    const std::string value = fmt::format("{:.4g}", theta[i]);
     out.push_back(study.parameters[i].path + "=" + value);
     for (const std::string& path : study.parameters[i].tied) out.push_back(fmt::format("{}={}", path, value));
   }
   for (std::size_t i = 0; i < nuisances.size(); ++i) {
     const Nuisance& n = nuisances[i];
-    const std::string value = fmt::format("{:.4g}", theta[static_cast<Index>(study.parameters.size() + i)]);
+    const std::string value = fmt::format("{:.4g}", theta[study.parameters.size() + i]);
     if (!n.of_camera() && !(n.usual && value == fmt::format("{:.4g}", *n.usual))) out.push_back(fmt::format("{}={}", n.path, value));
   }
-  for (const Effect& e : effects) {
-    for (std::string& s : settings_of(candidates[static_cast<std::size_t>(e.candidate)], e.share)) out.push_back(std::move(s));
+  for (const naming::ActiveCandidate& e : active) {
+    for (std::string& s : settings_of(candidates[e.candidate], e.strength)) out.push_back(std::move(s));
   }
   return out;
 }
 
 Question read_question(const std::filesystem::path& file, const std::vector<std::string>& overrides, const host::Registry& registry) {
-  Question q;
-  q.study = calibrate::read_study(file, overrides, calibrate::kDiagnoseSections);
-  const Node& root = q.study.root;
-  if (const auto node = root.find("nuisances")) collect_nuisances(*node, node->path().size() + 1, registry, q.nuisances);
+  Question question;
+  question.study = calibrate::read_study(file, overrides, calibrate::kDiagnoseSections);
+  const Node& root = question.study.root;
+  if (const auto node = root.find("nuisances")) collect_nuisances(*node, node->path().size() + 1, registry, question.nuisances);
   const auto rank = [](const Nuisance& n) { return n.of_camera() ? 2 : n.usual ? 1 : 0; };
-  std::stable_sort(q.nuisances.begin(), q.nuisances.end(), [&](const Nuisance& a, const Nuisance& b) { return rank(a) < rank(b); });
-  read_usual(q);
-  const config::Case base = config::read_case(q.study.base.string(), q.study.conditions.front().settings);
-  settle_speeds(q);
-  check_parameters(q, registry);
-  for (const Nuisance& n : q.nuisances) check_nuisance(q, n, registry);
+  std::stable_sort(question.nuisances.begin(), question.nuisances.end(),
+                   [&](const Nuisance& a, const Nuisance& b) { return rank(a) < rank(b); });
+  read_usual(question);
+  const config::Case base = config::read_case(question.study.base.string(), question.study.conditions.front().settings);
+  settle_speeds(question);
+  check_parameters(question, registry);
+  for (const Nuisance& n : question.nuisances) check_nuisance(question, n, registry);
   const Library library = library_of(base, registry);
-  q.left_out = library.left_out;
+  question.left_out = library.left_out;
   if (const auto node = root.find("hypotheses"))
-    read_candidates(*node, library, registry, q);
+    read_candidates(*node, library, registry, question);
   else
-    take_all(library, registry, q);
-  std::erase_if(q.left_out, [&q](const std::string& line) {  // what a 'set' has completed is tested
-    return std::any_of(q.candidates.begin(), q.candidates.end(), [&](const Candidate& c) { return line.starts_with(c.name + ":"); });
+    take_all(library, registry, question);
+  std::erase_if(question.left_out, [&question](const std::string& line) {  // what a 'set' has completed is tested
+    return std::any_of(question.candidates.begin(), question.candidates.end(),
+                       [&](const Candidate& c) { return line.starts_with(c.name + ":"); });
   });
   if (const auto node = root.find("bank")) {
     node->expect({"base", "each", "first"});
@@ -310,9 +313,9 @@ Question read_question(const std::filesystem::path& file, const std::vector<std:
       const auto value = node->find(key);
       return value ? static_cast<int>(config::read_integer(*value, config::between(least, 1e5))) : standard;
     };
-    q.bank = {whole("base", 24, 8), whole("each", 10, 1), whole("first", 4, 1)};
+    question.bank = {whole("base", 24, 8), whole("each", 10, 1), whole("first", 4, 1)};
   }
-  return q;
+  return question;
 }
 
 }  // namespace millscope::diagnose

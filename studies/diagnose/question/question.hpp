@@ -35,8 +35,8 @@ struct Nuisance {
 
 /// How many simulations of each kind the bank has in every condition.
 struct BankSize {
-  int base = 24;  ///< without an effect
-  int each = 10;  ///< with each candidate; half as many with it and each nuisance apart
+  int base = 24;  ///< without a candidate
+  int each = 10;  ///< with each candidate; half as many with it and each nuisance that is varied apart
   int first = 4;  ///< of them before the candidate is screened
 };
 
@@ -51,9 +51,9 @@ struct Question {
   std::size_t dimensions() const { return study.parameters.size() + nuisances.size(); }
   /// Of θ, that vary in every simulation.
   std::size_t case_dimensions() const;
-  std::vector<Coordinate> coordinates() const;
+  std::vector<naming::Coordinate> coordinates() const;
   /// "path=value" of a parameter set, rounded as the bank rounds.
-  std::vector<std::string> settings(const VectorXd& theta, const std::vector<Effect>& effects) const;
+  std::vector<std::string> settings(const VectorXd& theta, const std::vector<naming::ActiveCandidate>& active) const;
   /// A camera file with what the recording's camera does besides at θ, before all else; "" where the study has no such nuisance.
   std::string camera(const VectorXd& theta) const;
 };

@@ -19,18 +19,18 @@ void say(const Workshop& workshop, const std::string& line) {
   if (workshop.say) workshop.say(line);
 }
 
-void note(const Workshop& workshop, std::vector<std::string> lines, Diagnosis& d) {
+void note(const Workshop& workshop, std::vector<std::string> lines, Diagnosis& diagnosis) {
   for (std::string& line : lines) {
     say(workshop, line);
-    d.notes.push_back(std::move(line));
+    diagnosis.notes.push_back(std::move(line));
   }
 }
 
 /// The bank, with what is compared defined in all of it.
 Bank filled(const Question& question, Workshop& workshop, const std::vector<BankPoint>& points, const std::vector<std::size_t>& conditions,
-            Diagnosis& d) {
+            Diagnosis& diagnosis) {
   Bank bank = fill_bank(question, workshop, points, conditions);
-  note(workshop, leave_out_undefined(question, workshop, bank), d);
+  note(workshop, leave_out_undefined(question, workshop, bank), diagnosis);
   return bank;
 }
 
@@ -40,22 +40,22 @@ struct Screened {
 };
 
 /// The bank's first runs of each candidate tell which cannot matter; the others get all of theirs.
-Screened screened(const Question& question, Workshop& workshop, Diagnosis& d, double noise_units) {
+Screened screened(const Question& question, Workshop& workshop, Diagnosis& diagnosis, double noise_units) {
   Screened out{plan_screening(question), std::vector<bool>(question.candidates.size(), false)};
   const std::vector<BankPoint>& points = out.points;
-  const Bank bank = filled(question, workshop, points, d.fit, d);
-  note(workshop, unsettled(question, bank, d.fit), d);  // before the rest, all with an effect, is simulated in vain
-  const Problem problem = problem_of(question, workshop, bank, d.fit);
-  const Surrogate surrogate(problem.data);
-  const Weighting weighting(problem.covariance, surrogate);
-  const FitResult base = Model(problem.data, surrogate, weighting, {}).fit(problem.observed);
+  const Bank bank = filled(question, workshop, points, diagnosis.fit, diagnosis);
+  note(workshop, unsettled(question, bank, diagnosis.fit), diagnosis);  // before the rest, all with a candidate, is simulated in vain
+  const naming::Problem problem = problem_of(question, workshop, bank, diagnosis.fit);
+  const naming::Surrogate surrogate(problem.data);
+  const naming::Weighting weighting(problem.covariance, surrogate);
+  const naming::FitResult base = naming::Model(problem.data, surrogate, weighting, {}).fit(problem.observed);
   const double limit = kMargin * noise_units;
-  for (std::size_t j = 0; j < question.candidates.size(); ++j) {
-    if (surrogate.features().count(static_cast<int>(j)) == 0) {
+  for (Index j = 0; j < std::ssize(question.candidates); ++j) {
+    if (surrogate.features().count(j) == 0) {
       say(workshop, fmt::format("{}: none of its first simulations came to its end: it is not tested", question.candidates[j].name));
       continue;
     }
-    const Visibility seen(problem, surrogate, weighting, base.coded, static_cast<int>(j));
+    const naming::Visibility seen(problem, surrogate, weighting, base.coded, j);
     const double most = std::sqrt(seen.lambda_high());
     const std::string what =
         fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate, below {:.1f} with 95 %",
@@ -63,7 +63,7 @@ Screened screened(const Question& question, Workshop& workshop, Diagnosis& d, do
     say(workshop, what + (most < limit ? ": it cannot matter here" : ": looked at closely"));
     out.candidate[j] = most < limit;
     if (most < limit) continue;
-    for (BankPoint& p : plan_rest(question, static_cast<int>(j))) out.points.push_back(std::move(p));
+    for (BankPoint& p : plan_rest(question, j)) out.points.push_back(std::move(p));
   }
   return out;
 }
@@ -86,7 +86,7 @@ void read_frames(const Question& question, const host::Registry& registry, Works
 }
 
 /// What was noted of the recordings; what holds for several is said once.
-void note_recordings(const Question& question, const Workshop& workshop, Diagnosis& d) {
+void note_recordings(const Question& question, const Workshop& workshop, Diagnosis& diagnosis) {
   std::vector<std::pair<std::string, std::string>> lines;  // what; of which conditions
   for (std::size_t c = 0; c < workshop.recorded.size(); ++c) {
     for (const std::string& what : workshop.recorded[c].notes) {
@@ -98,7 +98,7 @@ void note_recordings(const Question& question, const Workshop& workshop, Diagnos
         known->second += ", " + name;
     }
   }
-  for (const auto& [what, where] : lines) d.notes.push_back(fmt::format("recording of {}: {}", where, what));
+  for (const auto& [what, where] : lines) diagnosis.notes.push_back(fmt::format("recording of {}: {}", where, what));
 }
 
 }  // namespace
@@ -119,39 +119,40 @@ const char* name_of(Verdict verdict) {
   return "";
 }
 
-Diagnosis diagnose(const Question& question, Workshop& workshop, const NamingOptions& options) {
-  Diagnosis d;
-  d.fit = question.study.with_role(calibrate::Role::fit);
-  d.held = question.study.with_role(calibrate::Role::held_out);
-  const Screened screening = screened(question, workshop, d, options.noise_units);
-  std::vector<std::size_t> all = d.fit;
-  all.insert(all.end(), d.held.begin(), d.held.end());
-  d.bank = filled(question, workshop, screening.points, all, d);
-  note(workshop, unsettled(question, d.bank, d.held), d);
-  d.problem = problem_of(question, workshop, d.bank, d.fit);
-  for (Rival& r : d.problem.rivals) r.screened_out = r.candidate >= 0 && screening.candidate[static_cast<std::size_t>(r.candidate)];
-  d.naming = name_physics(d.problem, options);
-  const HeldOutRequest request{question, workshop, d.bank, d.problem, d.naming, d.fit, kSeeds, options.seed};
-  d.alone = fit_alone(request);
-  for (const std::size_t condition : d.held) {
+Diagnosis diagnose(const Question& question, Workshop& workshop, const naming::Options& options) {
+  Diagnosis diagnosis;
+  diagnosis.fit = question.study.with_role(calibrate::Role::fit);
+  diagnosis.held = question.study.with_role(calibrate::Role::held_out);
+  const Screened screening = screened(question, workshop, diagnosis, options.noise_units);
+  std::vector<std::size_t> all = diagnosis.fit;
+  all.insert(all.end(), diagnosis.held.begin(), diagnosis.held.end());
+  diagnosis.bank = filled(question, workshop, screening.points, all, diagnosis);
+  note(workshop, unsettled(question, diagnosis.bank, diagnosis.held), diagnosis);
+  diagnosis.problem = problem_of(question, workshop, diagnosis.bank, diagnosis.fit);
+  for (naming::Alternative& r : diagnosis.problem.alternatives) r.screened_out = r.candidate && screening.candidate[*r.candidate];
+  diagnosis.naming = naming::name_candidates(diagnosis.problem, options);
+  const HeldOutRequest request{question,         workshop,      diagnosis.bank, diagnosis.problem,
+                               diagnosis.naming, diagnosis.fit, kSeeds,         options.seed};
+  diagnosis.alone = fit_alone(request);
+  for (const std::size_t condition : diagnosis.held) {
     say(workshop, fmt::format("held-out condition '{}'", question.study.conditions[condition].name));
-    d.held_out.push_back(hold_against(request, condition));
+    diagnosis.held_out.push_back(hold_against(request, condition));
   }
-  if (d.naming.best >= 0 || d.naming.base_p <= options.level) {
+  if (diagnosis.naming.best || diagnosis.naming.base_p <= options.level) {
     say(workshop, "missing mean acceleration, by place and speed");
-    d.missing = missing_force(request);
-    d.terms = offer_terms(d.missing);
+    diagnosis.missing = missing_force(request);
+    diagnosis.terms = offer_terms(diagnosis.missing);
   }
-  d.notes.insert(d.notes.end(), d.problem.data.left_out.begin(), d.problem.data.left_out.end());
-  note_recordings(question, workshop, d);
+  diagnosis.notes.insert(diagnosis.notes.end(), diagnosis.problem.data.left_out.begin(), diagnosis.problem.data.left_out.end());
+  note_recordings(question, workshop, diagnosis);
   for (std::size_t c = 0; c < workshop.readings.size(); ++c) {
     if (!workshop.readings[c].empty())
-      d.notes.push_back(
+      diagnosis.notes.push_back(
           fmt::format("frame of '{}', by the recorded beads: {}", question.study.conditions[c].name, text_of(workshop.readings[c])));
   }
-  for (const std::string& line : question.left_out) d.notes.push_back("not tested: " + line);
-  conclude(question, workshop, options.level, options.noise_units, d);
-  return d;
+  for (const std::string& line : question.left_out) diagnosis.notes.push_back("not tested: " + line);
+  conclude(question, workshop, options.level, options.noise_units, diagnosis);
+  return diagnosis;
 }
 
 Workshop workshop_of(const Question& question, const host::Registry& registry, calibrate::Session& session,

@@ -16,15 +16,15 @@ const char* name_of(Verdict verdict);
 struct Diagnosis {
   Verdict verdict = Verdict::undetectable;
   std::string sentence;            ///< the verdict in words
-  std::vector<std::string> named;  ///< hypotheses; several: two effects, or a class that these data cannot split
+  std::vector<std::string> named;  ///< hypotheses; several: two together, or a class that these data cannot split
   bool two_effects = false;        ///< `named` are two that are asked for together
   std::string next_experiment;     ///< what would tell more; "" when nothing is needed
   std::vector<std::string> notes;
 
   std::vector<std::size_t> fit, held;
   Bank bank;
-  Problem problem;
-  Naming naming;
+  naming::Problem problem;
+  naming::Result naming;
   std::vector<HeldOut> held_out;
   std::vector<Alone> alone;
   std::vector<MissingForce> missing;  ///< where the base does not describe the recordings
@@ -32,7 +32,7 @@ struct Diagnosis {
 };
 
 /// Everything from the bank on.
-Diagnosis diagnose(const Question& question, Workshop& workshop, const NamingOptions& options);
+Diagnosis diagnose(const Question& question, Workshop& workshop, const naming::Options& options);
 
 /// Verdict, sentence, names and next experiment of a diagnosis that has everything else.
 void conclude(const Question& question, const Workshop& workshop, double level, double noise_units, Diagnosis& diagnosis);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "studies/diagnose/verdict/rivals.hpp"
+#include "studies/diagnose/verdict/rival_models.hpp"
 #include "studies/emulate/random.hpp"
 
 namespace millscope::diagnose {
@@ -16,12 +16,12 @@ namespace {
 constexpr int kDraws = 4000;
 
 /// Mean of the simulations of one parameter set with several seeds.
-Prediction simulate(const HeldOutRequest& r, const VectorXd& coded, const std::vector<Effect>& effects, std::size_t condition,
-                    const std::string& name) {
+Prediction simulate(const HeldOutRequest& r, const VectorXd& coded, const std::vector<naming::ActiveCandidate>& active,
+                    std::size_t condition, const std::string& name) {
   const VectorXd theta = r.problem.data.natural(coded);
   std::vector<campaign::Simulation> simulations;
   for (int replicate = 1; replicate <= r.seeds; ++replicate)
-    simulations.push_back(simulation_at(r.question, theta, effects, condition, replicate, name));
+    simulations.push_back(simulation_at(r.question, theta, active, condition, replicate, name));
   Prediction p;
   p.name = name;
   int done = 0;
@@ -68,7 +68,7 @@ struct Judge {
     const Prediction one = part(corrected.prediction), other = part(rival.prediction);
     const Eigen::LLT<MatrixXd> c(recording + 0.5 * (one.covariance + other.covariance));
     rival.improvement = misfit(observed - other.value, c) - misfit(observed - one.value, c);
-    const MatrixXd first = factor(one.covariance), second = factor(other.covariance);
+    const MatrixXd first = naming::factor(one.covariance), second = naming::factor(other.covariance);
     rival.low90 = std::numeric_limits<double>::infinity(), rival.high90 = -rival.low90;
     emulate::Random random(seed, 9);
     for (const MatrixXd& law : noise) {
@@ -88,7 +88,7 @@ struct Judge {
     const Prediction p = part(whole);
     const Eigen::LLT<MatrixXd> c(recording + p.covariance);
     const double seen = misfit(observed - p.value, c);
-    const MatrixXd own = factor(p.covariance);
+    const MatrixXd own = naming::factor(p.covariance);
     emulate::Random random(seed, 10);
     double largest = 0;
     for (const MatrixXd& law : noise) {
@@ -111,7 +111,7 @@ Score score(const Judge& judge, Prediction prediction) {
 }
 
 Judge judge_of(const HeldOutRequest& r, std::size_t condition, const std::vector<Prediction>& predictions) {
-  Problem held;
+  naming::Problem held;
   add_recorded(r.question, r.workshop, r.bank, {condition}, held);
   Judge judge{{}, {}, {}, {}, r.workshop.recorded[condition].power.value};
   for (Index i = 0; i < held.observed.size(); ++i) {
@@ -120,7 +120,7 @@ Judge judge_of(const HeldOutRequest& r, std::size_t condition, const std::vector
       judge.kept.push_back(i);
   }
   judge.observed = held.observed(judge.kept), judge.recording = held.covariance(judge.kept, judge.kept);
-  for (const MatrixXd& law : held.noise) judge.noise.push_back(factor(MatrixXd(law(judge.kept, judge.kept))));
+  for (const MatrixXd& law : held.noise) judge.noise.push_back(naming::factor(MatrixXd(law(judge.kept, judge.kept))));
   return judge;
 }
 
@@ -130,7 +130,7 @@ HeldOut judged(const HeldOutRequest& r, std::size_t condition, std::vector<Predi
   out.condition = condition;
   const auto& observables = r.workshop.recorded[condition].observables;
   for (std::size_t i = 0; i < observables.size(); ++i) {
-    if (!std::binary_search(judge.kept.begin(), judge.kept.end(), static_cast<Index>(i))) out.not_compared.push_back(observables[i].name);
+    if (!std::binary_search(judge.kept.begin(), judge.kept.end(), Index(i))) out.not_compared.push_back(observables[i].name);
   }
   if (base.failure.empty()) out.base_p = judge.goodness(base, r.seed);
   for (Prediction& p : all) {
@@ -149,10 +149,10 @@ HeldOut judged(const HeldOutRequest& r, std::size_t condition, std::vector<Predi
   return out;
 }
 
-/// What the best candidate switches on.
-std::vector<Effect> best_effects(const HeldOutRequest& r) {
-  const auto best = static_cast<std::size_t>(r.naming.best);
-  return effects_of(r.problem.rivals[best], r.naming.judged[best].fit);
+/// What the best alternative has on; nothing where there is none, or a nuisance is the best.
+std::vector<naming::ActiveCandidate> best_active(const HeldOutRequest& r) {
+  if (!r.naming.best) return {};
+  return naming::active_of(r.problem.alternatives[*r.naming.best], r.naming.judged[*r.naming.best].fit);
 }
 
 }  // namespace
@@ -164,12 +164,11 @@ HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) {
     p.sentence = sentence;
     all.push_back(std::move(p));
   };
-  const bool named = r.naming.best >= 0;
-  if (named) {
-    const Judged& best = r.naming.judged[static_cast<std::size_t>(r.naming.best)];
-    const std::vector<Effect> effects = best_effects(r);
-    add(simulate(r, best.fit.coded, effects, condition, "corrected"), "with the best candidate, all parameters fitted together");
-    if (!effects.empty()) add(simulate(r, best.fit.coded, {}, condition, "effect removed"), "the corrected parameters without the effect");
+  if (r.naming.best) {
+    const naming::Judged& best = r.naming.judged[*r.naming.best];
+    const std::vector<naming::ActiveCandidate> active = best_active(r);
+    add(simulate(r, best.fit.coded, active, condition, "corrected"), "with the best candidate, all parameters fitted together");
+    if (!active.empty()) add(simulate(r, best.fit.coded, {}, condition, "effect removed"), "the corrected parameters without the effect");
   }
   const bool compared = std::any_of(all.begin(), all.end(), [](const Prediction& p) { return p.failure.empty(); });
   const Prediction base = simulate(r, r.naming.base.coded, {}, condition, "retuned to all observables");
@@ -188,38 +187,39 @@ HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) {
 
 std::vector<Alone> fit_alone(const HeldOutRequest& r) {
   std::vector<Alone> out;
-  const std::vector<Effect> effects = r.naming.best < 0 ? std::vector<Effect>{} : best_effects(r);
+  const std::vector<naming::ActiveCandidate> active = best_active(r);
   for (const std::size_t condition : r.bank.conditions) {
-    const Problem one = problem_alone(r.question, r.workshop, r.bank, condition, r.problem.data);
-    const Surrogate surrogate(one.data);
-    const Weighting weighting(one.covariance, surrogate);
+    const naming::Problem one = problem_alone(r.question, r.workshop, r.bank, condition, r.problem.data);
+    const naming::Surrogate surrogate(one.data);
+    const naming::Weighting weighting(one.covariance, surrogate);
     const MatrixXd& w = weighting.whitener;
-    const auto fit = [&](const std::vector<Effect>& on) {
-      Switched switched{{}, std::vector<ShareRange>(static_cast<std::size_t>(one.data.candidates)), -1};
-      for (const Effect& e : on)
-        switched.on.push_back(e.candidate), switched.ranges[static_cast<std::size_t>(e.candidate)] = {e.share, e.share};
-      const FitResult found = Model(one.data, surrogate, weighting, switched).fit(one.observed);
+    const auto fit = [&](const std::vector<naming::ActiveCandidate>& on) {
+      naming::Switched switched{{}, std::vector<naming::StrengthRange>(one.data.candidates), {}};
+      for (const naming::ActiveCandidate& e : on)
+        switched.on.push_back(e.candidate), switched.ranges[e.candidate] = {e.strength, e.strength};
+      const naming::FitResult found = naming::Model(one.data, surrogate, weighting, switched).fit(one.observed);
       const Index d = found.coded.size();
       MatrixXd information = MatrixXd::Zero(d, d), tangent(w.rows(), d);
       for (Index i = 0; i < d; ++i) {
         VectorXd up = found.coded, down = found.coded;
         up[i] += 0.5, down[i] -= 0.5;
         tangent.col(i) = w * (surrogate.at(up, on) - surrogate.at(down, on));
-        const Coordinate& c = one.data.theta[static_cast<std::size_t>(i)];
+        const naming::Coordinate& c = one.data.theta[i];
         information(i, i) = std::pow(c.prior_weight(), 2);
       }
       information += tangent.transpose() * tangent;
       const VectorXd sd = information.ldlt().solve(MatrixXd::Identity(d, d)).diagonal().cwiseMax(0).cwiseSqrt();
-      std::vector<Interval> theta;
+      std::vector<naming::Interval> theta;
       for (Index i = 0; i < d; ++i) {
-        const Coordinate& c = one.data.theta[static_cast<std::size_t>(i)];
+        const naming::Coordinate& c = one.data.theta[i];
         const auto at = [&](double u) { return c.natural(std::clamp(u, -1.0, 1.0)); };
-        theta.push_back({at(found.coded[i]), at(found.coded[i] - kNormal90 * sd[i]), at(found.coded[i] + kNormal90 * sd[i])});
+        theta.push_back(
+            {at(found.coded[i]), at(found.coded[i] - naming::kNormal90 * sd[i]), at(found.coded[i] + naming::kNormal90 * sd[i])});
       }
       return theta;
     };
     Alone alone{condition, fit({}), {}};
-    if (!effects.empty()) alone.after = fit(effects);
+    if (!active.empty()) alone.after = fit(active);
     out.push_back(std::move(alone));
   }
   return out;

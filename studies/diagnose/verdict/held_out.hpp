@@ -35,21 +35,21 @@ struct HeldOut {
   double base_p = 1;          ///< that a recording of the refitted base looks as bad
   std::vector<std::string> failures;
   std::vector<std::string> not_compared;  ///< observables that some prediction leaves undefined (NaN in its value)
-  bool improves = false;                  ///< the interval against every rival lies above 0
-  bool contradicts = false;               ///< that against some rival lies below 0
+  bool improves = false;                  ///< the interval against every rival model lies above 0
+  bool contradicts = false;               ///< that against some rival model lies below 0
 };
 
 /// θ that matches the powers of the fit conditions, nuisances at their priors' means (those apart as they are in the case), as near the
 /// middle of the ranges as that allows: the practice.
-VectorXd retuned_to_power(const BankData& data, const Surrogate& surrogate, const VectorXd& observed, const MatrixXd& covariance,
-                          const std::vector<Index>& powers);
+VectorXd retuned_to_power(const naming::BankData& data, const naming::Surrogate& surrogate, const VectorXd& observed,
+                          const MatrixXd& covariance, const std::vector<Index>& powers);
 
 struct HeldOutRequest {
   const Question& question;
   const Workshop& workshop;
-  const Bank& bank;        ///< of all conditions
-  const Problem& problem;  ///< of the fit conditions
-  const Naming& naming;
+  const Bank& bank;                ///< of all conditions
+  const naming::Problem& problem;  ///< of the fit conditions
+  const naming::Result& naming;
   std::vector<std::size_t> fit;
   int seeds = 3;
   std::uint64_t seed = 1;
@@ -60,7 +60,7 @@ HeldOut hold_against(const HeldOutRequest& request, std::size_t condition);
 /// Parameters fitted to one condition alone.
 struct Alone {
   std::size_t condition = 0;
-  std::vector<Interval> before, after;  ///< θ of the base, and with the named effect held at its value; natural units
+  std::vector<naming::Interval> before, after;  ///< θ of the base, and with what is named held at its value; natural units
 };
 std::vector<Alone> fit_alone(const HeldOutRequest& request);
 

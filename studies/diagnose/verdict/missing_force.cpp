@@ -26,7 +26,7 @@ struct Side {
 /// Value of the recording less the mean of the simulations, with its error; NaN where one of them lacks it.
 struct Difference {
   double value = 0, sem = 0;
-  Interval interval() const { return interval_about(value, sem); }
+  naming::Interval interval() const { return naming::interval_about(value, sem); }
   bool known() const { return std::isfinite(value) && std::isfinite(sem) && sem > 0; }
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 /// Mean correlation of the simulated observations of a condition; the identity where the bank has none.
 MatrixXd correlation_of(const Bank& bank, std::size_t condition, Index size) {
-  const auto k = static_cast<std::size_t>(std::find(bank.conditions.begin(), bank.conditions.end(), condition) - bank.conditions.begin());
+  const std::size_t k = bank.place_of(condition);
   MatrixXd sum = MatrixXd::Zero(size, size);
   int runs = 0;
   for (const auto& seen : bank.seen) {
@@ -25,7 +25,7 @@ MatrixXd correlation_of(const Bank& bank, std::size_t condition, Index size) {
 }  // namespace
 
 void add_recorded(const Question& question, const Workshop& workshop, const Bank& bank, const std::vector<std::size_t>& conditions,
-                  Problem& problem) {
+                  naming::Problem& problem) {
   Index n = 0;
   for (const std::size_t c : conditions) n += workshop.recorded[c].value.size();
   problem.observed.resize(n);
@@ -40,7 +40,7 @@ void add_recorded(const Question& question, const Workshop& workshop, const Bank
     MatrixXd own = o.covariance, simulated = own;  // a profile's errors are stated, its correlations too
     if (o.of_tracks()) simulated = deviation.asDiagonal() * correlation_of(bank, c, size) * deviation.asDiagonal();
     for (Index i = 0; i < size; ++i) {
-      if (o.observables[static_cast<std::size_t>(i)].group != "power") continue;
+      if (o.observables[i].group != "power") continue;
       const double variance = std::pow(question.study.power_error * o.value[i], 2);
       own(i, i) += variance, simulated(i, i) += variance;
     }
@@ -51,33 +51,35 @@ void add_recorded(const Question& question, const Workshop& workshop, const Bank
   }
 }
 
-Problem problem_of(const Question& question, const Workshop& workshop, const Bank& bank, const std::vector<std::size_t>& conditions) {
-  Problem p;
+naming::Problem problem_of(const Question& question, const Workshop& workshop, const Bank& bank,
+                           const std::vector<std::size_t>& conditions) {
+  naming::Problem p;
   p.data = data_of(question, bank, conditions);
-  p.rivals = rivals_of(question);
+  p.alternatives = alternatives_of(question);
   add_recorded(question, workshop, bank, conditions, p);
-  choose_scales(p.data);
+  naming::choose_scales(p.data);
   return p;
 }
 
-Problem problem_alone(const Question& question, const Workshop& workshop, const Bank& bank, std::size_t condition, const BankData& like) {
-  Problem p;
+naming::Problem problem_alone(const Question& question, const Workshop& workshop, const Bank& bank, std::size_t condition,
+                              const naming::BankData& like) {
+  naming::Problem p;
   p.data = data_of(question, bank, {condition});
   for (std::size_t i = 0; i < p.data.theta.size(); ++i) p.data.theta[i].logarithmic = like.theta[i].logarithmic;
   add_recorded(question, workshop, bank, {condition}, p);
   return p;
 }
 
-std::vector<Rival> rivals_of(const Question& question) {
-  std::vector<Rival> rivals;
-  for (std::size_t j = 0; j < question.candidates.size(); ++j) {
+std::vector<naming::Alternative> alternatives_of(const Question& question) {
+  std::vector<naming::Alternative> alternatives;
+  for (Index j = 0; j < std::ssize(question.candidates); ++j) {
     const Candidate& c = question.candidates[j];
-    rivals.push_back({c.name, static_cast<int>(j), -1, c.on_or_off() ? ShareRange{1, 1} : c.range, c.excludes});
+    alternatives.push_back(
+        {.name = c.name, .candidate = j, .range = c.on_or_off() ? naming::StrengthRange{1, 1} : c.range, .excludes = c.excludes});
   }
-  for (std::size_t i = 0; i < question.nuisances.size(); ++i) {
-    rivals.push_back({question.nuisances[i].name, -1, static_cast<Index>(question.study.parameters.size() + i), {}, {}});
-  }
-  return rivals;
+  Index coordinate = std::ssize(question.study.parameters);
+  for (const Nuisance& n : question.nuisances) alternatives.push_back({.name = n.name, .freed = coordinate++});
+  return alternatives;
 }
 
 }  // namespace millscope::diagnose

@@ -13,15 +13,17 @@ namespace millscope::diagnose {
 /// its correlations are shrunk towards none; those of simulated beads, the mean over the bank, know nothing of the camera's own wander.
 /// Observables are weighed by the mean of both, and p-values hold under either as the law of noise.
 void add_recorded(const Question& question, const Workshop& workshop, const Bank& bank, const std::vector<std::size_t>& conditions,
-                  Problem& problem);
+                  naming::Problem& problem);
 
-/// Bank and recordings of some conditions, with the rivals of the question.
-Problem problem_of(const Question& question, const Workshop& workshop, const Bank& bank, const std::vector<std::size_t>& conditions);
+/// Bank and recordings of some conditions, with the alternatives of the question.
+naming::Problem problem_of(const Question& question, const Workshop& workshop, const Bank& bank,
+                           const std::vector<std::size_t>& conditions);
 
-/// Bank and recording of one condition, each coordinate on the scale that `like` has chosen; without rivals.
-Problem problem_alone(const Question& question, const Workshop& workshop, const Bank& bank, std::size_t condition, const BankData& like);
+/// Bank and recording of one condition, each coordinate on the scale that `like` has chosen; without alternatives.
+naming::Problem problem_alone(const Question& question, const Workshop& workshop, const Bank& bank, std::size_t condition,
+                              const naming::BankData& like);
 
 /// Candidates of the question and nuisances that may leave their prior.
-std::vector<Rival> rivals_of(const Question& question);
+std::vector<naming::Alternative> alternatives_of(const Question& question);
 
 }  // namespace millscope::diagnose

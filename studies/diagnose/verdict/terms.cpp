@@ -63,7 +63,7 @@ struct Rows {
   std::size_t cells() const { return static_cast<std::size_t>(missing.size()) / 2; }
 };
 
-double sem_of(const Interval& i) { return (i.high90 - i.low90) / (2 * kNormal90); }
+double sem_of(const naming::Interval& i) { return (i.high90 - i.low90) / (2 * naming::kNormal90); }
 
 Rows rows_of(const std::vector<MissingForce>& missing) {
   std::size_t cells = 0;
@@ -168,7 +168,7 @@ TermOffer offer_terms(const std::vector<MissingForce>& missing) {
   double left = 0, nothing = 0;
   each_half(rows, [&](const std::vector<Eigen::Index>& own, const std::vector<Eigen::Index>& other) {
     const Half half = fitted(rows, own, other, chosen);
-    for (std::size_t k = 0; k < chosen.size(); ++k) coefficients[k].push_back(half.coefficients[static_cast<Eigen::Index>(k)]);
+    for (std::size_t k = 0; k < chosen.size(); ++k) coefficients[k].push_back(half.coefficients[k]);
     left += half.elsewhere, nothing += rows.missing(other).squaredNorm();
   });
   offer.explained = 1 - left / nothing;
@@ -177,7 +177,7 @@ TermOffer offer_terms(const std::vector<MissingForce>& missing) {
     double mean = 0, square = 0;
     for (const double c : coefficients[k]) mean += c / kHalves;
     for (const double c : coefficients[k]) square += (c - mean) * (c - mean) / (kHalves - 1);
-    offer.terms[k].coefficient = interval_about(mean, std::sqrt(square));
+    offer.terms[k].coefficient = naming::interval_about(mean, std::sqrt(square));
   }
   return offer;
 }

@@ -15,11 +15,11 @@
 namespace millscope::diagnose {
 
 struct OfferedTerm {
-  std::string name;      ///< "linear drag"
-  std::string equation;  ///< "-c v"
-  std::string unit;      ///< of the coefficient
-  Interval coefficient;  ///< from halves of the cells
-  double share = 0;      ///< of the halves that chose it
+  std::string name;              ///< "linear drag"
+  std::string equation;          ///< "-c v"
+  std::string unit;              ///< of the coefficient
+  naming::Interval coefficient;  ///< from halves of the cells
+  double share = 0;              ///< of the halves that chose it
 };
 
 struct TermOffer {

@@ -1,4 +1,4 @@
-#include "studies/diagnose/verdict/rivals.hpp"
+#include "studies/diagnose/verdict/rival_models.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -17,10 +17,10 @@ constexpr double kPull = 0.05;  // towards the middle of the ranges, where power
 
 }  // namespace
 
-VectorXd retuned_to_power(const BankData& data, const Surrogate& surrogate, const VectorXd& observed, const MatrixXd& covariance,
-                          const std::vector<Index>& powers) {
+VectorXd retuned_to_power(const naming::BankData& data, const naming::Surrogate& surrogate, const VectorXd& observed,
+                          const MatrixXd& covariance, const std::vector<Index>& powers) {
   std::vector<doe::Factor> factors;
-  for (const Coordinate& c : data.theta) factors.push_back({c.name, 0, 1, ""});
+  for (const naming::Coordinate& c : data.theta) factors.push_back({c.name, 0, 1, ""});
   const MatrixXd tries = doe::sobol(std::move(factors), kTries).coded;
   VectorXd best;
   double least = std::numeric_limits<double>::infinity();
@@ -28,7 +28,7 @@ VectorXd retuned_to_power(const BankData& data, const Surrogate& surrogate, cons
     VectorXd u = tries.row(k).transpose();
     double q = 0;
     for (Index i = 0; i < u.size(); ++i) {
-      const Coordinate& c = data.theta[static_cast<std::size_t>(i)];
+      const naming::Coordinate& c = data.theta[i];
       if (c.nuisance())
         u[i] = c.coded(c.usual.value_or(c.prior_mean));
       else
@@ -68,39 +68,39 @@ std::vector<Index> RivalModels::powers_of(std::size_t condition) const {
 
 VectorXd RivalModels::power_only(std::size_t condition) const {
   VectorXd u = retuned_to_power(r_.problem.data, surrogate_, r_.problem.observed, r_.naming.covariance, powers_of(condition));
-  // Where the camera stood is no part of the practice; the rival gets what the refitted base makes of it.
+  // Where the camera stood is no part of the practice; the rival model gets what the refitted base makes of it.
   for (std::size_t i = 0; i < r_.question.nuisances.size(); ++i) {
-    const auto place = static_cast<Index>(r_.question.study.parameters.size() + i);
+    const std::size_t place = r_.question.study.parameters.size() + i;
     if (r_.question.nuisances[i].of_camera()) u[place] = r_.naming.base.coded[place];
   }
   return u;
 }
 
-Index RivalModels::partner(Index i, std::size_t fitted) const {
+std::optional<Index> RivalModels::partner(Index i, std::size_t fitted) const {
   const auto& own = r_.workshop.recorded[held_].observables;
   const auto& other = r_.workshop.recorded[fitted].observables;
-  const calibrate::Observable& what = own[static_cast<std::size_t>(i)];
+  const calibrate::Observable& what = own[i];
   const std::string& group = what.group;
   if (group == "occupancy" || group == "region_speed") {  // regions are the same everywhere, groups of bins only in their order
     const auto same = std::find_if(other.begin(), other.end(), [&](const calibrate::Observable& o) { return o.name == what.name; });
-    return same == other.end() ? -1 : static_cast<Index>(same - other.begin());
+    return same == other.end() ? std::nullopt : std::optional<Index>(same - other.begin());
   }
   Index place = 0;
-  for (Index k = 0; k < i; ++k) place += own[static_cast<std::size_t>(k)].group == group ? 1 : 0;
-  for (std::size_t k = 0; k < other.size(); ++k) {
-    if (other[k].group == group && place-- == 0) return static_cast<Index>(k);
+  for (Index k = 0; k < i; ++k) place += own[k].group == group ? 1 : 0;
+  for (Index k = 0; k < std::ssize(other); ++k) {
+    if (other[k].group == group && place-- == 0) return k;
   }
-  return -1;
+  return std::nullopt;
 }
 
 Prediction RivalModels::placebo(const Prediction& base) const {
   const Index n = base.value.size(), m = r_.problem.observed.size();
-  const Weighting weighting(r_.problem.covariance, surrogate_);
+  const naming::Weighting weighting(r_.problem.covariance, surrogate_);
   const MatrixXd& whitening = weighting.whitener;
   VectorXd moved = VectorXd::Zero(n);
   double least = std::numeric_limits<double>::infinity();
   const auto is_fitted = [&](Index i) {
-    return std::any_of(r_.fit.begin(), r_.fit.end(), [&](std::size_t c) { return partner(i, c) >= 0; });
+    return std::any_of(r_.fit.begin(), r_.fit.end(), [&](std::size_t c) { return partner(i, c).has_value(); });
   };
   for (int k = 0; k < kPlacebos; ++k) {
     emulate::Random random(r_.seed, static_cast<std::uint64_t>(1000 + k));
@@ -111,15 +111,15 @@ Prediction RivalModels::placebo(const Prediction& base) const {
     Index at = 0;
     for (const std::size_t c : r_.fit) {
       for (Index i = 0; i < n; ++i) {
-        if (const Index p = partner(i, c); p >= 0) fitted[at + p] = chance[i] * std::sqrt(r_.naming.covariance(at + p, at + p));
+        if (const auto p = partner(i, c)) fitted[at + *p] = chance[i] * std::sqrt(r_.naming.covariance(at + *p, at + *p));
       }
       at += r_.workshop.recorded[c].value.size();
     }
     // θ and the placebo's size in turn: the problem is nearly linear.
-    const Model model(r_.problem.data, surrogate_, weighting, {});
+    const naming::Model model(r_.problem.data, surrogate_, weighting, {});
     const VectorXd v = whitening * fitted;
     double size = 0;
-    FitResult fit = r_.naming.base;
+    naming::FitResult fit = r_.naming.base;
     for (int turn = 0; turn < 6; ++turn) {
       const VectorXd residual = whitening * (r_.problem.observed - surrogate_.at(fit.coded));
       size = v.squaredNorm() > 0 ? v.dot(residual) / v.squaredNorm() : 0;
@@ -133,15 +133,15 @@ Prediction RivalModels::placebo(const Prediction& base) const {
   p.name = "placebo", p.simulated = false;
   p.value += moved;
   for (Index i = 0; i < n; ++i) {
-    if (r_.workshop.recorded[held_].observables[static_cast<std::size_t>(i)].group == "power") p.power = p.value[i];
+    if (r_.workshop.recorded[held_].observables[i].group == "power") p.power = p.value[i];
   }
   return p;
 }
 
 Prediction RivalModels::discrepancy(const Prediction& base) const {
   const std::size_t conditions = r_.fit.size();
-  VectorXd speed(static_cast<Index>(conditions));
-  for (std::size_t k = 0; k < conditions; ++k) speed[static_cast<Index>(k)] = r_.question.speed[r_.fit[k]];
+  VectorXd speed(conditions);
+  for (std::size_t k = 0; k < conditions; ++k) speed[k] = r_.question.speed[r_.fit[k]];
   const double here = r_.question.speed[held_];
   const double range = std::max(1e-9, std::max(speed.maxCoeff(), here) - std::min(speed.minCoeff(), here));
   const auto kernel = [range](double a, double b) { return std::exp(-0.5 * std::pow((a - b) / range, 2)); };
@@ -149,19 +149,19 @@ Prediction RivalModels::discrepancy(const Prediction& base) const {
   Prediction p = base;
   p.name = "Gaussian-process discrepancy", p.simulated = false;
   for (Index i = 0; i < p.value.size(); ++i) {
-    VectorXd d(speed.size()), noise(speed.size());
+    VectorXd difference(speed.size()), noise(speed.size());
     Index at = 0;
     bool all = true;
     for (std::size_t k = 0; k < conditions; ++k) {
-      const Index partner_here = partner(i, r_.fit[k]);
-      all = all && partner_here >= 0;
+      const auto there = partner(i, r_.fit[k]);
+      all = there.has_value();
       if (!all) break;
-      d[static_cast<Index>(k)] = residual[at + partner_here];
-      noise[static_cast<Index>(k)] = r_.naming.covariance(at + partner_here, at + partner_here);
+      difference[k] = residual[at + *there];
+      noise[k] = r_.naming.covariance(at + *there, at + *there);
       at += r_.workshop.recorded[r_.fit[k]].value.size();
     }
     if (!all) continue;
-    const double signal = std::max(0.0, (d.cwiseAbs2() - noise).mean());  // what the residuals have beyond their noise
+    const double signal = std::max(0.0, (difference.cwiseAbs2() - noise).mean());  // what the residuals have beyond their noise
     if (signal == 0) continue;
     MatrixXd k = MatrixXd(noise.asDiagonal());
     VectorXd to(speed.size());
@@ -169,8 +169,8 @@ Prediction RivalModels::discrepancy(const Prediction& base) const {
       to[a] = signal * kernel(here, speed[a]);
       for (Index b = 0; b < speed.size(); ++b) k(a, b) += signal * kernel(speed[a], speed[b]);
     }
-    p.value[i] += to.dot(k.ldlt().solve(d));
-    if (r_.workshop.recorded[held_].observables[static_cast<std::size_t>(i)].group == "power") p.power = p.value[i];
+    p.value[i] += to.dot(k.ldlt().solve(difference));
+    if (r_.workshop.recorded[held_].observables[i].group == "power") p.power = p.value[i];
   }
   return p;
 }

@@ -23,14 +23,14 @@ class RivalModels {
   Prediction discrepancy(const Prediction& base) const;
 
  private:
-  /// Observable of the fitted condition that stands for number i of the held-out one: the same group, the same place in it; −1: none.
-  Index partner(Index i, std::size_t fitted) const;
+  /// Observable of the fitted condition that stands for number i of the held-out one: the same group, the same place in it.
+  std::optional<Index> partner(Index i, std::size_t fitted) const;
   /// Where the powers of a fitted condition stand among the observables of all fitted ones.
   std::vector<Index> powers_of(std::size_t condition) const;
 
   const HeldOutRequest& r_;
   std::size_t held_;
-  Surrogate surrogate_, held_surrogate_;
+  naming::Surrogate surrogate_, held_surrogate_;
 };
 
 }  // namespace millscope::diagnose

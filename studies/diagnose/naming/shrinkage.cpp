@@ -1,0 +1,35 @@
+#include "studies/diagnose/naming/shrinkage.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace millscope::naming {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+MatrixXd shrunk_covariance(const MatrixXd& draws, double blocks) {
+  const MatrixXd centred = draws.rowwise() - draws.colwise().mean();
+  MatrixXd c = centred.transpose() * centred / static_cast<double>(std::max<Index>(1, draws.rows() - 1));
+  const VectorXd deviation = c.diagonal().cwiseSqrt();
+  double chance = 0, found = 0;
+  for (Index i = 0; i < c.rows(); ++i) {
+    for (Index j = 0; j < i; ++j) {
+      const double scale = deviation[i] * deviation[j];
+      if (!(scale > 0)) continue;
+      const double r = c(i, j) / scale;
+      chance += std::pow(1 - r * r, 2) / std::max(1.0, blocks - 1);
+      found += r * r;
+    }
+  }
+  const double kept = found > 0 ? 1 - std::min(1.0, chance / found) : 0;
+  for (Index i = 0; i < c.rows(); ++i) {
+    for (Index j = 0; j < c.cols(); ++j) {
+      if (i != j) c(i, j) *= kept;
+    }
+  }
+  return c;
+}
+
+}  // namespace millscope::naming
