@@ -112,9 +112,10 @@ TEST_CASE("a turning floor drives a sphere, a sinking one leaves it behind, a ri
   }
   {
     const Assembly a = after("{translation: {velocity: [0, 0.5, 0]}}", 0.3);
-    CHECK(velocity(a, 0)[1] == Approx(0.5).epsilon(0.01));
-    CHECK(position(a, 0)[1] == Approx(0.15 + kRadius).epsilon(0.01));
-    CHECK(a.system->ledger().bodies[0].work == Approx(bead_mass() * (kGravity * 0.15 + 0.125)).epsilon(0.1));
+    CHECK(velocity(a, 0)[1] == Approx(0.5).epsilon(1e-4));
+    CHECK(position(a, 0)[1] == Approx(0.15 + kRadius).epsilon(1e-4));
+    // The floor keeps its speed: its work is that times the momentum that it gives, m (v + g t).
+    CHECK(a.system->ledger().bodies[0].work == Approx(bead_mass() * 0.5 * (0.5 + kGravity * 0.3)).epsilon(1e-3));
   }
   {
     s.law = "{kind: hertz_mindlin, allow_tension: false}";  // else the dashpot pulls
