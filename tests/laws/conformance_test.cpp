@@ -93,7 +93,7 @@ TEST_CASE("the builds for v2, v3 and v4 give the same bits") {
 }
 
 TEST_CASE("what a pair's own restitution gives, a restitution per contact gives too") {
-  for (const char* name : {"hertz_mindlin", "linear_spring_dashpot", "jkr"}) {
+  for (const char* name : {"hertz_mindlin", "hertz_mindlin_deresiewicz", "linear_spring_dashpot", "jkr"}) {
     std::string extra;
     if (std::string(name) == "linear_spring_dashpot") extra = " normal_stiffness=20000";
     if (std::string(name) == "jkr") extra = " surface_energy=0.1";
@@ -136,7 +136,9 @@ TEST_CASE("a contact law refuses what makes no sense and says the remedy") {
   CHECK_THROWS_WITH(make_law("linear_spring_dashpot", "restitution=0.8 static_friction=0.3"), Catch::Contains("exactly one of"));
   CHECK_THROWS_WITH(make_law("linear_spring_dashpot", "restitution=0.8 static_friction=0.3 normal_stiffness=1e4 contact_time=1e-4"),
                     Catch::Contains("exactly one of"));
-  for (const char* name : {"hertz_mindlin", "linear_spring_dashpot", "jkr"}) {
+  CHECK_THROWS_WITH(make_law("hertz_mindlin", "restitution=0.8 static_friction=0.3 tangential=mindlin_deresiewicz"),
+                    Catch::Contains("law: {kind: hertz_mindlin_deresiewicz}"));
+  for (const char* name : {"hertz_mindlin", "hertz_mindlin_deresiewicz", "linear_spring_dashpot", "jkr"}) {
     const Descriptor& d = plugin(name);
     for (std::uint64_t i = 0; i < d.parameter_count; ++i) {
       const Parameter& p = d.parameters[i];

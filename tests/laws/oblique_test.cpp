@@ -75,6 +75,37 @@ TEST_CASE("the row of springs is Mindlin and Deresiewicz's contact") {
   CHECK(force == Approx(4.0 / 3.0 * stiffness * slope * overlap * std::sqrt(overlap)).epsilon(2e-3));
 }
 
+TEST_CASE("under a constant load two springs follow the loops of the row: loading, unloading and reloading differ") {
+  const double friction = 0.3, overlap = 1e-5, radius = 5e-3;
+  const PairContext pair = wall_pair(63.96e6, kPoisson, radius, 2500);
+  const Law law = make_law("hertz_mindlin_deresiewicz", "restitution=1 static_friction=0.3", pair);
+  Contacts c(1);
+  c.own_friction = true;
+  c.overlap[0] = overlap, c.radius[0] = radius, c.mass[0] = pair.largest_mass;
+  Contacts::put(c.normal, 0, {1, 0, 0});
+  RowOfSprings row(kStiffness, friction, overlap / radius, 2000);
+  const double depth = overlap / radius, load = 4.0 / 3.0 * depth * std::sqrt(depth);  // free of units
+  const double whole = friction * overlap / kStiffness;                                // the slip at which all slides, m
+  double held = 0;
+  // Off most where the outer spring begins to slide: by φ(2/5) − 3/2 · 2/5 = 0.065 of the friction, twice that on a reversed curve, and by
+  // what it began with.
+  constexpr std::pair<double, double> kWay[] = {{0.8, 0.065}, {-0.4, 0.173}, {0.2, 0.054}, {1.5, 0.112}};
+  for (const auto& [target, off] : kWay) {
+    const double step = (target - held) * whole / 400;
+    double worst = 0;
+    for (int k = 0; k < 400; ++k) {
+      Contacts::put(c.velocity, 0, {0, step / 1e-6, 0});
+      c.step(law, 1e-6);
+      const double found = -c.force[1][0] / (friction * c.normal_force[0]), exact = row.pull(depth, step / radius) / (friction * load);
+      worst = std::max(worst, std::fabs(found - exact));
+    }
+    INFO("to " << target << " of the whole slip");
+    CHECK(worst == Approx(off).margin(0.002));
+    held = target;
+  }
+  CHECK(-c.force[1][0] == Approx(friction * c.normal_force[0]).epsilon(1e-9));
+}
+
 TEST_CASE("between sticking and sliding the surface of the bead reverses, as Maw, Barber & Fawcett (1976) found") {
   // Sliding ends and begins at ψ₁ = 7 S_t/S_n = 6.09 in rigid-body theory; with the compliance it lasts from 4 · 7/4 S_t/S_n − 1 = 5.09 on.
   // What each spring has more than Maw's ψ₂ when the step goes to zero: two springs in the place of the row little, one much.
