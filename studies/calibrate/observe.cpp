@@ -7,11 +7,11 @@
 
 #include "kernel/base/parallel.hpp"
 #include "kernel/output/summary.hpp"
+#include "studies/analysis/mirror.hpp"
 #include "studies/calibrate/recorded.hpp"
 #include "studies/calibrate/velocity_profile.hpp"
 #include "studies/camera/camera.hpp"
 #include "studies/camera/ctrack_writer.hpp"
-#include "studies/compare/mirror.hpp"
 
 namespace millscope::calibrate {
 namespace {

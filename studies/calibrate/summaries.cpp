@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/mill_regions.hpp"
 #include "kernel/base/statistics.hpp"
-#include "studies/compare/regions.hpp"
 #include "studies/diagnose/naming/shrinkage.hpp"
 
 namespace millscope::calibrate {
@@ -56,22 +56,17 @@ void add_distribution(const ResultSet& recorded, const std::string& axis, const 
   out.insert(out.end(), groups.begin(), groups.end());
 }
 
-studies::CellAxis cells(const ResultSet& results, const ResultArray& map, std::size_t dimension, const char* label) {
-  return {label, "m", results.axis(map, dimension)->value};
-}
-
 void add_regions(const ResultSet& recorded, const Study& study, std::vector<Summary>& out) {
   const ResultArray& occupancy = array_of(recorded, "pept_grid", "occupancy");
-  const double omega = recorded.meta.context.omega;
-  const studies::MillPlace mill{recorded.meta.context.mill_radius, omega > 0 ? 1.0 : omega < 0 ? -1.0 : 0.0};
-  std::vector<studies::Region> regions = studies::regions_of(cells(recorded, occupancy, 0, "y"), cells(recorded, occupancy, 1, "x"), mill);
-  const auto share = [&](const studies::Region& r) {
+  const base::MillPlace mill = base::mill_place(recorded.meta.context.mill_radius, recorded.meta.context.omega);
+  std::vector<base::Region> regions = base::regions_of(recorded.axis(occupancy, 0)->value, recorded.axis(occupancy, 1)->value, mill);
+  const auto share = [&](const base::Region& r) {
     return std::accumulate(r.cells.begin(), r.cells.end(), 0.0,
                            [&](double s, std::size_t c) { return s + (std::isnan(occupancy.value[c]) ? 0.0 : occupancy.value[c]); });
   };
   std::stable_sort(regions.begin(), regions.end(), [&](const auto& a, const auto& b) { return share(a) > share(b); });
   if (regions.size() > kRegions) regions.resize(kRegions);
-  for (const studies::Region& r : regions) {
+  for (const base::Region& r : regions) {
     if (!left_out(study, "occupancy"))
       out.push_back({{"occupancy " + r.name, "%", "occupancy"}, Summary::sum, "pept_grid", "occupancy", "", r.cells, 100});
     if (!left_out(study, "region_speed"))

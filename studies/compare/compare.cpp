@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "studies/analysis/mirror.hpp"
 #include "studies/compare/elements.hpp"
-#include "studies/compare/mirror.hpp"
 #include "studies/compare/pair.hpp"
 #include "studies/picture/results_pictures.hpp"
 #include "studies/picture/scale.hpp"

@@ -9,7 +9,6 @@
 
 #include "studies/analysis/results.hpp"
 #include "studies/compare/family_test.hpp"
-#include "studies/compare/regions.hpp"
 
 namespace millscope::studies {
 

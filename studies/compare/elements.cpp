@@ -130,7 +130,7 @@ class Builder {
     if (!is_cross_section(y, x)) return;
     std::vector<std::size_t> place(a_.size(), cells.elements.size());  // of each cell among the elements
     for (std::size_t k = 0; k < cells.elements.size(); ++k) place[cells.elements[k].index] = k;
-    const std::vector<Region> regions = regions_of(y, x, mill_);
+    const std::vector<base::Region> regions = base::regions_of(y.edges, x.edges, mill_);
     for (std::size_t r = 0; r < regions.size(); ++r) {
       std::vector<std::size_t> judged;
       for (const std::size_t cell : regions[r].cells) {
@@ -177,7 +177,7 @@ class Builder {
   const ResultSet& results_;
   ResultPair pair_;
   const ResultArray &a_, &b_;
-  MillPlace mill_;
+  base::MillPlace mill_;
   std::vector<std::vector<float>> draws_a_, draws_b_;
   PreparedObservable out_;
 };
@@ -192,12 +192,16 @@ std::string along(const CellAxis& axis, std::size_t i) {
 
 }  // namespace
 
-MillPlace mill_place(const ResultSet& results) {
-  const double omega = results.meta.context.omega;
-  return {results.meta.context.mill_radius, omega > 0 ? 1.0 : omega < 0 ? -1.0 : 0.0};
+base::MillPlace mill_place(const ResultSet& results) {
+  return base::mill_place(results.meta.context.mill_radius, results.meta.context.omega);
 }
 
-std::string where_text(const ResultSet& results, const ResultArray& array, std::size_t index, const MillPlace& mill) {
+std::string place_text(double x, double y, const base::MillPlace& mill) {
+  const std::string place = fmt::format("x {} mm, y {} mm", number_text(1e3 * x, 1), number_text(1e3 * y, 1));
+  return mill.known() ? fmt::format("{} ({})", place, base::place_in_mill(x, y, mill)) : place;
+}
+
+std::string where_text(const ResultSet& results, const ResultArray& array, std::size_t index, const base::MillPlace& mill) {
   if (array.shape.empty()) return "";
   std::vector<CellAxis> axes;
   for (std::size_t d = 0; d < array.shape.size(); ++d) axes.push_back(cell_axis(results, array, d));

@@ -1,6 +1,7 @@
 // From a pair of results to elements that can be judged, with their resamples.
 #pragma once
 
+#include "kernel/base/mill_regions.hpp"
 #include "studies/compare/compare.hpp"
 #include "studies/compare/pair.hpp"
 
@@ -21,9 +22,12 @@ PreparedObservable prepare_observable(const ResultSet& a, const ResultSet& b, co
 PreparedObservable prepare_regions(const ResultSet& a, const ResultSet& b, const ResultPair& pair);
 
 /// "x −85 mm, y −62 mm (…)", "energy 1–2 mJ", "": where element `index` lies.
-std::string where_text(const ResultSet& results, const ResultArray& array, std::size_t index, const MillPlace& mill);
+std::string where_text(const ResultSet& results, const ResultArray& array, std::size_t index, const base::MillPlace& mill);
 
 /// What the results say of the mill.
-MillPlace mill_place(const ResultSet& results);
+base::MillPlace mill_place(const ResultSet& results);
+
+/// "x −85 mm, y −62 mm (0.70 R, 54° past 6 o'clock)"; the part in brackets only where the mill is known.
+std::string place_text(double x, double y, const base::MillPlace& mill);
 
 }  // namespace millscope::studies

@@ -32,10 +32,10 @@ const ComparedObservable* regions_for(const Comparison& c, const ComparedObserva
 
 /// Borders of the regions of this map that differ.
 std::vector<Outline> differing_regions(const Comparison& c, const ComparedObservable& by_region, const CellAxis& y, const CellAxis& x) {
-  const std::vector<Region> regions = regions_of(y, x, mill_place(c.a));
+  const std::vector<base::Region> regions = base::regions_of(y.edges, x.edges, mill_place(c.a));
   std::vector<bool> chosen(regions.size(), false);
   for (const ComparedElement& e : by_region.elements) chosen[e.index] = e.test.adjusted_p <= c.options.level;
-  return borders_of(regions, chosen, mill_place(c.a));
+  return base::borders_of(regions, chosen, mill_place(c.a));
 }
 
 /// What the map shows, in words.

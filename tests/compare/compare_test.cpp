@@ -6,7 +6,8 @@
 
 #include "host/temporary.hpp"
 #include "made_up.hpp"
-#include "studies/compare/mirror.hpp"
+#include "studies/analysis/mirror.hpp"
+#include "studies/compare/elements.hpp"
 
 using namespace millscope::studies;
 using compare_test::make_results;
@@ -65,24 +66,11 @@ TEST_CASE("a region that differs is named as an engineer would") {
 }
 
 TEST_CASE("cells are named by place, radius and clock") {
-  const MillPlace clockwise{0.15, -1};
+  const millscope::base::MillPlace clockwise{0.15, -1};
   CHECK(place_text(-0.105, 0.0, clockwise) == "x −105 mm, y 0 mm (0.70 R, 90° past 6 o'clock)");
   CHECK(place_text(0.105, 0.0, {0.15, 1}) == "x 105 mm, y 0 mm (0.70 R, 90° past 6 o'clock)");
   CHECK(place_text(0.075, -0.1299, clockwise) == "x 75 mm, y −130 mm (1.00 R, 30° before 6 o'clock)");
   CHECK(place_text(0.01, 0.02, {}) == "x 10 mm, y 20 mm");
-}
-
-TEST_CASE("every cell of a map lies in one region") {
-  CellAxis axis{"x", "m", {}};
-  for (int i = 0; i <= 30; ++i) axis.edges.push_back(-0.15 + 0.01 * i);
-  std::vector<int> seen(900, 0);
-  const auto regions = regions_of(axis, axis, {0.15, -1});
-  CHECK(regions.size() == 24);
-  for (const Region& region : regions) {
-    for (const std::size_t cell : region.cells) ++seen[cell];
-  }
-  CHECK(std::count(seen.begin(), seen.end(), 1) == 900);
-  CHECK(regions_of(axis, axis, {0.15, 0}).empty());
 }
 
 TEST_CASE("of two senses one is mirrored, and it is said") {

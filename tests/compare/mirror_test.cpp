@@ -1,6 +1,6 @@
 // The rules for mirror images, held against every analyzer of the build: a recording and its mirror image give results that are mirror
 // images.
-#include "studies/compare/mirror.hpp"
+#include "studies/analysis/mirror.hpp"
 
 #include <fmt/format.h>
 

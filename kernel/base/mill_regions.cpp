@@ -1,17 +1,16 @@
-#include "studies/compare/regions.hpp"
+#include "kernel/base/mill_regions.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
-#include "studies/picture/scale.hpp"
-
-namespace millscope::studies {
+namespace millscope::base {
 namespace {
 
-constexpr double kDegrees = 57.29577951308232;
+constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::array<double, 4> kRings{0, 0.5, 0.8, 1};  // of R; the outermost takes what lies beyond, too
 constexpr int kSectors = 8;
 
@@ -35,25 +34,29 @@ std::array<double, 2> at(const MillPlace& mill, std::size_t ring, double degrees
   return {mill.sense * radius * std::sin(angle), -radius * std::cos(angle)};
 }
 
-Outline arc(const MillPlace& mill, std::size_t ring, int sector) {
+using Line = std::vector<std::array<double, 2>>;
+
+Line arc(const MillPlace& mill, std::size_t ring, int sector) {
   constexpr int kSteps = 24;
-  Outline line;
+  Line line;
   for (int i = 0; i <= kSteps; ++i) line.push_back(at(mill, ring, (sector + static_cast<double>(i) / kSteps) * 360.0 / kSectors - 180));
   return line;
 }
 
 }  // namespace
 
-std::vector<Region> regions_of(const CellAxis& y, const CellAxis& x, const MillPlace& mill) {
-  if (!(mill.radius > 0) || mill.sense == 0) return {};
+MillPlace mill_place(double radius, double omega) { return {radius, omega > 0 ? 1.0 : omega < 0 ? -1.0 : 0.0}; }
+
+std::vector<Region> regions_of(std::span<const double> y_edges, std::span<const double> x_edges, const MillPlace& mill) {
+  if (!mill.known()) return {};
   std::vector<Region> all;
   for (std::size_t ring = 0; ring + 1 < kRings.size(); ++ring) {
     for (int sector = 0; sector < kSectors; ++sector) all.push_back({region_name(ring, sector), {}, ring, sector});
   }
-  const std::size_t nx = x.edges.size() - 1, ny = y.edges.size() - 1;
+  const std::size_t nx = x_edges.size() - 1, ny = y_edges.size() - 1;
   for (std::size_t iy = 0; iy < ny; ++iy) {
     for (std::size_t ix = 0; ix < nx; ++ix) {
-      const double px = std::midpoint(x.edges[ix], x.edges[ix + 1]), py = std::midpoint(y.edges[iy], y.edges[iy + 1]);
+      const double px = std::midpoint(x_edges[ix], x_edges[ix + 1]), py = std::midpoint(y_edges[iy], y_edges[iy + 1]);
       const double r = std::hypot(px, py) / mill.radius;
       const std::size_t ring = r < kRings[1] ? 0 : r < kRings[2] ? 1 : 2;
       const int sector = std::min(kSectors - 1, static_cast<int>((clock_angle(px, py, mill.sense) + 180) * kSectors / 360));
@@ -64,10 +67,10 @@ std::vector<Region> regions_of(const CellAxis& y, const CellAxis& x, const MillP
   return all;
 }
 
-std::vector<Outline> borders_of(const std::vector<Region>& regions, const std::vector<bool>& chosen, const MillPlace& mill) {
+std::vector<Line> borders_of(const std::vector<Region>& regions, const std::vector<bool>& chosen, const MillPlace& mill) {
   std::array<std::array<bool, kSectors>, kRings.size()> is_chosen{};  // the last ring lies outside the mill
   for (std::size_t i = 0; i < regions.size(); ++i) is_chosen[regions[i].ring][static_cast<std::size_t>(regions[i].sector)] = chosen[i];
-  std::vector<Outline> lines;
+  std::vector<Line> lines;
   for (std::size_t ring = 0; ring + 1 < kRings.size(); ++ring) {
     for (int sector = 0; sector < kSectors; ++sector) {
       const bool here = is_chosen[ring][static_cast<std::size_t>(sector)];
@@ -81,11 +84,9 @@ std::vector<Outline> borders_of(const std::vector<Region>& regions, const std::v
   return lines;
 }
 
-std::string place_text(double x, double y, const MillPlace& mill) {
-  const auto mm = [](double metres) { return number_text(1e3 * metres, 1); };
-  std::string place = fmt::format("x {} mm, y {} mm", mm(x), mm(y));
-  if (!(mill.radius > 0) || mill.sense == 0) return place;
-  return fmt::format("{} ({:.2f} R, {})", place, std::hypot(x, y) / mill.radius, signed_angle(clock_angle(x, y, mill.sense)));
+std::string place_in_mill(double x, double y, const MillPlace& mill) {
+  if (!mill.known()) return "";
+  return fmt::format("{:.2f} R, {}", std::hypot(x, y) / mill.radius, signed_angle(clock_angle(x, y, mill.sense)));
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::base

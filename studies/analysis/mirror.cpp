@@ -1,4 +1,4 @@
-#include "studies/compare/mirror.hpp"
+#include "studies/analysis/mirror.hpp"
 
 #include <fmt/format.h>
 
