@@ -110,7 +110,7 @@ int extend(const Arguments& arguments) {
   return kDone;
 }
 
-constexpr Action kActions[] = {
+constexpr Action kBankActions[] = {
     {"status", "what is in the cache, and how long the rest will take", status},
     {"extend", "run what is missing", extend},
 };
@@ -118,7 +118,7 @@ constexpr Action kActions[] = {
 }  // namespace
 
 int bank(const Arguments& arguments) {
-  return call_action({"bank", "The simulations that a diagnosis is answered from, looked at and run apart from it.", kActions,
+  return call_action({"bank", "The simulations that a diagnosis is answered from, looked at and run apart from it.", kBankActions,
                       "millscope bank status configs/mill10/diagnose.yaml --cache diagnosis/cache"},
                      arguments);
 }

@@ -4,9 +4,9 @@
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <sstream>
 
 #include "app/commands.hpp"
+#include "app/study_options.hpp"
 #include "studies/campaign/task.hpp"
 #include "studies/campaign/tasks_file.hpp"
 
@@ -16,16 +16,6 @@ namespace {
 namespace po = boost::program_options;
 namespace fs = std::filesystem;
 using base::UserError;
-
-/// "--partition=long --time=60" → words.
-std::vector<std::string> words_of(const std::vector<std::string>& texts) {
-  std::vector<std::string> words;
-  for (const std::string& text : texts) {
-    std::istringstream in(text);
-    for (std::string word; in >> word;) words.push_back(word);
-  }
-  return words;
-}
 
 campaign::Options campaign_options(const Options& options, const fs::path& output) {
   campaign::Options c;

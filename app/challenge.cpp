@@ -130,7 +130,7 @@ int score_sets(const Arguments& arguments) {
   return kDone;
 }
 
-constexpr Action kActions[] = {
+constexpr Action kChallengeActions[] = {
     {"make", "draw mills with hidden physics and record them", make_sets},
     {"run", "diagnose the sets", run_sets},
     {"score", "hold the diagnoses against the sealed answers", score_sets},
@@ -140,7 +140,7 @@ constexpr Action kActions[] = {
 
 int challenge_sets(const Arguments& arguments) {
   return call_action({"challenge", "Sets with hidden physics: made, diagnosed, scored against sealed answers. Particles are spheres.",
-                      kActions, "millscope challenge make configs/mill10/challenge.yaml -o sets"},
+                      kChallengeActions, "millscope challenge make configs/mill10/challenge.yaml -o sets"},
                      arguments);
 }
 

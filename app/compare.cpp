@@ -34,7 +34,7 @@ void print_rest(const studies::Comparison& c) {
 }
 
 /// Removes the pictures of the earlier comparison in OUT, which this one may lack; anything else stays.
-void remove_earlier(const fs::path& output) {
+void remove_earlier_pictures(const fs::path& output) {
   const auto earlier = output::read_json(output / "comparison.json");
   if (!earlier.is_object() || !earlier.contains("observables") || !earlier["observables"].is_array()) return;
   std::error_code ignored;
@@ -47,7 +47,7 @@ void remove_earlier(const fs::path& output) {
 }
 
 void write_output(const studies::Comparison& c, const fs::path& output, const host::Registry& registry, bool quiet) {
-  remove_earlier(output);
+  remove_earlier_pictures(output);
   studies::write_comparison(c, output);
   std::string lacking;
   const studies::MillOutline mill = studies::outline_of(c.a, registry, lacking);

@@ -176,7 +176,7 @@ int design(const Arguments& arguments) {
   return kDone;
 }
 
-constexpr Action kActions[] = {
+constexpr Action kDoeActions[] = {
     {"analyze", "what planned runs tell: effects, surfaces, runs that stand out", analyze_plan},
     {"design", "plan runs", design},
 };
@@ -184,7 +184,7 @@ constexpr Action kActions[] = {
 }  // namespace
 
 int design_of_experiments(const Arguments& arguments) {
-  return call_action({"doe", "Design of experiments.", kActions, "millscope doe analyze tests/doe/data/ccd_75.csv"}, arguments);
+  return call_action({"doe", "Design of experiments.", kDoeActions, "millscope doe analyze tests/doe/data/ccd_75.csv"}, arguments);
 }
 
 }  // namespace millscope::app

@@ -47,7 +47,7 @@ int convert(const Arguments& arguments) {
   return kDone;
 }
 
-constexpr Action kActions[] = {
+constexpr Action kPeptActions[] = {
     {"inspect", "how good a recording is and what it can support", inspect},
     {"convert", "the points of a recording in the layout of a simulation's tracks", convert},
     {"camera", "estimate the camera of a recording", pept_camera},
@@ -58,7 +58,7 @@ constexpr Action kActions[] = {
 
 int pept(const Arguments& arguments) {
   return call_action(
-      {"pept", "Recordings of a tracer in a mill (positron emission particle tracking).", kActions, "millscope pept inspect run1.a"},
+      {"pept", "Recordings of a tracer in a mill (positron emission particle tracking).", kPeptActions, "millscope pept inspect run1.a"},
       arguments);
 }
 

@@ -24,7 +24,7 @@ constexpr double kMostMovie = 500;  // MB
 constexpr int kStay = 60;           // s that a page is served after the last run has ended
 
 volatile std::sig_atomic_t stop_asked = 0;
-void on_signal(int) { stop_asked = 1; }
+void stop_watching(int) { stop_asked = 1; }
 
 std::string title_of(const Options& options, const std::vector<std::string>& folders) {
   if (options.has("title")) return options.text("title");
@@ -110,8 +110,8 @@ int watch(const Arguments& arguments) {
     idle = report::is_going_on(out) ? 0 : idle + 1;
     return stop_asked == 0 && (stays || idle <= kStay);
   };
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  std::signal(SIGINT, stop_watching);
+  std::signal(SIGTERM, stop_watching);
   report::watch(out, options.registry(), w);
   return kDone;
 }

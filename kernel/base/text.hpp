@@ -1,9 +1,10 @@
-// Whole files as text.
+// Whole files as text; text without the blanks around it.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace millscope::base {
 
@@ -12,5 +13,12 @@ std::string text_of(const std::filesystem::path& file);
 
 /// The same where the caller has something better to say, or to do: nothing for a file that cannot be read.
 std::optional<std::string> text_if_readable(const std::filesystem::path& file);
+
+/// `text` without `blanks` at its ends.
+inline std::string trimmed(std::string_view text, std::string_view blanks = " \t") {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
+}
 
 }  // namespace millscope::base

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "kernel/base/text.hpp"
 #include "kernel/config/document.hpp"
 
 namespace millscope::config {
@@ -32,12 +33,6 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 
 bool is_beginning(const std::string& part, const std::string& whole) { return part.size() >= 3 && whole.rfind(part, 0) == 0; }
-
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  if (first == std::string_view::npos) return "";
-  return std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
-}
 
 }  // namespace
 
@@ -68,7 +63,7 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
 std::string normal_pair(std::string_view key) {
   const std::size_t tilde = key.find('~');
   if (tilde == std::string_view::npos || key.find('~', tilde + 1) != std::string_view::npos) return std::string(key);
-  std::string first = trimmed(key.substr(0, tilde)), second = trimmed(key.substr(tilde + 1));
+  std::string first = base::trimmed(key.substr(0, tilde), " "), second = base::trimmed(key.substr(tilde + 1), " ");
   if (second < first) std::swap(first, second);
   return first + "~" + second;
 }

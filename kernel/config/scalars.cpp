@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "kernel/base/text.hpp"
 #include "kernel/config/units.hpp"
 
 namespace millscope::config {
@@ -13,12 +14,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  if (first == std::string_view::npos) return "";
-  return std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
-}
 
 /// Length of the decimal number at the start of `text`, 0 if there is none.
 std::size_t number_length(std::string_view text) {
@@ -77,7 +72,7 @@ Range not_negative(const char* reason) { return {0, kInfinity, false, false, rea
 Range between(double low, double high, const char* reason) { return {low, high, false, false, reason}; }
 
 Quantity read_quantity(const Node& node) {
-  const std::string text = trimmed(node.text());
+  const std::string text = base::trimmed(node.text(), " ");
   const std::size_t length = number_length(text);
   if (length == 0) node.fail(fmt::format("is '{}'; a number is expected, bare (SI) or with a unit such as '5 mm'", node.text()));
   const bool zero_first = length > 1 && text[text[0] == '-' || text[0] == '+' ? 1 : 0] == '0';
@@ -87,7 +82,7 @@ Quantity read_quantity(const Node& node) {
   const std::size_t sign = text[0] == '+' ? 1 : 0;
   const auto result = std::from_chars(text.data() + sign, text.data() + length, quantity.number);
   if (result.ec != std::errc() || !std::isfinite(quantity.number)) node.fail(fmt::format("is '{}', which no double holds", text));
-  const std::string rest = trimmed(std::string_view(text).substr(length));
+  const std::string rest = base::trimmed(std::string_view(text).substr(length), " ");
   if (rest.empty()) return quantity;
   if (rest[0] == ',' || rest[0] == '_') node.fail(fmt::format("is '{}'; write the number with a decimal point and no separators", text));
   quantity.has_unit = true;

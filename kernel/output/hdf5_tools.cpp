@@ -21,19 +21,19 @@ herr_t note_fault(unsigned, const H5E_error2_t* entry, void* into) {
   return 0;
 }
 
-Handle text_type() {
-  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type, H5T_VARIABLE);
-  H5Tset_cset(type, H5T_CSET_UTF8);
-  return type;
-}
-
 void write_attribute(hid_t object, const char* name, hid_t type, hid_t space, const void* value) {
   const Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   if (attribute.valid()) H5Awrite(attribute, type, value);
 }
 
 }  // namespace
+
+Handle text_type() {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, H5T_VARIABLE);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  return type;
+}
 
 void prepare() {
   // After a full disk HDF5 would try at exit to write what it still holds, and complain about it.

@@ -52,6 +52,9 @@ Fault last_fault();
 /// Throws the UserError for the last HDF5 failure on `file` while `doing` ("writing position").
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& doing);
 
+/// Text of any length, UTF-8.
+Handle text_type();
+
 /// `handle`, or throws.
 Handle checked(Handle handle, const std::filesystem::path& file, const std::string& doing);
 void check(herr_t status, const std::filesystem::path& file, const std::string& doing);

@@ -12,13 +12,6 @@ namespace {
   throw base::UserError(fmt::format("{}: {}; it is damaged or was not written by millscope: write it again", path.string(), what));
 }
 
-Handle text_type() {
-  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type, H5T_VARIABLE);
-  H5Tset_cset(type, H5T_CSET_UTF8);
-  return type;
-}
-
 }  // namespace
 
 Handle open_for_reading(const std::filesystem::path& path, const std::string& remedy) {

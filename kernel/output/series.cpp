@@ -24,7 +24,7 @@ using base::UserError;
 
 namespace {
 
-constexpr std::size_t kBufferBytes = 64 * 1024;
+constexpr std::size_t kTableBufferBytes = 64 * 1024;
 
 std::string header(std::span<const std::string> columns) { return fmt::format("{}\n", fmt::join(columns, ",")); }
 
@@ -104,7 +104,7 @@ void SeriesWriter::append(std::span<const double> values) {
   if (values.size() != impl_->columns) throw std::logic_error("SeriesWriter: a row needs one value per column");
   // "{}" is the shortest text that reads back to the same double.
   fmt::format_to(std::back_inserter(impl_->buffer), "{}\n", fmt::join(values, ","));
-  if (impl_->buffer.size() >= kBufferBytes) impl_->write_through();
+  if (impl_->buffer.size() >= kTableBufferBytes) impl_->write_through();
 }
 
 void SeriesWriter::flush() {

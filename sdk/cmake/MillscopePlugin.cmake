@@ -20,7 +20,7 @@ function(_millscope_plugin_variant name folder march sources links)
   endif()
   target_compile_features(${target} PRIVATE cxx_std_20)
   target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Sanitize>>:-O3> -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden ${march})
-  set_target_properties(${target} PROPERTIES PREFIX "lib" OUTPUT_NAME ${name} SUFFIX ".so"
+  set_target_properties(${target} PROPERTIES PREFIX "lib" OUTPUT_NAME ${name} SUFFIX ".so" UNITY_BUILD OFF
                         LIBRARY_OUTPUT_DIRECTORY ${MILLSCOPE_PLUGIN_OUTPUT}/${folder})
   # The loader refuses what others can write, whatever the umask of the build was.
   add_custom_command(TARGET ${target} POST_BUILD COMMAND chmod go-w $<TARGET_FILE:${target}> $<TARGET_FILE_DIR:${target}> ${MILLSCOPE_PLUGIN_OUTPUT}

@@ -11,7 +11,6 @@
 namespace millscope::studies {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kReliableBlocks = 10;
 constexpr double kRounding = 1e-12;  // relative: what adding the same numbers in another order changes
 

@@ -14,10 +14,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace millscope::studies {
+
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();  ///< what the data leave undefined
 
 /// counts[b n + i]: how often block i is in draw b. The same on every machine.
 std::vector<std::uint32_t> draw_counts(std::size_t blocks, std::size_t draws, std::uint64_t seed);

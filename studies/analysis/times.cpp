@@ -12,8 +12,6 @@
 namespace millscope::studies {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 /// Mean and variance of all values.
 struct Moments {
   double mean = 0, variance = 0;

@@ -5,13 +5,10 @@
 
 #include "studies/calibrate/study_sections.hpp"
 
+#include "kernel/base/text.hpp"
+
 namespace millscope::calibrate {
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
 
 std::optional<double> number(const std::string& text) {
   double value = 0;
@@ -28,13 +25,14 @@ struct Side {
 
 Side read_side(const config::Node& node, const std::string& text, const std::vector<Parameter>& parameters) {
   Side side;
-  std::string name = trimmed(text);
+  std::string name = base::trimmed(text);
   if (const auto alone = number(name)) return {*alone, -1};
   if (const std::size_t star = name.find('*'); star != std::string::npos) {
-    const auto factor = number(trimmed(name.substr(0, star)));
-    if (!factor) node.fail(fmt::format("is '{}': '{}' is no number; write e.g. a < 0.5 * b", node.text(), trimmed(name.substr(0, star))));
+    const auto factor = number(base::trimmed(name.substr(0, star)));
+    if (!factor)
+      node.fail(fmt::format("is '{}': '{}' is no number; write e.g. a < 0.5 * b", node.text(), base::trimmed(name.substr(0, star))));
     side.factor = *factor;
-    name = trimmed(name.substr(star + 1));
+    name = base::trimmed(name.substr(star + 1));
   }
   side.parameter = find_parameter(parameters, name);
   if (side.parameter >= 0) return side;

@@ -161,7 +161,8 @@ std::vector<Trial> Evaluator::evaluate(const std::vector<Eigen::VectorXd>& point
 std::vector<std::pair<std::size_t, Trial>> Evaluator::each_in(const Eigen::VectorXd& point,
                                                               const std::vector<std::size_t>& conditions) const {
   std::vector<Job> jobs;
-  for (const std::size_t c : conditions) jobs.push_back({{point, 0}, {c}});
+  const Wanted wanted{point, 0};
+  for (const std::size_t c : conditions) jobs.push_back({wanted, {c}});
   std::vector<Trial> trials = run(jobs, "validation");
   std::vector<std::pair<std::size_t, Trial>> each;
   for (std::size_t i = 0; i < trials.size(); ++i) each.emplace_back(conditions[i], std::move(trials[i]));

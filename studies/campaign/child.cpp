@@ -17,8 +17,6 @@
 namespace millscope::campaign {
 namespace {
 
-constexpr int kCannotStart = 127;
-
 /// Between fork and exec: only calls that are safe there.
 [[noreturn]] void become(char* const* words, int output, pid_t head) {
   ::setpgid(0, 0);

@@ -12,6 +12,9 @@
 
 namespace millscope::campaign {
 
+inline constexpr int kInterruptedCode = 3;  ///< exit code of a simulation that was stopped and can be resumed
+inline constexpr int kCannotStart = 127;    ///< exit code where the program cannot be started, as of a shell
+
 /// How a process ended.
 struct Ended {
   int exit_code = 0;  ///< meaningless when a signal ended it

@@ -20,7 +20,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kInterruptedCode = 3, kCannotStart = 127;
 constexpr int kFruitless = 3;       // stops without a newer checkpoint, before a simulation counts as failed
 constexpr double kLookEvery = 0.5;  // s between two looks at what another head holds
 constexpr auto kBreath = std::chrono::milliseconds(10);

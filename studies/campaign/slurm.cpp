@@ -25,7 +25,7 @@ constexpr int kTries = 3;                              // lost tasks without a n
 constexpr int kMissingLooks = 2;                       // a shared directory may show results later than the queue shows the end
 constexpr double kQueuePatience = 300;                 // s that squeue may fail: controllers are restarted now and then
 constexpr std::uint64_t kUsualMemory = 1'000'000'000;  // bytes: what any partition gives a task; more is asked for
-constexpr auto kBreath = std::chrono::milliseconds(50);
+constexpr auto kQueueBreath = std::chrono::milliseconds(50);
 
 struct Handed {
   Job job;
@@ -54,7 +54,7 @@ class Slurm {
         next_poll_ = now() + board_.options().poll_s;
       }
       report();
-      std::this_thread::sleep_for(kBreath);
+      std::this_thread::sleep_for(kQueueBreath);
     }
   }
 

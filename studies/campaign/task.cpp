@@ -13,6 +13,7 @@
 #include "kernel/output/file.hpp"
 #include "kernel/run/simulation.hpp"
 #include "studies/campaign/cache.hpp"
+#include "studies/campaign/child.hpp"
 
 namespace millscope::campaign {
 namespace {
@@ -20,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 using base::UserError;
 
-constexpr int kInterruptedCode = 3;
 constexpr double kPatience = 30;  // s for another process to write its last checkpoint
 
 void on_signal(int signal) {

@@ -12,7 +12,7 @@ namespace millscope::challenge {
 namespace {
 
 template <class... Values>
-void add(std::string& out, fmt::format_string<Values...> text, Values&&... values) {
+void append(std::string& out, fmt::format_string<Values...> text, Values&&... values) {
   fmt::format_to(std::back_inserter(out), text, std::forward<Values>(values)...);
 }
 
@@ -21,8 +21,8 @@ void every_set(const Page& page, std::string& out) {
   for (const Marked& m : page.sets) {
     std::string strength;
     for (const TrueEffect& e : m.answer.effects) strength += fmt::format("{}{:.2f}", strength.empty() ? "" : ", ", e.share);
-    add(out, "| {} | {} | {} | {}{} |\n", m.answer.set, label_of(m.answer), strength, m.found ? label_of(*m.found) : "not diagnosed yet",
-        m.found && !m.found->failure.empty() ? ": " + m.found->failure : "");
+    append(out, "| {} | {} | {} | {}{} |\n", m.answer.set, label_of(m.answer), strength, m.found ? label_of(*m.found) : "not diagnosed yet",
+           m.found && !m.found->failure.empty() ? ": " + m.found->failure : "");
   }
   out += "\n";
 }
@@ -30,13 +30,13 @@ void every_set(const Page& page, std::string& out) {
 void confusion(const Score& s, std::string& out) {
   if (s.answers.empty()) return;
   out += "## Confusion\n\nRows: what is hidden; columns: what the diagnosis says.\n\n|";
-  for (const std::string& answer : s.answers) add(out, " | {}", answer);
+  for (const std::string& answer : s.answers) append(out, " | {}", answer);
   out += " |\n|---";
   for (std::size_t i = 0; i < s.answers.size(); ++i) out += "|---";
   out += "|\n";
   for (std::size_t r = 0; r < s.truths.size(); ++r) {
-    add(out, "| {}", s.truths[r]);
-    for (const int count : s.confusion[r]) add(out, " | {}", count == 0 ? "" : std::to_string(count));
+    append(out, "| {}", s.truths[r]);
+    for (const int count : s.confusion[r]) append(out, " | {}", count == 0 ? "" : std::to_string(count));
     out += " |\n";
   }
   out += "\n";
@@ -47,8 +47,8 @@ void power(const Score& s, std::string& out) {
       "## Power\n\nλ: squared length, in noise units, of the effect's part that no retuning imitates, by the diagnosis' own "
       "surrogate, at the hidden strength.\n\n| λ | named, alone or in a class of two |\n|---|---|\n";
   for (const PowerBin& b : s.power)
-    add(out, "| {} | {} |\n", std::isfinite(b.high) ? fmt::format("{:g} … {:g}", b.low, b.high) : fmt::format("{:g} and more", b.low),
-        count_text(b.named));
+    append(out, "| {} | {} |\n", std::isfinite(b.high) ? fmt::format("{:g} … {:g}", b.low, b.high) : fmt::format("{:g} and more", b.low),
+           count_text(b.named));
   out += "\n";
 }
 
@@ -57,14 +57,16 @@ void doses(const Score& s, std::string& out) {
   if (!s.doses.empty()) {
     out += "| set | hypothesis | hidden share | estimated share | named |\n|---|---|---|---|---|\n";
     for (const Dose& d : s.doses)
-      add(out, "| {} | {} | {:.2f} | {:.2f} | {} |\n", d.set, d.hypothesis, d.truth, d.estimate, d.found ? "yes" : "no");
+      append(out, "| {} | {} | {:.2f} | {:.2f} | {} |\n", d.set, d.hypothesis, d.truth, d.estimate, d.found ? "yes" : "no");
     out += "\n";
   }
-  if (std::isfinite(s.line.slope)) add(out, "Least squares: estimate = {:.2f} + {:.2f} × hidden share.\n", s.line.intercept, s.line.slope);
+  if (std::isfinite(s.line.slope))
+    append(out, "Least squares: estimate = {:.2f} + {:.2f} × hidden share.\n", s.line.intercept, s.line.slope);
   if (!s.at_zero.empty()) {
     const double mean = std::accumulate(s.at_zero.begin(), s.at_zero.end(), 0.0) / static_cast<double>(s.at_zero.size());
-    add(out, "Where nothing is hidden, {} fitted shares have a mean of {:.2f} and a maximum of {:.2f}; one-sided ones cannot be below 0.\n",
-        s.at_zero.size(), mean, *std::max_element(s.at_zero.begin(), s.at_zero.end()));
+    append(out,
+           "Where nothing is hidden, {} fitted shares have a mean of {:.2f} and a maximum of {:.2f}; one-sided ones cannot be below 0.\n",
+           s.at_zero.size(), mean, *std::max_element(s.at_zero.begin(), s.at_zero.end()));
   }
   if (s.doses.empty() && s.at_zero.empty()) out += "No strength was estimated.\n";
   out += "\n";
@@ -72,14 +74,14 @@ void doses(const Score& s, std::string& out) {
 
 void coverage(const Score& s, std::string& out) {
   out += "## Coverage of the 90 % intervals\n\n| of | truth inside |\n|---|---|\n";
-  add(out, "| the hidden strength | {} |\n", count_text(s.strength));
-  for (const auto& [name, count] : s.theta) add(out, "| {} | {} |\n", name, count_text(count));
+  append(out, "| the hidden strength | {} |\n", count_text(s.strength));
+  for (const auto& [name, count] : s.theta) append(out, "| {} | {} |\n", name, count_text(count));
   out += "\nParameters: of the base where nothing is hidden, of the corrected model where its physics is the hidden one.\n\n";
   if (s.recovery.empty()) return;
   out +=
       "## Parameters recovered\n\nMean distance from the truth, in the sets with one effect whose best candidate is right.\n\n"
       "| parameter | sets | retuned base | with the effect |\n|---|---|---|---|\n";
-  for (const Recovery& r : s.recovery) add(out, "| {} | {} | {:.3g} | {:.3g} |\n", r.parameter, r.sets, r.retuned, r.unmasked);
+  for (const Recovery& r : s.recovery) append(out, "| {} | {} | {:.3g} | {:.3g} |\n", r.parameter, r.sets, r.retuned, r.unmasked);
   out += "\n";
 }
 
@@ -92,7 +94,7 @@ void gains(const Score& s, std::string& out) {
   out +=
       "Where the best candidate is right: by how much the corrected model's misfit on held-out conditions is smaller than that of …\n\n"
       "| … | surely smaller | median improvement |\n|---|---|---|\n";
-  for (const GainCount& g : s.gains) add(out, "| {} | {} | {:.2f} |\n", g.model, count_text(g.surely), g.median);
+  for (const GainCount& g : s.gains) append(out, "| {} | {} | {:.2f} |\n", g.model, count_text(g.surely), g.median);
 }
 
 }  // namespace

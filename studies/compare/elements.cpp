@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "studies/compare/family_test.hpp"
 #include "studies/picture/results_pictures.hpp"
 #include "studies/picture/scale.hpp"
 
@@ -13,7 +14,6 @@ namespace millscope::studies {
 namespace {
 
 constexpr std::size_t kFewestCells = 4;  // of a region
-constexpr std::size_t kMany = 8;         // values from which on errors are held against each other (family_test.hpp)
 constexpr double kFewestBlocks = 10;     // effective ones that a single number must rest on
 constexpr double kFewestOfMany = 10;     // and a value among many, whose error the others support
 constexpr double kRounding = 1e-12;      // fractions and percents below it are zero

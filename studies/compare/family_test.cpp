@@ -13,7 +13,6 @@ namespace millscope::studies {
 namespace {
 
 constexpr std::size_t kForTail = 2000;  // pairs that give an element's weight
-constexpr std::size_t kMany = 8;        // elements from which on errors are held against each other
 
 std::size_t draw_count(const std::vector<float>& draws, std::size_t elements) { return draws.size() / elements; }
 

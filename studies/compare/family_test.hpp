@@ -23,6 +23,8 @@
 
 namespace millscope::studies {
 
+inline constexpr std::size_t kMany = 8;  ///< elements from which on errors are held against each other
+
 /// Elements of one observable that can be judged. Draws are draw-major [draws, elements]: resampled value − value, NaN: undefined.
 struct TestedObservable {
   std::vector<double> difference;  ///< d_k

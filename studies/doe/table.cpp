@@ -18,11 +18,6 @@ namespace {
 using base::Location;
 using base::UserError;
 
-std::string trimmed(const std::string& text) {
-  const std::size_t from = text.find_first_not_of(" \t"), to = text.find_last_not_of(" \t");
-  return from == std::string::npos ? "" : text.substr(from, to - from + 1);
-}
-
 std::string bytes_of(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) throw UserError(fmt::format("{}: is a directory; give a table (.csv)", file.string()));
@@ -48,7 +43,7 @@ std::vector<std::string> split(const std::string& line, const Location& where) {
     }
   }
   if (quoted) throw UserError(where, "a quote is opened and not closed; cells end with their line");
-  for (std::string& cell : cells) cell = trimmed(cell);
+  for (std::string& cell : cells) cell = base::trimmed(cell);
   return cells;
 }
 
@@ -99,7 +94,7 @@ Table Table::read(const std::filesystem::path& file) {
     at = end + 1;
     ++number;
     if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (trimmed(line).empty() || trimmed(line)[0] == '#') continue;
+    if (base::trimmed(line).empty() || base::trimmed(line)[0] == '#') continue;
     table.read_line(line, number);
   }
   if (table.names_.empty()) throw UserError(fmt::format("{}: is empty; the first line names the columns", table.file_));

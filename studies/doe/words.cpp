@@ -8,17 +8,13 @@
 #include <map>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/text.hpp"
 #include "kernel/config/document.hpp"
 
 namespace millscope::doe {
 namespace {
 
 using base::UserError;
-
-std::string trimmed(const std::string& text) {
-  const std::size_t from = text.find_first_not_of(" \t"), to = text.find_last_not_of(" \t");
-  return from == std::string::npos ? "" : text.substr(from, to - from + 1);
-}
 
 int factor_called(const std::string& name, const std::vector<Factor>& factors, const std::string& generator) {
   std::vector<std::string> names;
@@ -34,15 +30,15 @@ Generator parse_generator(const std::string& text, const std::vector<Factor>& fa
   if (equals == std::string::npos || text.find('=', equals + 1) != std::string::npos) {
     throw UserError(fmt::format("generator '{}': write MADE=PRODUCT, e.g. D=A*B*C or D=-A*B", text));
   }
-  Generator generator{factor_called(trimmed(text.substr(0, equals)), factors, text), {}};
-  std::string product = trimmed(text.substr(equals + 1));
+  Generator generator{factor_called(base::trimmed(text.substr(0, equals)), factors, text), {}};
+  std::string product = base::trimmed(text.substr(equals + 1));
   if (!product.empty() && product[0] == '-') {
     generator.of.negative = true;
     product.erase(0, 1);
   }
   for (std::size_t at = 0; at <= product.size();) {
     const std::size_t star = std::min(product.find('*', at), product.size());
-    const std::uint32_t bit = 1u << factor_called(trimmed(product.substr(at, star - at)), factors, text);
+    const std::uint32_t bit = 1u << factor_called(base::trimmed(product.substr(at, star - at)), factors, text);
     if (generator.of.factors & bit) throw UserError(fmt::format("generator '{}': a factor stands twice in the product", text));
     generator.of.factors |= bit;
     at = star + 1;

@@ -23,8 +23,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kNowhere = -std::numeric_limits<double>::infinity();
-
 /// Of a covariance in units of its own standard deviations, so that watts and fractions weigh alike.
 double least_eigenvalue(const MatrixXd& covariance) {
   const VectorXd unit = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <limits>
 
 #include "studies/emulate/emulator.hpp"
 
 namespace millscope::emulate {
+
+inline constexpr double kNowhere = -std::numeric_limits<double>::infinity();  ///< logarithm of what cannot be
 
 /// Throws base::UserError when the observed values are not finite or the covariance is none; std::invalid_argument for wrong sizes.
 void check_observed(const Emulator& emulator, const Observed& observed);

@@ -17,7 +17,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 constexpr int kPerSide = 12;
 constexpr std::uint64_t kSeed = 20150101;
 constexpr double kLoss90 = 1.3527717270;  // half of χ² with one degree of freedom at 90 %

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <vector>
 
 #include "studies/inspect/windows.hpp"
 
 namespace millscope::studies {
+
+inline constexpr double kTurn = 2 * std::numbers::pi;  ///< rad
 
 struct Circle {
   double x = 0, y = 0;  ///< centre, m

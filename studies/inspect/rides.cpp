@@ -7,8 +7,6 @@
 namespace millscope::studies {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-
 // Angles about the circle's centre in the turning sense, unwrapped.
 std::vector<double> angles(const Run& run, const std::vector<std::size_t>& points, const Circle& circle, int sense) {
   std::vector<double> result(points.size());

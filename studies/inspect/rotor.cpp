@@ -16,8 +16,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kTurn = 2 * std::numbers::pi;
-
 /// Two directions in the plane of rotation, its normal, and a point of it.
 struct Plane {
   Vector3d middle, first, second, normal;

@@ -23,8 +23,8 @@ namespace {
 
 constexpr const char* kFamily = "DejaVu Sans";
 
-using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
-using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
+using CairoSurface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
+using CairoContext = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
 
 void set_color(cairo_t* cairo, const Color& color) { cairo_set_source_rgba(cairo, color.red, color.green, color.blue, color.alpha); }
 
@@ -64,8 +64,8 @@ void require(cairo_status_t status, const std::filesystem::path& file) {
 
 std::string draw_svg(const Sheet& sheet, const std::filesystem::path& file) {
   std::string bytes;
-  Surface surface(cairo_svg_surface_create_for_stream(append, &bytes, sheet.width, sheet.height), cairo_surface_destroy);
-  const Context context(cairo_create(surface.get()), cairo_destroy);
+  CairoSurface surface(cairo_svg_surface_create_for_stream(append, &bytes, sheet.width, sheet.height), cairo_surface_destroy);
+  const CairoContext context(cairo_create(surface.get()), cairo_destroy);
   Canvas canvas(context.get());
   sheet.draw(canvas);
   require(cairo_status(context.get()), file);
@@ -76,8 +76,8 @@ std::string draw_svg(const Sheet& sheet, const std::filesystem::path& file) {
 
 std::string draw_png(const Sheet& sheet, const std::filesystem::path& file) {
   const auto pixels = [](double points) { return static_cast<int>(std::ceil(points * kPixelsPerPoint)); };
-  Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, pixels(sheet.width), pixels(sheet.height)), cairo_surface_destroy);
-  const Context context(cairo_create(surface.get()), cairo_destroy);
+  CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, pixels(sheet.width), pixels(sheet.height)), cairo_surface_destroy);
+  const CairoContext context(cairo_create(surface.get()), cairo_destroy);
   cairo_set_source_rgb(context.get(), 1, 1, 1);
   cairo_paint(context.get());
   cairo_scale(context.get(), kPixelsPerPoint, kPixelsPerPoint);
@@ -163,7 +163,7 @@ void Canvas::text(Point at, const std::string& words, const Font& font, Align al
 }
 
 void Canvas::image(const Pixels& pixels, const Box& box) {
-  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, pixels.width, pixels.height), cairo_surface_destroy);
+  const CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, pixels.width, pixels.height), cairo_surface_destroy);
   unsigned char* const data = cairo_image_surface_get_data(surface.get());
   const int stride = cairo_image_surface_get_stride(surface.get());
   const auto byte = [](double part) { return static_cast<std::uint32_t>(std::lround(255 * part)); };
@@ -203,8 +203,8 @@ void Canvas::within(Point centre, double radius, const std::function<void()>& dr
 }
 
 double text_width(const std::string& words, const Font& font) {
-  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1), cairo_surface_destroy);
-  const Context context(cairo_create(surface.get()), cairo_destroy);
+  const CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1), cairo_surface_destroy);
+  const CairoContext context(cairo_create(surface.get()), cairo_destroy);
   set_font(context.get(), font);
   return advance(context.get(), words);
 }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kRounds = 2;
 constexpr double kPrior = 1;     // degrees of freedom
-constexpr double kWindow = 3.3;  // median intervals: e-folding time of the window
+constexpr double kMemory = 3.3;  // median intervals: e-folding time of the window
 constexpr double kLeastFactor = 1e-4;
 
 /// Some stretches spread evenly over the run.
@@ -86,7 +86,7 @@ double likely_roughness(const Run& run, std::size_t axis, const std::vector<Span
 
 void smooth_adaptively(const Points& points, const Lanes& noise, const Lanes& roughness, Spline& spline) {
   const std::size_t n = points.count - 1;
-  const double window = kWindow * median_interval(points);
+  const double window = kMemory * median_interval(points);
   std::vector<double> decay(n), factor(n, 1.0), found(n), expected(n);
   for (std::size_t i = 1; i < n; ++i) decay[i] = std::exp(-(points.time[i + 1] - points.time[i - 1]) / (2 * window));
   std::vector<Evidence> evidence;

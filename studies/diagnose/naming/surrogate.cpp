@@ -19,9 +19,9 @@ constexpr std::size_t kForSquare = 3;      // different strengths
 constexpr std::size_t kRunsForSquare = 6;  // fewer leave the far end of the range open
 constexpr std::size_t kSpare = 2;          // runs beyond the coefficients of a candidate's block
 constexpr double kMostLeverage = 0.95;
-constexpr double kRounding = 1e-11;  // of a column's norm
-constexpr double kLeastFreedom = 1;  // runs beyond the coefficients that they decide
-constexpr int kRounds = 4;           // of weights and scatter
+constexpr double kColumnRounding = 1e-11;  // of a column's norm
+constexpr double kLeastFreedom = 1;        // runs beyond the coefficients that they decide
+constexpr int kRounds = 4;                 // of weights and scatter
 
 /// Coefficients are map · values of the rows.
 struct Solution {
@@ -73,7 +73,8 @@ VectorXd scatter_seen(const MatrixXd& x, const MatrixXd& y, const Groups& group,
     sum.row(k) += square.row(r), freedom[k] += 1 - leverage[r];
   }
   // What is left of rows that a surface follows exactly is rounding: by that nothing is measured.
-  const VectorXd whole = square.transpose() * scatter.cwiseInverse(), exact = kRounding * kRounding * y.colwise().squaredNorm().transpose();
+  const VectorXd whole = square.transpose() * scatter.cwiseInverse(),
+                 exact = kColumnRounding * kColumnRounding * y.colwise().squaredNorm().transpose();
   const VectorXd each = (sum.row(last).transpose().array() > exact.array()).select(whole.cwiseInverse(), 0);
   return (freedom.array() >= kLeastFreedom).select((sum * each).cwiseQuotient(freedom), std::nan(""));
 }
@@ -240,7 +241,7 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
   coefficient_error_ = solution.map * scatter.asDiagonal() * solution.map.transpose();
   residual_ = y - x * coefficients_;
   for (Index i = 0; i < y.cols(); ++i) {  // what is left of an exact column is rounding, whose correlations mean nothing
-    if (residual_.col(i).norm() < kRounding * y.col(i).norm()) residual_.col(i).setZero();
+    if (residual_.col(i).norm() < kColumnRounding * y.col(i).norm()) residual_.col(i).setZero();
   }
   degrees_ = std::ssize(points) - solution.rank;
   const VectorXd leverage = leverages(x, solution);

@@ -30,16 +30,16 @@ constexpr double kSpread = 0.15;  // standard deviation of the diameters over th
 constexpr double kEqual = 0.005;  // spread of beads that pass for equal
 constexpr double kStiffer = 4;    // times the stiffness: half the time step
 
-double number(const config::Node& node) {
+double si_value(const config::Node& node) {
   const config::Quantity q = config::read_quantity(node);
   return q.has_unit ? q.unit.to_si(q.number) : q.number;
 }
 
 void lifters(const config::GeometryCase& g, std::vector<Candidate>& out) {
   const config::Node& node = g.plugin.node;
-  if (!node.has("lifters") || !node.has("lifter_height") || number(node.at("lifters")) < 1) return;
+  if (!node.has("lifters") || !node.has("lifter_height") || si_value(node.at("lifters")) < 1) return;
   const std::string at = "geometry." + g.plugin.name + ".";
-  const double height = number(node.at("lifter_height"));
+  const double height = si_value(node.at("lifter_height"));
   out.push_back({"lifter_wear",
                  "The lifters are worn: lower than the drawing says.",
                  "h < h_0",
@@ -52,9 +52,9 @@ void lifters(const config::GeometryCase& g, std::vector<Candidate>& out) {
                  kWorn * height,
                  {},
                  {}});
-  const double angle = node.has("lifter_face_angle") ? number(node.at("lifter_face_angle")) : 60 * kDegree;
+  const double angle = node.has("lifter_face_angle") ? si_value(node.at("lifter_face_angle")) : 60 * kDegree;
   // The top is w - 2 h / tan(angle) wide.
-  const double width = node.has("lifter_width") ? number(node.at("lifter_width")) : 0;
+  const double width = node.has("lifter_width") ? si_value(node.at("lifter_width")) : 0;
   const double narrowest = std::atan2(2 * height, (1 - kNarrowTop) * width);
   const double steep = std::min(angle + kAngle, kSteepest), shallow = std::min(angle, std::max(angle - kAngle, narrowest));
   const double far = steep - angle < angle - shallow - 1e-9 ? shallow : steep;
@@ -83,7 +83,7 @@ std::string free_name(const config::Case& base, std::string name) {
 /// Lifters of a material of their own, that is the shell's but for its friction, which follows the shell's.
 void lifter_friction(const config::Case& base, const config::GeometryCase& g, std::vector<Candidate>& out) {
   const config::Node& node = g.plugin.node;
-  if (!node.has("lifters") || number(node.at("lifters")) < 1 || g.material_of("shell") != g.material_of("lifter")) return;
+  if (!node.has("lifters") || si_value(node.at("lifters")) < 1 || g.material_of("shell") != g.material_of("lifter")) return;
   const config::MaterialCase& shell = base.material(g.material_of("shell"));
   const std::string name = free_name(base, "lifters");
   Candidate c{"lifter_friction",
@@ -118,7 +118,7 @@ void resting_ends(const config::GeometryCase& g, std::vector<Candidate>& out) {
   const config::Node& node = g.plugin.node;
   if (!node.has("end_faces") || node.at("end_faces").text() != "true" || !g.motion.rotation || !node.has("length")) return;
   const std::string& material = g.material.empty() ? g.materials.front().second : g.material;
-  const double length = number(node.at("length"));
+  const double length = si_value(node.at("length"));
   Candidate c{"end_faces_at_rest",
               "The end faces stand still while the shell turns.",
               "Omega_end = 0",

@@ -11,8 +11,7 @@ namespace {
 
 constexpr const char* kAnalyzers = "analyzers:\n  mean_acceleration: {rings: 5, sectors: 12, bins_speed: 12, largest_speed: 2}\n";
 constexpr const char* kName = "mean_acceleration";
-constexpr int kSeeds = 2;
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr int kForceSeeds = 2;
 
 struct Side {
   studies::ResultSet set;
@@ -49,7 +48,7 @@ std::vector<ForceCell> cells_of(const Side& recorded, const std::vector<Side>& s
     const Difference x = difference(recorded, simulated, "x", i), y = difference(recorded, simulated, "y", i);
     if (!x.known() || !y.known()) continue;
     const std::size_t ring = i / sectors, sector = i % sectors;
-    const double radius = 0.5 * (r[ring] + r[ring + 1]), from_six = 0.5 * (angle[sector] + angle[sector + 1]) * kDegree;
+    const double radius = 0.5 * (r[ring] + r[ring + 1]), from_six = 0.5 * (angle[sector] + angle[sector + 1]) * std::numbers::pi / 180;
     const double sense = recorded.set.meta.context.omega < 0 ? -1 : 1;
     const double square = std::pow(x.value / x.sem, 2) + std::pow(y.value / y.sem, 2);
     cells.push_back({r[ring],
@@ -86,7 +85,7 @@ std::vector<MissingForce> missing_force(const HeldOutRequest& r) {
   for (const std::size_t condition : r.fit) {
     if (!r.workshop.recorded[condition].of_tracks()) continue;
     std::vector<campaign::Simulation> simulations;
-    for (int replicate = 1; replicate <= kSeeds; ++replicate)
+    for (int replicate = 1; replicate <= kForceSeeds; ++replicate)
       simulations.push_back(simulation_at(r.question, theta, {}, condition, replicate, "retuned to all observables"));
     const Side recorded{r.workshop.results(condition, {}, kAnalyzers, {})};
     std::vector<Side> simulated;
