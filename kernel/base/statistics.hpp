@@ -1,4 +1,4 @@
-// Quantiles, each by the rule that its users need.
+// The 90 % interval, and quantiles, each by the rule that its users need.
 //
 //   quantile               rank round(f (n − 1)), a half upwards: always one of the values; of two middle values the upper
 //   quantile_below         rank ⌊f (n − 1)⌋: for a scale that no more than the rest may reach beyond
@@ -17,6 +17,8 @@
 #include <vector>
 
 namespace millscope::base {
+
+inline constexpr double kNormal90 = 1.645;  ///< standard errors to either side that hold 90 %
 
 /// The value of a rank; `values` is left in another order.
 template <class Number>

@@ -17,7 +17,7 @@ using studies::CurvePicture;
 using studies::MapPicture;
 
 constexpr int kCells = 40;  // of surface and posterior, along each side
-using studies::kNormal90;
+using base::kNormal90;
 constexpr std::size_t kMostPairs = 10;
 
 Curve curve_of(const std::string& label, const Histogram& h) {

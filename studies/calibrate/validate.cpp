@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using base::UserError;
 using Json = nlohmann::ordered_json;
 
-using studies::kNormal90;
+using base::kNormal90;
 
 Judged judge(const Observable& what, double recorded, double simulated, double error) {
   Judged j{what, recorded, simulated, simulated - recorded, error, 0, 0, 1, false};

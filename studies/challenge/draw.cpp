@@ -16,7 +16,7 @@ constexpr double kFrameStep = 0.02;    // s
 constexpr std::uint64_t kSeeds = 1000000000;
 constexpr std::uint64_t kConditions = 1000;  // streams kept for the runs of one truth
 
-double draw_nuisance(const diagnose::Nuisance& n, emulate::Random& random) {
+double draw_nuisance(const diagnose::Nuisance& n, base::RandomStream& random) {
   for (int i = 0; i < kTrials; ++i) {
     const double value = n.mean + n.sigma * random.normal();
     if (value >= n.low && value <= n.high) return value;
@@ -32,7 +32,7 @@ double made(const Challenge& challenge, const SetsOf& sets, const diagnose::Ques
   return diagnose::value_in(config::read_case(q.study.base.string(), settings), n.path, n.where);
 }
 
-Eigen::VectorXd draw_theta(const Challenge& challenge, const SetsOf& sets, const diagnose::Question& q, emulate::Random& random) {
+Eigen::VectorXd draw_theta(const Challenge& challenge, const SetsOf& sets, const diagnose::Question& q, base::RandomStream& random) {
   const auto parameters = static_cast<Eigen::Index>(q.study.parameters.size());
   Eigen::VectorXd theta(static_cast<Eigen::Index>(q.dimensions()));
   for (int trial = 0;; ++trial) {
@@ -51,7 +51,7 @@ Eigen::VectorXd draw_theta(const Challenge& challenge, const SetsOf& sets, const
   return theta;
 }
 
-naming::ActiveCandidate draw_effect(const SetsOf& sets, const std::string& name, const diagnose::Question& q, emulate::Random& random) {
+naming::ActiveCandidate draw_effect(const SetsOf& sets, const std::string& name, const diagnose::Question& q, base::RandomStream& random) {
   const auto found = std::find_if(q.candidates.begin(), q.candidates.end(), [&](const auto& c) { return c.name == name; });
   const double share = found->on_or_off() ? 1 : sets.low + (sets.high - sets.low) * random.uniform();
   return {static_cast<int>(found - q.candidates.begin()), diagnose::rounded_strength(*found, share)};
@@ -64,18 +64,18 @@ std::vector<Truth> draw_truths(const Challenge& challenge, const diagnose::Quest
   for (const SetsOf& sets : challenge.sets) {
     for (int i = 0; i < sets.count; ++i) {
       const std::uint64_t stream = kConditions * (1 + truths.size());
-      emulate::Random random(challenge.seed, stream);
+      base::RandomStream random(challenge.seed, stream);
       Truth t{sets.kind, sets.name, draw_theta(challenge, sets, question, random), {}, sets.settings, stream};
       for (const std::string& name : sets.hypotheses) t.effects.push_back(draw_effect(sets, name, question, random));
       truths.push_back(std::move(t));
     }
   }
-  emulate::Random(challenge.seed, 0).shuffle(truths);
+  base::RandomStream(challenge.seed, 0).shuffle(truths);
   return truths;
 }
 
-emulate::Random random_of(const Challenge& challenge, const Truth& truth, std::size_t condition) {
-  return emulate::Random(challenge.seed, truth.stream + 1 + condition);
+base::RandomStream random_of(const Challenge& challenge, const Truth& truth, std::size_t condition) {
+  return base::RandomStream(challenge.seed, truth.stream + 1 + condition);
 }
 
 campaign::Simulation simulation_of(const Challenge& challenge, const diagnose::Question& q, const Truth& truth, std::size_t condition,

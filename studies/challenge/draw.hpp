@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "kernel/base/random.hpp"
 #include "studies/challenge/plan.hpp"
 #include "studies/diagnose/bank/bank.hpp"
-#include "studies/emulate/random.hpp"
 
 namespace millscope::challenge {
 
@@ -28,6 +28,6 @@ campaign::Simulation simulation_of(const Challenge& challenge, const diagnose::Q
                                    std::size_t condition, const std::string& label);
 
 /// Numbers of one condition of a truth: seed of its run, of its camera, error of its meter.
-emulate::Random random_of(const Challenge& challenge, const Truth& truth, std::size_t condition);
+base::RandomStream random_of(const Challenge& challenge, const Truth& truth, std::size_t condition);
 
 }  // namespace millscope::challenge

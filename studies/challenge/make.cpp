@@ -50,7 +50,7 @@ struct Maker {
 
   /// One condition of a set: what the camera and the meter make of the truth.
   Json record(const Truth& truth, std::size_t condition, const campaign::Outcome& outcome, const fs::path& folder) const {
-    emulate::Random random = random_of(challenge, truth, condition);
+    base::RandomStream random = random_of(challenge, truth, condition);
     random.bits();  // the run's own seed
     const std::uint64_t camera_seed = random.bits();
     const PowerOfRun power = power_of(outcome.folder, registry);

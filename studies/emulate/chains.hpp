@@ -32,7 +32,7 @@ class Population {
   void accept(Eigen::Index chain, const Eigen::VectorXd& proposal, double log_correction);
   Eigen::VectorXd difference_step(Eigen::Index chain);
   LogDensity density_;
-  Random random_;
+  base::RandomStream random_;
   Mixture mixture_;
   Eigen::MatrixXd position_;
   Eigen::VectorXd value_;

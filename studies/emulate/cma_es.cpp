@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/random.hpp"
 #include "studies/emulate/cma_transform.hpp"
-#include "studies/emulate/random.hpp"
 
 namespace millscope::emulate {
 namespace {
@@ -78,7 +78,7 @@ CmaEs::CmaEs(const Box& box, State state) : box_(box), state_(std::move(state)) 
 std::vector<VectorXd> CmaEs::ask() {
   constexpr int kTries = 100, kHalvings = 40;
   if (state_.asked.empty()) {
-    Random random(state_.random, static_cast<std::uint64_t>(state_.generation));
+    base::RandomStream random(state_.random, static_cast<std::uint64_t>(state_.generation));
     const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(state_.covariance);
     const MatrixXd root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
     const auto draw = [&]() -> VectorXd { return state_.mean + state_.sigma * (root * random.normals(box_.size())); };

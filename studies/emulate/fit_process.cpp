@@ -6,8 +6,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "kernel/base/random.hpp"
 #include "studies/emulate/process.hpp"
-#include "studies/emulate/random.hpp"
 
 namespace millscope::emulate {
 namespace {
@@ -57,7 +57,7 @@ double objective(unsigned count, const double* x, double* slope, void* data) {
 }
 
 /// The first starts from what is usual; the others from anywhere sensible.
-VectorXd start_point(Index p, int start, Random& random) {
+VectorXd start_point(Index p, int start, base::RandomStream& random) {
   VectorXd x(p + 2);
   if (start == 0) {
     x.setConstant(0.7);
@@ -79,7 +79,7 @@ Process fit_process(const Sample& sample, Trend trend, const FitOptions& options
   VectorXd low = VectorXd::Constant(p + 2, kLogLength[0]), high = VectorXd::Constant(p + 2, kLogLength[1]);
   low.tail(2) << kLogVariance[0], kLogNugget[0];
   high.tail(2) << kLogVariance[1], kLogNugget[1];
-  Random random(options.seed, stream);
+  base::RandomStream random(options.seed, stream);
   for (int start = 0; start < options.starts; ++start) {
     const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> tool(nlopt_create(NLOPT_LD_LBFGS, static_cast<unsigned>(p + 2)),
                                                                       nlopt_destroy);

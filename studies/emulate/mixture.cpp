@@ -70,7 +70,7 @@ MatrixXd local_covariance(const MatrixXd& centres) {
 
 }  // namespace
 
-Mixture::Mixture(const LogDensity& density, const MatrixXd& prior_points, Random& random) : points_(prior_points) {
+Mixture::Mixture(const LogDensity& density, const MatrixXd& prior_points, base::RandomStream& random) : points_(prior_points) {
   VectorXd log_weights(points_.cols());
   for (Index i = 0; i < points_.cols(); ++i) log_weights[i] = density(points_.col(i));
   weights_ = flattened(log_weights);
@@ -85,7 +85,7 @@ Mixture::Mixture(const LogDensity& density, const MatrixXd& prior_points, Random
   }
 }
 
-void Mixture::learn(const MatrixXd& points, const VectorXd& weights, Random& random) {
+void Mixture::learn(const MatrixXd& points, const VectorXd& weights, base::RandomStream& random) {
   centres_.resize(points.rows(), kCentres);
   for (Index j = 0; j < kCentres; ++j) {  // one draw from each of equal parts of the sum: evener than independent draws
     const double part = (static_cast<double>(j) + random.uniform()) / static_cast<double>(kCentres);
@@ -100,7 +100,7 @@ void Mixture::learn(const MatrixXd& points, const VectorXd& weights, Random& ran
                std::log(static_cast<double>(kCentres));
 }
 
-VectorXd Mixture::draw(Random& random) const {
+VectorXd Mixture::draw(base::RandomStream& random) const {
   const auto centre = static_cast<Index>(random.below(kCentres));
   return centres_.col(centre) + root_ * random.normals(root_.rows());
 }
@@ -111,7 +111,7 @@ double Mixture::log_density(const VectorXd& coded) const {
   return log_scale_ - least + std::log((least - square.array()).exp().sum());
 }
 
-MatrixXd Mixture::starts(Index count, Random& random) const {
+MatrixXd Mixture::starts(Index count, base::RandomStream& random) const {
   VectorXd weights = weights_;
   MatrixXd starts(points_.rows(), count);
   for (Index c = 0; c < count; ++c) {

@@ -10,7 +10,7 @@
 #include <Eigen/Cholesky>
 #include <functional>
 
-#include "studies/emulate/random.hpp"
+#include "kernel/base/random.hpp"
 
 namespace millscope::emulate {
 
@@ -19,15 +19,15 @@ using LogDensity = std::function<double(const Eigen::VectorXd& coded)>;
 class Mixture {
  public:
   /// From the prior's points (parameters × many; coded).
-  Mixture(const LogDensity& density, const Eigen::MatrixXd& prior_points, Random& random);
+  Mixture(const LogDensity& density, const Eigen::MatrixXd& prior_points, base::RandomStream& random);
 
-  Eigen::VectorXd draw(Random& random) const;
+  Eigen::VectorXd draw(base::RandomStream& random) const;
   double log_density(const Eigen::VectorXd& coded) const;
   /// Different points among the last draws, by their flattened weights: starts for chains. Parameters × count.
-  Eigen::MatrixXd starts(Eigen::Index count, Random& random) const;
+  Eigen::MatrixXd starts(Eigen::Index count, base::RandomStream& random) const;
 
  private:
-  void learn(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, Random& random);
+  void learn(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, base::RandomStream& random);
   Eigen::MatrixXd points_, centres_;
   Eigen::VectorXd weights_;
   Eigen::MatrixXd root_;          // of S

@@ -7,10 +7,10 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "kernel/base/random.hpp"
 #include "studies/emulate/cma_es.hpp"
 #include "studies/emulate/likelihood.hpp"
 #include "studies/emulate/prior.hpp"
-#include "studies/emulate/random.hpp"
 
 namespace millscope::emulate {
 namespace {
@@ -28,7 +28,7 @@ constexpr double kNoImprovement = 1e-3;  // of the objective's spread over the r
 class Draws {
  public:
   Draws(const Emulator& emulator, const Objective& objective, std::uint64_t seed) : emulator_(emulator), objective_(objective) {
-    Random random(seed, 0xd4a);
+    base::RandomStream random(seed, 0xd4a);
     const Index q = emulator.observables();
     const MatrixXd root = Eigen::LLT<MatrixXd>(emulator.correlation() + 1e-12 * MatrixXd::Identity(q, q)).matrixL();
     correlated_.resize(q, kDraws);
@@ -89,7 +89,7 @@ std::vector<VectorXd> candidates(const Box& box, const Runs& runs, std::uint64_t
   if (runs.point.empty()) return points;
   const VectorXd& best = runs.point[static_cast<std::size_t>(runs.best)];
   points.push_back(best);
-  Random random(seed, 0x4ea);
+  base::RandomStream random(seed, 0x4ea);
   for (const double width : {0.3, 0.1, 0.03}) {
     for (int i = 0; i < kNear; ++i) {
       const VectorXd near = box.natural((box.coded(best) + width * random.normals(box.size())).cwiseMax(-1).cwiseMin(1));

@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/random.hpp"
 #include "studies/emulate/prior.hpp"
-#include "studies/emulate/random.hpp"
 
 namespace millscope::emulate {
 
@@ -40,7 +40,7 @@ void Box::check() const {
 Eigen::MatrixXd prior_points(const Box& box, int count, std::uint64_t seed) {
   constexpr int kTriesPerPoint = 2000;
   box.check();
-  Random random(seed, 0x9e1);
+  base::RandomStream random(seed, 0x9e1);
   Eigen::MatrixXd points(box.size(), count);
   long tries = 0;
   for (int i = 0; i < count;) {

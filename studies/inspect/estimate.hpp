@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "kernel/base/statistics.hpp"
+
 namespace millscope::studies {
 
 /// A value and its 90 % interval, in the unit that the holder states.
@@ -13,10 +15,8 @@ struct Estimate {
   double high = 0;
 };
 
-inline constexpr double kNormal90 = 1.645;  ///< standard errors to either side that hold 90 %
-
 /// Of which the interval would be if it were normal.
-inline double standard_error(const Estimate& e) { return (e.high - e.low) / (2 * kNormal90); }
+inline double standard_error(const Estimate& e) { return (e.high - e.low) / (2 * base::kNormal90); }
 
 /// How a bound is to be read.
 enum class Bound {

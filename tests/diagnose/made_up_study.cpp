@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "studies/emulate/random.hpp"
+#include "kernel/base/random.hpp"
 
 namespace millscope::diagnose {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 constexpr Index kObservables = 16;
 
 VectorXd direction(std::uint64_t number) {
-  emulate::Random random(4711, number);
+  base::RandomStream random(4711, number);
   return random.normals(kObservables);
 }
 
@@ -92,7 +92,7 @@ calibrate::Observation MadeUpMill::observation(std::size_t condition, const std:
       y += p.size * (1 + p.growth * (1 + coded.at(p.coordinate))) * (std::stod(found->second) - p.null_value) / (p.far - p.null_value) *
            direction(p.direction.at(condition));
   }
-  emulate::Random random(std::hash<std::string>{}(key) + seed, condition);
+  base::RandomStream random(std::hash<std::string>{}(key) + seed, condition);
   y += noise * random.normals(kObservables);
   y[0] += 50;  // W: powers are above 0
   calibrate::Observation o;

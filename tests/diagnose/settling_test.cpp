@@ -5,8 +5,8 @@
 #include <cmath>
 #include <fstream>
 
+#include "kernel/base/random.hpp"
 #include "made_up_study.hpp"
-#include "studies/emulate/random.hpp"
 
 using namespace millscope;
 using namespace millscope::diagnose;
@@ -26,7 +26,7 @@ struct Shared {
 };
 
 /// One run's centre of mass about −30 mm, with 0.5 mm of scatter of its own.
-void write_run(const std::filesystem::path& folder, const Shared& shared, emulate::Random& random) {
+void write_run(const std::filesystem::path& folder, const Shared& shared, base::RandomStream& random) {
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "summary.json") << fmt::format(R"({{"window_s": [1, 4], "mill_speed_rad_per_s": {}}})", -kSpeed);
   std::ofstream out(folder / "series.csv");
@@ -44,7 +44,7 @@ void write_run(const std::filesystem::path& folder, const Shared& shared, emulat
 
 /// A bank of runs in both fitted conditions, of which the first one shares something.
 Bank bank_of(const Scratch& scratch, int runs, const Shared& shared, std::uint64_t seed) {
-  emulate::Random random(seed, 0);
+  base::RandomStream random(seed, 0);
   Bank bank;
   bank.conditions = {0, 1};
   bank.points.resize(static_cast<std::size_t>(runs));

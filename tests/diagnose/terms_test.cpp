@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "studies/emulate/random.hpp"
+#include "kernel/base/random.hpp"
 
 using namespace millscope::diagnose;
 using namespace millscope::naming;
@@ -18,7 +18,7 @@ constexpr double kOmega = -6, kSem = 0.1;  // rad/s, m/s²
 /// Cells of a mill whose beads rise with the shell outside and fall inside; `missing` gives what is added to both components.
 template <class Missing>
 std::vector<MissingForce> cells(std::uint64_t seed, Missing&& missing) {
-  millscope::emulate::Random random(seed);
+  millscope::base::RandomStream random(seed);
   MissingForce m;
   m.omega = kOmega;
   for (int ring = 0; ring < 5; ++ring) {

@@ -151,7 +151,7 @@ TEST_CASE("ninety of a hundred truths lie in their 90 % intervals") {
   const Emulator emulator = Emulator::fit(box, runs_of(f, latin(box, 25, 1), 0.02, 1));
   const MatrixXd noise = 9e-4 * MatrixXd::Identity(3, 3);
   constexpr int kTruths = 110;
-  Random random(5);
+  millscope::base::RandomStream random(5);
   double inside[2] = {0, 0};
   for (int i = 0; i < kTruths; ++i) {
     const VectorXd truth = random.uniforms(2, 0, 1);

@@ -23,7 +23,7 @@ double objective(const VectorXd& y) { return std::abs(y[0] - mill(kTruth)[0]) + 
 
 constexpr double kNoise = 0.01;
 
-void append(Training& t, const VectorXd& point, Random& random) {
+void append(Training& t, const VectorXd& point, millscope::base::RandomStream& random) {
   const Index n = t.input.rows();
   t.input.conservativeResize(n + 1, Eigen::NoChange);
   t.output.conservativeResize(n + 1, Eigen::NoChange);
@@ -35,7 +35,7 @@ void append(Training& t, const VectorXd& point, Random& random) {
 
 /// 4 corners, 4 axial points at √2, 5 in the centre: 13 runs; then the smallest value of the fitted quadratic in the box.
 double composite_design(std::uint64_t seed) {
-  Random random(seed);
+  millscope::base::RandomStream random(seed);
   const double a = 1 / std::sqrt(2.0);
   const std::vector<VectorXd> coded = {VectorXd{{-a, -a}}, VectorXd{{a, -a}}, VectorXd{{-a, a}}, VectorXd{{a, a}}, VectorXd{{-1, 0}},
                                        VectorXd{{1, 0}},   VectorXd{{0, -1}}, VectorXd{{0, 1}},  VectorXd{{0, 0}}, VectorXd{{0, 0}},
@@ -66,7 +66,7 @@ double composite_design(std::uint64_t seed) {
 TEST_CASE("expected improvement reaches the optimum with fewer runs than a composite design and its quadratic") {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
     Training training = runs_of(mill, latin(kBox, 6, seed), kNoise, seed);
-    Random random(seed, 9);
+    millscope::base::RandomStream random(seed, 9);
     while (training.input.rows() < 11) {
       const Emulator emulator = Emulator::fit(kBox, training);
       append(training, next_point(emulator, kBox, objective, seed), random);
@@ -94,7 +94,7 @@ TEST_CASE("a point with an improvement in sight is better than one without") {
 TEST_CASE("the misfit of a recording leads to its parameters, and the implausible is told from the plausible") {
   const Observed observed{mill(kTruth), MatrixXd{{0.04, 0}, {0, 1e-4}}};
   Training training = runs_of(mill, latin(kBox, 8, 2), kNoise, 2);
-  Random random(2);
+  millscope::base::RandomStream random(2);
   for (int i = 0; i < 4; ++i) append(training, next_point(Emulator::fit(kBox, training), kBox, observed, 5), random);
   const Emulator emulator = Emulator::fit(kBox, training);
   CHECK(implausibility(emulator, observed, kTruth) < 1.5);

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "kernel/base/random.hpp"
 #include "studies/emulate/emulator.hpp"
-#include "studies/emulate/random.hpp"
 
 namespace millscope::emulate::test {
 
@@ -17,7 +17,7 @@ inline Box unit_box(Index parameters) { return {VectorXd::Zero(parameters), Vect
 
 /// Latin hypercube in the box: parameters × runs.
 inline MatrixXd latin(const Box& box, Index runs, std::uint64_t seed) {
-  Random random(seed, 77);
+  base::RandomStream random(seed, 77);
   MatrixXd points(box.size(), runs);
   for (Index k = 0; k < box.size(); ++k) {
     std::vector<Index> order(static_cast<std::size_t>(runs));
@@ -33,7 +33,7 @@ inline MatrixXd latin(const Box& box, Index runs, std::uint64_t seed) {
 
 /// Runs of a function with normal noise of this standard deviation.
 inline Training runs_of(const Function& f, const MatrixXd& points, double noise, std::uint64_t seed) {
-  Random random(seed, 78);
+  base::RandomStream random(seed, 78);
   const Index q = f(points.col(0)).size(), n = points.cols();
   Training t{points.transpose(), MatrixXd(n, q), MatrixXd::Constant(n, q, noise * noise)};
   for (Index i = 0; i < n; ++i) t.output.row(i) = (f(points.col(i)) + noise * random.normals(q)).transpose();

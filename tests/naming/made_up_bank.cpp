@@ -3,14 +3,14 @@
 #include <boost/random/sobol.hpp>
 #include <cmath>
 
-#include "studies/emulate/random.hpp"
+#include "kernel/base/random.hpp"
 
 namespace millscope::naming {
 namespace {
 
 /// A fixed direction in the space of observables.
 VectorXd direction(const MadeUp& mill, std::uint64_t number) {
-  emulate::Random random(4711, number);
+  base::RandomStream random(4711, number);
   return random.normals(mill.conditions * mill.observables);
 }
 
@@ -45,7 +45,7 @@ Problem made_up_problem(const MadeUp& mill, const VectorXd& coded, const std::ve
   for (Index j = 0; j < 3; ++j) p.alternatives.push_back({.name = names[j], .candidate = j});
   p.alternatives.push_back({.name = "filling", .freed = 2});
   const MatrixXd base = spread(mill.runs, 3), with = spread(3 * mill.each, 4);
-  emulate::Random random(seed, 0);
+  base::RandomStream random(seed, 0);
   const Index n = mill.conditions * mill.observables;
   std::vector<VectorXd> values;
   const auto add = [&](const VectorXd& u, std::optional<Index> candidate, double strength) {
@@ -56,8 +56,7 @@ Problem made_up_problem(const MadeUp& mill, const VectorXd& coded, const std::ve
   };
   for (Index r = 0; r < base.rows(); ++r) add(base.row(r).transpose(), {}, 0);
   for (Index r = 0; r < mill.again; ++r) add(base.row(r).transpose(), {}, 0);
-  for (Index r = 0; r < with.rows(); ++r)
-    add(with.row(r).head(3).transpose(), r % 3, mill.weakest + (1 - mill.weakest) * with(r, 3));
+  for (Index r = 0; r < with.rows(); ++r) add(with.row(r).head(3).transpose(), r % 3, mill.weakest + (1 - mill.weakest) * with(r, 3));
   p.data.value.resize(static_cast<Index>(values.size()), n);
   for (std::size_t r = 0; r < values.size(); ++r) p.data.value.row(static_cast<Index>(r)) = values[r].transpose();
   for (Index i = 0; i < n; ++i) p.data.condition.push_back(static_cast<int>(i) / mill.observables);

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/random.hpp"
 #include "made_up_bank.hpp"
 #include "studies/diagnose/naming/pseudo_data.hpp"
 #include "studies/diagnose/naming/surrogate.hpp"
 #include "studies/diagnose/naming/visibility.hpp"
-#include "studies/emulate/random.hpp"
 
 using namespace millscope;
 using namespace millscope::naming;
@@ -215,7 +215,7 @@ struct Nothing {
 Nothing nothing_missing(const MadeUp& mill, std::uint64_t seed) {
   Nothing out;
   for (int k = 0; k < Nothing::kSets; ++k) {
-    emulate::Random random(seed, static_cast<std::uint64_t>(k));
+    base::RandomStream random(seed, static_cast<std::uint64_t>(k));
     const VectorXd truth = point(1.2 * random.uniform() - 0.6, 1.2 * random.uniform() - 0.6, 0.3 * random.normal());
     const Result n = name_candidates(made_up_problem(mill, truth, {0, 0, 0}, seed + 23 + static_cast<std::uint64_t>(k)), quick(240));
     out.alarms += n.best ? 1 : 0;
@@ -274,7 +274,7 @@ TEST_CASE("false alarms stay at the level where errors are correlated in the one
   int alarms = 0;
   const int sets = 40;
   for (int k = 0; k < sets; ++k) {
-    emulate::Random random(78, static_cast<std::uint64_t>(k));
+    base::RandomStream random(78, static_cast<std::uint64_t>(k));
     Problem p = made_up_problem({}, point(random.uniform() - 0.5, random.uniform() - 0.5, 0.3 * random.normal()), {0, 0, 0},
                                 500 + static_cast<std::uint64_t>(k));
     const Index n = p.observed.size();

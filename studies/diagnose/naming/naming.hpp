@@ -18,8 +18,8 @@
 #include <utility>
 #include <vector>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/diagnose/naming/fit.hpp"
-#include "studies/inspect/estimate.hpp"
 
 namespace millscope::naming {
 
@@ -67,7 +67,7 @@ inline constexpr double kNotWorkedOut = std::numeric_limits<double>::quiet_NaN()
 
 inline Interval without_interval(double value) { return {value, kNotWorkedOut, kNotWorkedOut}; }
 
-using studies::kNormal90;
+using base::kNormal90;
 
 inline Interval interval_about(double value, double sem) { return {value, value - kNormal90 * sem, value + kNormal90 * sem}; }
 

@@ -114,7 +114,7 @@ Truth PseudoData::truth(const Choice& choice, const FitResult& fit) const {
   return truth;
 }
 
-VectorXd PseudoData::drawn_theta(const Truth& truth, emulate::Random& random) const {
+VectorXd PseudoData::drawn_theta(const Truth& truth, base::RandomStream& random) const {
   VectorXd u = truth.coded;
   for (Index i = 0; i < u.size(); ++i) {
     const Coordinate& c = problem_.data.theta[i];
@@ -163,7 +163,7 @@ PseudoData::Refit PseudoData::refit(const LeftOut& left, const Truth& truth, con
 }
 
 PseudoData::Drawn PseudoData::drawn(const Refit& refit, const Truth& truth, const Draws& how, std::size_t b) const {
-  emulate::Random random(options_.seed + how.stream, b);
+  base::RandomStream random(options_.seed + how.stream, b);
   const Truth at{drawn_theta(truth, random), truth.active, truth.freed};
   const LeftOut& left = *refit.left;
   const Index n = left.deviation.size();

@@ -15,8 +15,8 @@
 #include <optional>
 #include <vector>
 
+#include "kernel/base/random.hpp"
 #include "studies/diagnose/naming/naming.hpp"
-#include "studies/emulate/random.hpp"
 
 namespace millscope::naming {
 
@@ -90,7 +90,7 @@ class PseudoData {
   static VectorXd rise(const Model& model, const Truth& truth, double least, const VectorXd& y);
   Model model(const Surrogate& surrogate, const Choice& choice) const;
   /// θ of the truth with nuisances from their priors.
-  VectorXd drawn_theta(const Truth& truth, emulate::Random& random) const;
+  VectorXd drawn_theta(const Truth& truth, base::RandomStream& random) const;
   /// The part of the left-out run's deviation that a pseudo-recording has.
   double part_of(const LeftOut& left, const Truth& truth, double chance) const;
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/diagnose/naming/fit.hpp"
 #include "studies/diagnose/naming/shrinkage.hpp"
 #include "studies/diagnose/naming/surrogate.hpp"
-#include "studies/inspect/estimate.hpp"
 
 namespace millscope::naming {
 
@@ -73,7 +73,7 @@ double Surrogate::chance(const MatrixXd& recording) const {
     const double p = (chance * basis).squaredNorm() / static_cast<double>(degrees_repeated_), trace = all.trace();
     if (!(trace > 0)) return 0.0;
     const double degrees = static_cast<double>(degrees_repeated_) * trace * trace / all.squaredNorm();
-    return p / trace / (1 + studies::kNormal90 * std::sqrt(2 / degrees));
+    return p / trace / (1 + base::kNormal90 * std::sqrt(2 / degrees));
   };
   const Index n = s.rows();
   Eigen::ColPivHouseholderQR<MatrixXd> directions(w * first_order().transpose());

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/base/random.hpp"
 #include "studies/diagnose/verdict/rival_models.hpp"
-#include "studies/emulate/random.hpp"
 
 namespace millscope::diagnose {
 namespace {
@@ -70,7 +70,7 @@ struct Judge {
     rival.improvement = misfit(observed - other.value, c) - misfit(observed - one.value, c);
     const MatrixXd first = naming::factor(one.covariance), second = naming::factor(other.covariance);
     rival.low90 = std::numeric_limits<double>::infinity(), rival.high90 = -rival.low90;
-    emulate::Random random(seed, 9);
+    base::RandomStream random(seed, 9);
     for (const MatrixXd& law : noise) {
       std::vector<double> draws;
       for (int b = 0; b < kDraws; ++b) {
@@ -89,7 +89,7 @@ struct Judge {
     const Eigen::LLT<MatrixXd> c(recording + p.covariance);
     const double seen = misfit(observed - p.value, c);
     const MatrixXd own = naming::factor(p.covariance);
-    emulate::Random random(seed, 10);
+    base::RandomStream random(seed, 10);
     double largest = 0;
     for (const MatrixXd& law : noise) {
       int above = 0;

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/base/random.hpp"
 #include "studies/doe/doe.hpp"
-#include "studies/emulate/random.hpp"
 
 namespace millscope::diagnose {
 namespace {
@@ -103,7 +103,7 @@ Prediction RivalModels::placebo(const Prediction& base) const {
     return std::any_of(r_.fit.begin(), r_.fit.end(), [&](std::size_t c) { return partner(i, c).has_value(); });
   };
   for (int k = 0; k < kPlacebos; ++k) {
-    emulate::Random random(r_.seed, static_cast<std::uint64_t>(1000 + k));
+    base::RandomStream random(r_.seed, static_cast<std::uint64_t>(1000 + k));
     const VectorXd chance = random.normals(n);
     VectorXd held(n), fitted = VectorXd::Zero(m);
     for (Index i = 0; i < n; ++i)  // what is not fitted stays as it is

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "studies/emulate/random.hpp"
+#include "kernel/base/random.hpp"
 
 namespace millscope::diagnose {
 namespace {
@@ -119,7 +119,7 @@ struct Vote {
 
 template <class Visit>
 void each_half(const Rows& rows, Visit&& visit) {
-  emulate::Random random(2010);
+  base::RandomStream random(2010);
   std::vector<std::size_t> order(rows.cells());
   std::iota(order.begin(), order.end(), std::size_t{0});
   for (int h = 0; h < kHalves; ++h) {

@@ -1,17 +1,16 @@
-// Random numbers of this room: the SDK's generator in streams, and vectors of its numbers.
+// The SDK's generator in streams, and vectors of its numbers.
 #pragma once
 
 #include <Eigen/Core>
 
 #include "millscope/random.hpp"
 
-namespace millscope::emulate {
+namespace millscope::base {
 
-class Random : public millscope::Random {
+class RandomStream : public Random {
  public:
   /// Streams of one seed do not overlap in practice: the seed is hashed with the stream's number.
-  explicit Random(std::uint64_t seed, std::uint64_t stream = 0)
-      : millscope::Random(millscope::Random(seed).bits() ^ millscope::Random(~stream).bits()) {}
+  explicit RandomStream(std::uint64_t seed, std::uint64_t stream = 0) : Random(Random(seed).bits() ^ Random(~stream).bits()) {}
 
   Eigen::VectorXd normals(Eigen::Index n) {
     return Eigen::VectorXd::NullaryExpr(n, [this] { return normal(); });
@@ -21,4 +20,4 @@ class Random : public millscope::Random {
   }
 };
 
-}  // namespace millscope::emulate
+}  // namespace millscope::base
