@@ -127,19 +127,14 @@ class BedProfile {
   Bins cells_;
 };
 
-constexpr AnalyzerTable kTable = make_analyzer_table<BedProfile>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::analyzer, kAnalyzerLayout, &kTable, sizeof kTable);
-  d.name = "bed_profile";
-  d.version = "0.1.0";
-  d.doc = "Velocity along the free surface against depth, on the bed's normal through the mill's axis.";
-  d.equation = "v(p) = sum w v.t / sum w on the line through the axis and the centre of the charge";
-  d.citation = "Alizadeh et al. 2013, AIChE Journal 59 (drum profiles by particle tracking)";
-  d.parameters = kParameters;
-  d.parameter_count = std::size(kParameters);
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<BedProfile>({
+    .name = "bed_profile",
+    .version = "0.1.0",
+    .doc = "Velocity along the free surface against depth, on the bed's normal through the mill's axis.",
+    .equation = "v(p) = sum w v.t / sum w on the line through the axis and the centre of the charge",
+    .citation = "Alizadeh et al. 2013, AIChE Journal 59 (drum profiles by particle tracking)",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::analyzers

@@ -301,20 +301,15 @@ class ChargeFeatures {
   double low_, high_;
 };
 
-constexpr AnalyzerTable kTable = make_analyzer_table<ChargeFeatures>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::analyzer, kAnalyzerLayout, &kTable, sizeof kTable);
-  d.name = "charge_features";
-  d.version = "0.1.0";
-  d.doc = "Centre of circulation, equilibrium surface, shoulder, head, toes, free surface, and the regions of the charge.";
-  d.equation =
-      "shoulder: -v_r/(|Omega| r_max) = A max(0, theta - theta_s + b (1 - r/r_max)); toe: int_{-120 deg}^{toe} flux = 1/2 int flux";
-  d.citation = "Powell & McBride 2004, Minerals Engineering 17; Bbosa et al. 2011, Minerals Engineering 24; Chagas 2015";
-  d.parameters = kParameters;
-  d.parameter_count = std::size(kParameters);
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<ChargeFeatures>({
+    .name = "charge_features",
+    .version = "0.1.0",
+    .doc = "Centre of circulation, equilibrium surface, shoulder, head, toes, free surface, and the regions of the charge.",
+    .equation =
+        "shoulder: -v_r/(|Omega| r_max) = A max(0, theta - theta_s + b (1 - r/r_max)); toe: int_{-120 deg}^{toe} flux = 1/2 int flux",
+    .citation = "Powell & McBride 2004, Minerals Engineering 17; Bbosa et al. 2011, Minerals Engineering 24; Chagas 2015",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::analyzers

@@ -210,19 +210,14 @@ class Circulation {
   std::optional<Centre> centre_;
 };
 
-constexpr AnalyzerTable kTable = make_analyzer_table<Circulation>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::analyzer, kAnalyzerLayout, &kTable, sizeof kTable);
-  d.name = "circulation";
-  d.version = "0.1.0";
-  d.doc = "Circulation times, circulations per turn, axial dispersion, correlation times and independent samples.";
-  d.equation = "rate = sum dphi/2pi / sum dt; <dz^2> = 2 D lag + offset; tau = int (1 - lag/L) rho dlag; N_eff = T/(2 tau)";
-  d.citation = "Kaplan & Meier 1958, J. Am. Stat. Assoc. 53; Priestley 1981, Spectral Analysis and Time Series";
-  d.parameters = kParameters;
-  d.parameter_count = std::size(kParameters);
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<Circulation>({
+    .name = "circulation",
+    .version = "0.1.0",
+    .doc = "Circulation times, circulations per turn, axial dispersion, correlation times and independent samples.",
+    .equation = "rate = sum dphi/2pi / sum dt; <dz^2> = 2 D lag + offset; tau = int (1 - lag/L) rho dlag; N_eff = T/(2 tau)",
+    .citation = "Kaplan & Meier 1958, J. Am. Stat. Assoc. 53; Priestley 1981, Spectral Analysis and Time Series",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::analyzers

@@ -96,17 +96,12 @@ class CollisionEnergy {
   std::vector<double> edges_;
 };
 
-constexpr AnalyzerTable kTable = make_analyzer_table<CollisionEnergy>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::analyzer, kAnalyzerLayout, &kTable, sizeof kTable);
-  d.name = "collision_energy";
-  d.version = "0.1.0";
-  d.features = kSimulationOnly;
-  d.doc = "Impact spectra, rates and energies of collisions for each pair of materials; simulations only.";
-  d.equation = "E = m* v_n^2 / 2 at first touch; rate = count/time";
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<CollisionEnergy>({
+    .name = "collision_energy",
+    .version = "0.1.0",
+    .doc = "Impact spectra, rates and energies of collisions for each pair of materials; simulations only.",
+    .equation = "E = m* v_n^2 / 2 at first touch; rate = count/time",
+});
 
 }  // namespace
 }  // namespace millscope::analyzers

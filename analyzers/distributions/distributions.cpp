@@ -147,19 +147,14 @@ class Distributions {
   std::array<Axis, kCoordinates> axes_{};
 };
 
-constexpr AnalyzerTable kTable = make_analyzer_table<Distributions>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::analyzer, kAnalyzerLayout, &kTable, sizeof kTable);
-  d.name = "distributions";
-  d.version = "0.1.0";
-  d.doc = "Distributions along x, y, z and the radius, and of speed over shell speed, with their cumulative forms.";
-  d.equation = "percent = 100 sum_bin w / sum w";
-  d.citation = "Chagas 2015, Calibration of DEM contact parameters for tumbling mills using PEPT";
-  d.parameters = kParameters;
-  d.parameter_count = std::size(kParameters);
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<Distributions>({
+    .name = "distributions",
+    .version = "0.1.0",
+    .doc = "Distributions along x, y, z and the radius, and of speed over shell speed, with their cumulative forms.",
+    .equation = "percent = 100 sum_bin w / sum w",
+    .citation = "Chagas 2015, Calibration of DEM contact parameters for tumbling mills using PEPT",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::analyzers

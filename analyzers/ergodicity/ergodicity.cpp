@@ -301,20 +301,14 @@ class Ergodicity {
   Bins cells_, coarse_;
 };
 
-constexpr AnalyzerTable kTable = make_analyzer_table<Ergodicity>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::analyzer, kAnalyzerLayout, &kTable, sizeof kTable);
-  d.name = "ergodicity";
-  d.version = "0.1.0";
-  d.doc = "Single beads against the whole charge: power, distributions, maps, a test, and how long a recording must be.";
-  d.equation = "Omega_f(t) = 1/(N-1) sum_j (f_j(t) - <f>(t))^2; Omega_f(0)/Omega_f(t) -> D t";
-  d.citation = "Thirumalai & Mountain 1993, Physical Review E 47; Chagas 2015";
-  d.features = kSimulationOnly;
-  d.parameters = kParameters;
-  d.parameter_count = std::size(kParameters);
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<Ergodicity>({
+    .name = "ergodicity",
+    .version = "0.1.0",
+    .doc = "Single beads against the whole charge: power, distributions, maps, a test, and how long a recording must be.",
+    .equation = "Omega_f(t) = 1/(N-1) sum_j (f_j(t) - <f>(t))^2; Omega_f(0)/Omega_f(t) -> D t",
+    .citation = "Thirumalai & Mountain 1993, Physical Review E 47; Chagas 2015",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::analyzers

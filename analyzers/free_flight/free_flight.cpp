@@ -233,19 +233,14 @@ class FreeFlight {
   Bins angles_;
 };
 
-constexpr AnalyzerTable kTable = make_analyzer_table<FreeFlight>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::analyzer, kAnalyzerLayout, &kTable, sizeof kTable);
-  d.name = "free_flight";
-  d.version = "0.1.0";
-  d.doc = "Gravity and drag from whole free flights, pooled; where flights begin and end.";
-  d.equation = "x(t) = x0 + v0 t + g t^2/2 - k int int |v| v";
-  d.citation = "Ljung 1999, System Identification (output error)";
-  d.parameters = kParameters;
-  d.parameter_count = std::size(kParameters);
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<FreeFlight>({
+    .name = "free_flight",
+    .version = "0.1.0",
+    .doc = "Gravity and drag from whole free flights, pooled; where flights begin and end.",
+    .equation = "x(t) = x0 + v0 t + g t^2/2 - k int int |v| v",
+    .citation = "Ljung 1999, System Identification (output error)",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::analyzers

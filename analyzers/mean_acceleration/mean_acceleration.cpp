@@ -107,19 +107,14 @@ class MeanAcceleration {
   double sense_, shell_speed_;
 };
 
-constexpr AnalyzerTable kTable = make_analyzer_table<MeanAcceleration>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::analyzer, kAnalyzerLayout, &kTable, sizeof kTable);
-  d.name = "mean_acceleration";
-  d.version = "0.1.0";
-  d.doc = "Mean acceleration of the beads by place and against speed, from the momentum that enters and leaves.";
-  d.equation = "a = sum dv / sum dt over the steps in a cell; along the motion: sum dv.v/|v| / sum dt";
-  d.citation = "Momentum balance in integral form; compare Messenger & Bortz 2021, doi:10.1137/20M1343166 (weak form)";
-  d.parameters = kParameters;
-  d.parameter_count = std::size(kParameters);
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<MeanAcceleration>({
+    .name = "mean_acceleration",
+    .version = "0.1.0",
+    .doc = "Mean acceleration of the beads by place and against speed, from the momentum that enters and leaves.",
+    .equation = "a = sum dv / sum dt over the steps in a cell; along the motion: sum dv.v/|v| / sum dt",
+    .citation = "Momentum balance in integral form; compare Messenger & Bortz 2021, doi:10.1137/20M1343166 (weak form)",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::analyzers

@@ -129,19 +129,14 @@ class Models {
   double omega_, bond_factor_, filling_of_mass_ = 0, mass_of_filling_ = 0;
 };
 
-constexpr AnalyzerTable kTable = make_analyzer_table<Models>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::analyzer, kAnalyzerLayout, &kTable, sizeof kTable);
-  d.name = "models";
-  d.version = "0.1.0";
-  d.doc = "Critical speed, filling, mass, and the power models of Bond, Austin-Concha and Morrell, with their ranges.";
-  d.equation = "N_c = 42.3/sqrt(D - d) rpm; M = (1 - porosity) J V rho; Bond, Austin-Concha, Morrell as in the manual";
-  d.citation = "Bond 1961; Austin and Concha 1994; Morrell 1996; Chagas 2015, Eq. 3.1-3.5 and 4.1, corrected";
-  d.parameters = kParameters;
-  d.parameter_count = std::size(kParameters);
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<Models>({
+    .name = "models",
+    .version = "0.1.0",
+    .doc = "Critical speed, filling, mass, and the power models of Bond, Austin-Concha and Morrell, with their ranges.",
+    .equation = "N_c = 42.3/sqrt(D - d) rpm; M = (1 - porosity) J V rho; Bond, Austin-Concha, Morrell as in the manual",
+    .citation = "Bond 1961; Austin and Concha 1994; Morrell 1996; Chagas 2015, Eq. 3.1-3.5 and 4.1, corrected",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::analyzers

@@ -217,20 +217,15 @@ class PeptGrid {
   double bead_volume_ = 0;
 };
 
-constexpr AnalyzerTable kTable = make_analyzer_table<PeptGrid>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::analyzer, kAnalyzerLayout, &kTable, sizeof kTable);
-  d.name = "pept_grid";
-  d.version = "0.1.0";
-  d.doc = "Maps of occupancy, velocity, turning speed, velocity fluctuation, visits and porosity.";
-  d.equation =
-      "l_i = sum_i w / sum w; <v>_i = sum_i w v / sum_i w; T_i = (<v^2>_i - |<v>_i|^2)/3 - <s_v^2>_i; porosity_i = 1 - l_i V_beads/V_i";
-  d.citation = "Chagas 2015, Calibration of DEM contact parameters for tumbling mills using PEPT; Sichalwe et al. 2011 (porosity)";
-  d.parameters = kParameters;
-  d.parameter_count = std::size(kParameters);
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<PeptGrid>({
+    .name = "pept_grid",
+    .version = "0.1.0",
+    .doc = "Maps of occupancy, velocity, turning speed, velocity fluctuation, visits and porosity.",
+    .equation =
+        "l_i = sum_i w / sum w; <v>_i = sum_i w v / sum_i w; T_i = (<v^2>_i - |<v>_i|^2)/3 - <s_v^2>_i; porosity_i = 1 - l_i V_beads/V_i",
+    .citation = "Chagas 2015, Calibration of DEM contact parameters for tumbling mills using PEPT; Sichalwe et al. 2011 (porosity)",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::analyzers

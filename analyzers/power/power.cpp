@@ -168,19 +168,14 @@ class Power {
   Bins x_, y_;
 };
 
-constexpr AnalyzerTable kTable = make_analyzer_table<Power>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::analyzer, kAnalyzerLayout, &kTable, sizeof kTable);
-  d.name = "power";
-  d.version = "0.1.0";
-  d.doc = "Power of the charge: Bbosa's sum over cells, M g <x> Omega, and, when simulated, the shell's work and the dissipation.";
-  d.equation = "P = M g sign(Omega) sum_i x_i l_i <|omega|>_i; P = M g <x Omega>";
-  d.citation = "Bbosa et al. 2011; Chagas 2015, Eq. 3.20";
-  d.parameters = kParameters;
-  d.parameter_count = std::size(kParameters);
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<Power>({
+    .name = "power",
+    .version = "0.1.0",
+    .doc = "Power of the charge: Bbosa's sum over cells, M g <x> Omega, and, when simulated, the shell's work and the dissipation.",
+    .equation = "P = M g sign(Omega) sum_i x_i l_i <|omega|>_i; P = M g <x Omega>",
+    .citation = "Bbosa et al. 2011; Chagas 2015, Eq. 3.20",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::analyzers

@@ -125,19 +125,14 @@ class Slip {
   double sense_, omega_, from_, to_, lifter_angle_, pitch_ = 0;
 };
 
-constexpr AnalyzerTable kTable = make_analyzer_table<Slip>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::analyzer, kAnalyzerLayout, &kTable, sizeof kTable);
-  d.name = "slip";
-  d.version = "0.1.0";
-  d.doc = "Slip of the charge against the shell by radius and, where the shell's angle is known, by lifter phase.";
-  d.equation = "slip(r) = 1 - sum w s omega / sum w |Omega|, omega = (x v_y - y v_x)/r^2";
-  d.citation = "Chagas 2015 (angular speed)";
-  d.parameters = kParameters;
-  d.parameter_count = std::size(kParameters);
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<Slip>({
+    .name = "slip",
+    .version = "0.1.0",
+    .doc = "Slip of the charge against the shell by radius and, where the shell's angle is known, by lifter phase.",
+    .equation = "slip(r) = 1 - sum w s omega / sum w |Omega|, omega = (x v_y - y v_x)/r^2",
+    .citation = "Chagas 2015 (angular speed)",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::analyzers

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "millscope/abi.hpp"
+#include "millscope/layout.hpp"
 
 namespace millscope::geometry {
 

@@ -62,24 +62,15 @@ constexpr Parameter kParameters[] = {
     integer_parameter("max_triangles", 5e6, 1, 1e8, "Files with more triangles are refused."),
 };
 
-constexpr GeometryTable kTable = make_geometry_table<geometry::MeshPlugin>();
-
-constexpr Descriptor make() {
-  Descriptor d = make_descriptor(Kind::geometry, kGeometryLayout, &kTable, sizeof kTable);
-  d.name = "mesh";
-  d.version = "0.1.0";
-  d.doc = "Triangle mesh from a CAD file; exact sphere-triangle contact, shared edges and vertices count once.";
-  d.equation = "delta = r - |x - nearest point of the triangle|";
-  d.citation = "Ericson 2005, Real-Time Collision Detection, section 5.1.5";
-  d.parameters = kParameters;
-  d.parameter_count = std::size(kParameters);
-  return d;
-}
-constexpr Descriptor kMesh = make();
-constexpr const Descriptor* kList[] = {&kMesh};
+constexpr Descriptor kMesh = describe<geometry::MeshPlugin>({
+    .name = "mesh",
+    .version = "0.1.0",
+    .doc = "Triangle mesh from a CAD file; exact sphere-triangle contact, shared edges and vertices count once.",
+    .equation = "delta = r - |x - nearest point of the triangle|",
+    .citation = "Ericson 2005, Real-Time Collision Detection, section 5.1.5",
+    .parameters = kParameters,
+});
 
 }  // namespace
 
-MILLSCOPE_EXPORT const millscope::DescriptorList millscope_plugins;
-const millscope::DescriptorList millscope_plugins = {millscope::kMagic, sizeof(millscope::DescriptorList), millscope::kAbiMajor,
-                                                     std::size(kList), kList};
+MILLSCOPE_PLUGINS(&kMesh)

@@ -23,23 +23,14 @@ constexpr Parameter kParameters[] = {
     integer_parameter("axial_cuts", 1, 1, 1000, "Rows of triangles along z (resolution of the maps of wear)."),
 };
 
-constexpr GeometryTable kTable = make_geometry_table<geometry::MillPlugin>();
-
-constexpr Descriptor make() {
-  Descriptor d = make_descriptor(Kind::geometry, kGeometryLayout, &kTable, sizeof kTable);
-  d.name = "mill";
-  d.version = "0.1.0";
-  d.doc = "Parametric mill: circular shell, trapezoid lifters, flat ends; exact contact.";
-  d.equation = "delta = r - |x - nearest point of shell, lifter face, lifter top or top corner|";
-  d.parameters = kParameters;
-  d.parameter_count = std::size(kParameters);
-  return d;
-}
-constexpr Descriptor kMill = make();
-constexpr const Descriptor* kList[] = {&kMill};
+constexpr Descriptor kMill = describe<geometry::MillPlugin>({
+    .name = "mill",
+    .version = "0.1.0",
+    .doc = "Parametric mill: circular shell, trapezoid lifters, flat ends; exact contact.",
+    .equation = "delta = r - |x - nearest point of shell, lifter face, lifter top or top corner|",
+    .parameters = kParameters,
+});
 
 }  // namespace
 
-MILLSCOPE_EXPORT const millscope::DescriptorList millscope_plugins;
-const millscope::DescriptorList millscope_plugins = {millscope::kMagic, sizeof(millscope::DescriptorList), millscope::kAbiMajor,
-                                                     std::size(kList), kList};
+MILLSCOPE_PLUGINS(&kMill)

@@ -25,33 +25,28 @@ constexpr Parameter kBoxParameters[] = {
     text_parameter("open", "", "Faces that are left out, such as \"+y -z\"; the names are -x +x -y +y -z +z."),
 };
 
-constexpr GeometryTable kCylinderTable = make_geometry_table<geometry::CylinderPlugin>();
-constexpr GeometryTable kPlaneTable = make_geometry_table<geometry::Plane>();
-constexpr GeometryTable kBoxTable = make_geometry_table<geometry::Box>();
-
-template <std::size_t N>
-constexpr Descriptor make(const char* name, const char* doc, const char* equation, const GeometryTable& table,
-                          const Parameter (&parameters)[N]) {
-  Descriptor d = make_descriptor(Kind::geometry, kGeometryLayout, &table, sizeof table);
-  d.name = name;
-  d.version = "0.1.0";
-  d.doc = doc;
-  d.equation = equation;
-  d.parameters = parameters;
-  d.parameter_count = N;
-  return d;
-}
-
-constexpr Descriptor kCylinder = make("cylinder", "The inside of a cylinder round z, with or without ends.",
-                                      "delta = r + sqrt(x^2 + y^2) - R", kCylinderTable, kCylinderParameters);
-constexpr Descriptor kPlane = make("plane", "An endless plane.", "delta = r - n . (x - point)", kPlaneTable, kPlaneParameters);
-constexpr Descriptor kBox =
-    make("box", "The inside of an axis-aligned box; faces may be open. One material slot per closed face: x_low, x_high, …",
-         "delta = r - |x - nearest point of the face|", kBoxTable, kBoxParameters);
-constexpr const Descriptor* kList[] = {&kCylinder, &kPlane, &kBox};
+constexpr Descriptor kCylinder = describe<geometry::CylinderPlugin>({
+    .name = "cylinder",
+    .version = "0.1.0",
+    .doc = "The inside of a cylinder round z, with or without ends.",
+    .equation = "delta = r + sqrt(x^2 + y^2) - R",
+    .parameters = kCylinderParameters,
+});
+constexpr Descriptor kPlane = describe<geometry::Plane>({
+    .name = "plane",
+    .version = "0.1.0",
+    .doc = "An endless plane.",
+    .equation = "delta = r - n . (x - point)",
+    .parameters = kPlaneParameters,
+});
+constexpr Descriptor kBox = describe<geometry::Box>({
+    .name = "box",
+    .version = "0.1.0",
+    .doc = "The inside of an axis-aligned box; faces may be open. One material slot per closed face: x_low, x_high, …",
+    .equation = "delta = r - |x - nearest point of the face|",
+    .parameters = kBoxParameters,
+});
 
 }  // namespace
 
-MILLSCOPE_EXPORT const millscope::DescriptorList millscope_plugins;
-const millscope::DescriptorList millscope_plugins = {millscope::kMagic, sizeof(millscope::DescriptorList), millscope::kAbiMajor,
-                                                     std::size(kList), kList};
+MILLSCOPE_PLUGINS(&kCylinder, &kPlane, &kBox)

@@ -31,7 +31,6 @@ struct Common {
   Common(Settings s, Layout l, PhysicsTable p)
       : settings(std::move(s)),
         layout(std::move(l)),
-        normal_channel(normal_channels(layout)),
         physics(std::move(p)),
         wide(wide_table(settings.instruction_set.c_str())),
         workers(std::min(settings.threads, settings.partitions)),
@@ -42,7 +41,6 @@ struct Common {
 
   const Settings settings;
   const Layout layout;
-  const std::vector<std::uint8_t> normal_channel;  ///< [channel]: its work counts as impact, not shear
   const PhysicsTable physics;
   const WideTable& wide;
   Workers workers;

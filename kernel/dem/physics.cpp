@@ -19,13 +19,4 @@ PhysicsTable::PhysicsTable(std::vector<PairPhysics> all, int material_count)
   }
 }
 
-std::vector<std::uint8_t> normal_channels(const Layout& layout) {
-  std::vector<std::uint8_t> normal;
-  for (const std::string& channel : layout.channels) {
-    const std::string own = channel.substr(channel.rfind('.') + 1);
-    normal.push_back(own.find("normal") != std::string::npos || own.find("adhesion") != std::string::npos);
-  }
-  return normal;
-}
-
 }  // namespace millscope::dem

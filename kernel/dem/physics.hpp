@@ -10,6 +10,8 @@
 #include "millscope/body_force.hpp"
 #include "millscope/contact_law.hpp"
 #include "millscope/geometry.hpp"
+#include "millscope/interaction.hpp"
+#include "millscope/pair_parameter.hpp"
 
 namespace millscope::dem {
 
@@ -90,8 +92,5 @@ struct Layout {
   std::vector<int> history_sign;
   int history_count() const { return static_cast<int>(history_sign.size()); }
 };
-
-/// For each channel ("plugin.channel") whether it acts along the normal.
-std::vector<std::uint8_t> normal_channels(const Layout& layout);
 
 }  // namespace millscope::dem

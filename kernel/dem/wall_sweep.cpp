@@ -206,8 +206,9 @@ void WallSweep::book_triangle(const Chunk& chunk, const PairPhysics& physics, st
   const WallBatch& b = pass_.scratch.walls;
   const std::uint32_t triangle = pass_.scratch.found.triangle[b.contact[k]];
   if (triangle >= walls_.bodies()[chunk.body].triangle_count) return;
-  for (std::size_t channel = 0; channel < physics.law.table->info.channel_count; ++channel) {
-    auto& kind = pass_.common.normal_channel[channel] ? pass_.state.impact : pass_.state.shear;
+  const PairTermInfo& law = physics.law.table->info;
+  for (std::size_t channel = 0; channel < law.channel_count; ++channel) {
+    auto& kind = law.channels[channel].part == ChannelPart::normal ? pass_.state.impact : pass_.state.shear;
     kind[chunk.body][triangle] += b.power[channel][k] * pass_.common.settings.time_step;
   }
 }

@@ -3,9 +3,12 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <span>
 #include <string_view>
 
 #include "millscope/contact_law.hpp"
+#include "millscope/interaction.hpp"
+#include "millscope/pair_parameter.hpp"
 
 namespace millscope::host {
 
@@ -18,19 +21,35 @@ const char* type_word(ValueType type) {
 
 bool is_numeric(const Parameter& p) { return p.type == ValueType::number || p.type == ValueType::integer || p.type == ValueType::vector; }
 
+struct Bookkeeping {
+  std::span<const History> histories;
+  std::span<const Channel> channels;
+};
+
+Bookkeeping of(const PairTermInfo& info) { return {{info.histories, info.history_count}, {info.channels, info.channel_count}}; }
+
 /// The histories and channels of the kinds that have them.
-const ContactLawInfo* info_of(const Descriptor& d) {
+Bookkeeping bookkeeping_of(const Descriptor& d) {
   switch (static_cast<Kind>(d.kind)) {
     case Kind::contact_law:
-      return &static_cast<const ContactLawTable*>(d.table)->info;
+      return of(static_cast<const ContactLawTable*>(d.table)->info);
     case Kind::interaction:
-      return &static_cast<const InteractionTable*>(d.table)->info;
-    case Kind::pair_parameter:
-      return &static_cast<const PairParameterTable*>(d.table)->info;
+      return of(static_cast<const InteractionTable*>(d.table)->info);
+    case Kind::pair_parameter: {
+      const PairParameterInfo& info = static_cast<const PairParameterTable*>(d.table)->info;
+      return {{info.histories, info.history_count}, {}};
+    }
     default:
-      return nullptr;
+      return {};
   }
 }
+
+const char* word(ChannelPart part) {
+  constexpr const char* words[] = {"normal", "tangential", "rolling"};
+  return words[static_cast<std::uint32_t>(part)];
+}
+
+const char* word(ChannelNature nature) { return nature == ChannelNature::elastic ? "elastic" : "dissipative"; }
 
 std::string default_text(const Parameter& p) {
   if (p.type == ValueType::choice || p.type == ValueType::text || p.type == ValueType::file) {
@@ -77,15 +96,16 @@ void add_parameters(std::string& page, const Descriptor& d, Scope scope, std::st
   if (!rows.empty()) page += fmt::format("\n{}\n{}", title, rows);
 }
 
-void add_info(std::string& page, const ContactLawInfo& info) {
-  std::string history, channels;
-  for (std::uint32_t h = 0; h < info.history_count; ++h) {
-    history +=
-        fmt::format("{}{}{}", h == 0 ? "" : ", ", info.history_name[h], info.history_sign[h] < 0 ? " (changes sign with i<->j)" : "");
+void add_bookkeeping(std::string& page, const Bookkeeping& kept) {
+  std::string histories, channels;
+  for (const History& h : kept.histories) {
+    histories += fmt::format("{}{}{}", histories.empty() ? "" : ", ", h.name, h.sign < 0 ? " (changes sign with i<->j)" : "");
   }
-  for (std::uint32_t k = 0; k < info.channel_count; ++k) channels += fmt::format("{}{}", k == 0 ? "" : ", ", info.channel_name[k]);
-  add_block(page, "History per contact", history);
-  add_block(page, "Energy is lost to", channels);
+  for (const Channel& c : kept.channels) {
+    channels += fmt::format("{}{} ({}, {})", channels.empty() ? "" : ", ", c.name, word(c.part), word(c.nature));
+  }
+  add_block(page, "History per contact", histories);
+  add_block(page, "Energy goes to", channels);
 }
 
 nlohmann::json number_or_null(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr); }
@@ -113,7 +133,7 @@ nlohmann::json parameter_json(const Parameter& p) {
   return j;
 }
 
-nlohmann::json hypothesis_json(const Hypothesis& h) {
+nlohmann::json hypothesis_json(const Hypothesis& h, Kind kind) {
   return {{"name", h.name},
           {"sentence", h.sentence},
           {"equation", h.equation},
@@ -122,8 +142,7 @@ nlohmann::json hypothesis_json(const Hypothesis& h) {
           {"null_value", number_or_null(h.null_value)},
           {"prior", {number_or_null(h.prior_low), number_or_null(h.prior_high)}},
           {"two_sided", h.two_sided != 0},
-          {"cost", h.reobserve != 0 ? "reobserve" : "resimulate"},
-          {"undefined_at_null", h.undefined_at_null},
+          {"cost", kind == Kind::observation ? "reobserve" : "resimulate"},
           {"excludes", h.excludes}};
 }
 
@@ -137,7 +156,7 @@ std::string describe(const Descriptor& d) {
   add_block(page, "Citation", d.citation);
   add_parameters(page, d, Scope::instance, "Parameters");
   add_parameters(page, d, Scope::pair, "Parameters per pair of materials (under pairs:)");
-  if (const ContactLawInfo* info = info_of(d)) add_info(page, *info);
+  add_bookkeeping(page, bookkeeping_of(d));
   for (std::uint64_t i = 0; i < d.hypothesis_count; ++i) {
     const Hypothesis& h = d.hypotheses[i];
     add_block(page, fmt::format("Hypothesis {}", h.name),
@@ -158,14 +177,16 @@ nlohmann::json describe_json(const Descriptor& d) {
                       {"parameters", nlohmann::json::array()},
                       {"hypotheses", nlohmann::json::array()},
                       {"history", nlohmann::json::array()},
-                      {"channels", nlohmann::json::array()}};
+                      {"channels", nlohmann::json::array()},
+                      {"channel_roles", nlohmann::json::array()}};
   for (std::uint64_t i = 0; i < d.parameter_count; ++i) j["parameters"].push_back(parameter_json(d.parameters[i]));
-  for (std::uint64_t i = 0; i < d.hypothesis_count; ++i) j["hypotheses"].push_back(hypothesis_json(d.hypotheses[i]));
-  if (const ContactLawInfo* info = info_of(d)) {
-    for (std::uint32_t h = 0; h < info->history_count; ++h) {
-      j["history"].push_back({{"name", info->history_name[h]}, {"sign", info->history_sign[h]}});
-    }
-    for (std::uint32_t k = 0; k < info->channel_count; ++k) j["channels"].push_back(info->channel_name[k]);
+  for (std::uint64_t i = 0; i < d.hypothesis_count; ++i)
+    j["hypotheses"].push_back(hypothesis_json(d.hypotheses[i], static_cast<Kind>(d.kind)));
+  const Bookkeeping kept = bookkeeping_of(d);
+  for (const History& h : kept.histories) j["history"].push_back({{"name", h.name}, {"sign", h.sign}});
+  for (const Channel& c : kept.channels) {
+    j["channels"].push_back(c.name);
+    j["channel_roles"].push_back({{"part", word(c.part)}, {"nature", word(c.nature)}});
   }
   return j;
 }

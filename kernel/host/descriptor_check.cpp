@@ -14,7 +14,9 @@
 #include "millscope/body_force.hpp"
 #include "millscope/contact_law.hpp"
 #include "millscope/geometry.hpp"
+#include "millscope/interaction.hpp"
 #include "millscope/observation.hpp"
+#include "millscope/pair_parameter.hpp"
 
 namespace millscope::host {
 
@@ -43,19 +45,10 @@ const KindLayout* layout_of(std::uint32_t kind) {
   return nullptr;
 }
 
-std::string abi_complaint(std::uint32_t major, std::uint32_t minor) {
-  if (major < kAbiMajor) {
-    return fmt::format("built against SDK ABI {}, this millscope has {}: rebuild the plugin with this millscope's SDK", major, kAbiMajor);
-  }
-  if (major > kAbiMajor) {
-    return fmt::format("built against SDK ABI {}, this millscope has {}: update millscope, or rebuild the plugin with this millscope's SDK",
-                       major, kAbiMajor);
-  }
-  if (minor > kAbiMinor) {
-    return fmt::format("built against SDK ABI {}.{}, this millscope has {}.{}: update millscope, or rebuild the plugin with its SDK", major,
-                       minor, kAbiMajor, kAbiMinor);
-  }
-  return "";
+std::string abi_complaint(std::uint32_t version) {
+  if (version == kAbiVersion) return "";
+  return fmt::format("built against SDK ABI {}, this millscope has {}: {}rebuild the plugin with this millscope's SDK", version,
+                     kAbiVersion, version > kAbiVersion ? "update millscope, or " : "");
 }
 
 bool readable(const char* string) { return string != nullptr && is_mapped(string, 1); }
@@ -130,7 +123,7 @@ std::string hypotheses_complaint(const Descriptor& d) {
   if (d.hypothesis_count > 64 || !is_mapped(d.hypotheses, d.hypothesis_count * sizeof(Hypothesis))) return "its hypotheses cannot be read";
   for (std::uint64_t i = 0; i < d.hypothesis_count; ++i) {
     const Hypothesis& h = d.hypotheses[i];
-    for (const char* string : {h.name, h.sentence, h.equation, h.citation, h.parameter, h.undefined_at_null, h.excludes}) {
+    for (const char* string : {h.name, h.sentence, h.equation, h.citation, h.parameter, h.excludes}) {
       if (!readable(string)) return "a hypothesis has a null text; use \"\"";
     }
     bool known = false;
@@ -167,7 +160,7 @@ bool is_mapped(const void* address, std::uint64_t size) {
 
 std::string complaint(const DescriptorList& list) {
   if (list.magic != kMagic) return "the symbol millscope_plugins is no plugin list (wrong magic number)";
-  const std::string abi = abi_complaint(list.abi_major, 0);
+  const std::string abi = abi_complaint(list.abi_version);
   if (!abi.empty()) return abi;
   if (list.size != sizeof(DescriptorList)) {
     return fmt::format("its plugin list has {} bytes, this millscope's has {}: rebuild the plugin with this millscope's SDK", list.size,
@@ -180,7 +173,7 @@ std::string complaint(const DescriptorList& list) {
 
 std::string complaint(const Descriptor& d) {
   if (d.magic != kMagic) return "a descriptor has the wrong magic number";
-  const std::string abi = abi_complaint(d.abi_major, d.abi_minor);
+  const std::string abi = abi_complaint(d.abi_version);
   if (!abi.empty()) return abi;
   if (d.size != sizeof(Descriptor)) {
     return fmt::format("a descriptor has {} bytes, this millscope's has {}: rebuild the plugin with this millscope's SDK", d.size,

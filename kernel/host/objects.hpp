@@ -11,7 +11,9 @@
 #include "millscope/body_force.hpp"
 #include "millscope/contact_law.hpp"
 #include "millscope/geometry.hpp"
+#include "millscope/interaction.hpp"
 #include "millscope/observation.hpp"
+#include "millscope/pair_parameter.hpp"
 
 namespace millscope::host {
 

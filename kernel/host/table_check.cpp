@@ -3,7 +3,9 @@
 #include "millscope/body_force.hpp"
 #include "millscope/contact_law.hpp"
 #include "millscope/geometry.hpp"
+#include "millscope/interaction.hpp"
 #include "millscope/observation.hpp"
+#include "millscope/pair_parameter.hpp"
 
 namespace millscope::host {
 
@@ -14,8 +16,10 @@ std::string missing(Functions... functions) {
   return (... || (functions == nullptr)) ? "a function of its table is missing (null)" : "";
 }
 
-std::string insane(const ContactLawInfo& info) {
-  return info_is_sane(info) ? "" : "its histories or channels are not sane: a null name, a sign that is not +1 or -1, or too many";
+template <class Info>
+std::string insane(const Info& info) {
+  return is_sane(info) ? ""
+                       : "its histories or channels are not sane: a null name, a sign that is not +1 or -1, an unknown role, or too many";
 }
 
 std::string either(const std::string& first, const std::string& second) { return first.empty() ? second : first; }

@@ -132,13 +132,16 @@ std::vector<dem::PairPhysics> make_pairs(Assembly& a, const host::Registry& regi
 
 dem::Layout contact_layout(const Assembly& a, const dem::PairPhysics& pair) {
   dem::Layout layout;
-  const auto add = [&layout](const std::string& plugin, const ContactLawInfo& info) {
-    for (std::uint32_t k = 0; k < info.channel_count; ++k) layout.channels.push_back(plugin + "." + info.channel_name[k]);
-    for (std::uint32_t k = 0; k < info.history_count; ++k) layout.history_sign.push_back(info.history_sign[k]);
+  const auto add_histories = [&layout](const auto& info) {
+    for (std::uint32_t h = 0; h < info.history_count; ++h) layout.history_sign.push_back(info.histories[h].sign);
+  };
+  const auto add = [&](const std::string& plugin, const PairTermInfo& info) {
+    for (std::uint32_t k = 0; k < info.channel_count; ++k) layout.channels.push_back(plugin + "." + info.channels[k].name);
+    add_histories(info);
   };
   add(a.c.contact.law.kind, pair.law.table->info);
   for (const dem::InteractionReference& i : pair.interactions) add(i.name, i.table->info);
-  for (const dem::PairParameterReference& p : pair.pair_parameters) add("", p.table->info);
+  for (const dem::PairParameterReference& p : pair.pair_parameters) add_histories(p.table->info);
   if (layout.history_sign.size() > static_cast<std::size_t>(dem::kMaxHistories)) {
     throw base::UserError(
         a.c.contact.law.where,

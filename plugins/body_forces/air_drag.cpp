@@ -27,7 +27,7 @@ constexpr Parameter kParameters[] = {
 
 constexpr Hypothesis kHypotheses[] = {
     {"air_drag", "The air slows the beads in flight.", "F = 3 pi eta d (1 + 0.15 Re^0.687) u", "Schiller & Naumann 1933", "strength", 0.0,
-     0.0, 3.0, 0, 0, "fluid_density|viscosity|angular_velocity", ""},
+     0.0, 3.0},
 };
 
 class AirDrag {
@@ -56,21 +56,15 @@ class AirDrag {
   double strength_, turning_;
 };
 
-constexpr BodyForceTable kTable = make_body_force_table<AirDrag>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::body_force, kBodyForceLayout, &kTable, sizeof kTable);
-  d.name = "air_drag";
-  d.version = "1.0";
-  d.doc = "Drag of a gas on each bead alone; Schiller-Naumann, valid for Re < 800, drag coefficient at least 0.44 above.";
-  d.equation = "F = 3 pi eta d (1 + 0.15 Re^0.687) u";
-  d.citation = "Schiller & Naumann 1933";
-  d.parameters = kParameters;
-  d.parameter_count = sizeof kParameters / sizeof kParameters[0];
-  d.hypotheses = kHypotheses;
-  d.hypothesis_count = 1;
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<AirDrag>({
+    .name = "air_drag",
+    .version = "1.0",
+    .doc = "Drag of a gas on each bead alone; Schiller-Naumann, valid for Re < 800, drag coefficient at least 0.44 above.",
+    .equation = "F = 3 pi eta d (1 + 0.15 Re^0.687) u",
+    .citation = "Schiller & Naumann 1933",
+    .parameters = kParameters,
+    .hypotheses = kHypotheses,
+});
 
 }  // namespace
 }  // namespace millscope::body_forces

@@ -43,7 +43,7 @@ constexpr Parameter kParameters[] = {
 
 constexpr Hypothesis kHypotheses[] = {
     {"fluid_pool", "A pool of liquid lightens and slows the bed below its level.", "F = rho V g + drag, added mass rho V/2",
-     "Schiller & Naumann 1933", "fluid_density", 0.0, 0.0, 1200.0, 0, 0, "level|kinematic_viscosity|porosity|angular_velocity|gravity", ""},
+     "Schiller & Naumann 1933", "fluid_density", 0.0, 0.0, 1200.0},
 };
 
 class FluidPool {
@@ -93,21 +93,15 @@ class FluidPool {
   double level_, porosity_, gravity_, turning_;
 };
 
-constexpr BodyForceTable kTable = make_body_force_table<FluidPool>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::body_force, kBodyForceLayout, &kTable, sizeof kTable);
-  d.name = "fluid_pool";
-  d.version = "1.0";
-  d.doc = "A liquid with a flat surface in the lower part of the mill: buoyancy, added mass and drag on what is submerged.";
-  d.equation = "(m + rho V/2) a = F + rho V g + drag, V the submerged cap";
-  d.citation = "Schiller & Naumann 1933; Di Felice 1994, doi:10.1016/0301-9322(94)90011-6; von Karman 1929, NACA TN 321";
-  d.parameters = kParameters;
-  d.parameter_count = sizeof kParameters / sizeof kParameters[0];
-  d.hypotheses = kHypotheses;
-  d.hypothesis_count = 1;
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<FluidPool>({
+    .name = "fluid_pool",
+    .version = "1.0",
+    .doc = "A liquid with a flat surface in the lower part of the mill: buoyancy, added mass and drag on what is submerged.",
+    .equation = "(m + rho V/2) a = F + rho V g + drag, V the submerged cap",
+    .citation = "Schiller & Naumann 1933; Di Felice 1994, doi:10.1016/0301-9322(94)90011-6; von Karman 1929, NACA TN 321",
+    .parameters = kParameters,
+    .hypotheses = kHypotheses,
+});
 
 }  // namespace
 }  // namespace millscope::body_forces

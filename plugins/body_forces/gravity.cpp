@@ -37,18 +37,13 @@ class Gravity {
   double acceleration_[3];
 };
 
-constexpr BodyForceTable kTable = make_body_force_table<Gravity>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::body_force, kBodyForceLayout, &kTable, sizeof kTable);
-  d.name = "gravity";
-  d.version = "1.0";
-  d.doc = "The same acceleration for every bead, in any direction.";
-  d.equation = "F = m g";
-  d.parameters = kParameters;
-  d.parameter_count = sizeof kParameters / sizeof kParameters[0];
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<Gravity>({
+    .name = "gravity",
+    .version = "1.0",
+    .doc = "The same acceleration for every bead, in any direction.",
+    .equation = "F = m g",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::body_forces

@@ -26,7 +26,7 @@ template <class Tangential>
 class Hertz {
  public:
   static constexpr int kHistory = Tangential::kHistory, kChannels = 4;
-  static constexpr ContactLawInfo kInfo = Tangential::kInfo;
+  static constexpr PairTermInfo kInfo = Tangential::kInfo;
 
   Hertz(const Parameters& values, const PairContext& pair)
       : young_(pair.effective_young),

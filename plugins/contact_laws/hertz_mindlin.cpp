@@ -21,7 +21,7 @@ constexpr Parameter kParameters[] = {
 
 struct NoSlip {
   static constexpr int kHistory = 3;
-  static constexpr ContactLawInfo kInfo = kSpringInfo;
+  static constexpr PairTermInfo kInfo = kSpringInfo;
   template <class R>
   [[gnu::always_inline]] static inline Shear<R> pull(const Contact<R>& c, const R& normal_speed, const Spring<R>& spring, Cap cap,
                                                      R (&history)[3]) {
@@ -39,15 +39,14 @@ class HertzMindlin : public Hertz<NoSlip> {
   }
 };
 
-constexpr ContactLawTable kTable = make_contact_law_table<HertzMindlin>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = law_descriptor("hertz_mindlin", &kTable, kParameters);
-  d.doc = "Hertz's normal spring, Mindlin's tangential spring, viscous damping from the coefficient of restitution.";
-  d.equation = "F_n = 4/3 E* sqrt(R*) d^1.5 - 2 sqrt(5/6) |b| sqrt(S_n m*) v_n; F_t = -S_t d_t - 2 sqrt(5/6) |b| sqrt(S_t m*) v_t";
-  d.citation = "Hertz 1882; Mindlin 1949; Tsuji, Tanaka & Ishida 1992, doi:10.1016/0032-5910(92)88030-L; Chagas 2015, Eq. 3.6-3.12";
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<HertzMindlin>({
+    .name = "hertz_mindlin",
+    .version = "1.0",
+    .doc = "Hertz's normal spring, Mindlin's tangential spring, viscous damping from the coefficient of restitution.",
+    .equation = "F_n = 4/3 E* sqrt(R*) d^1.5 - 2 sqrt(5/6) |b| sqrt(S_n m*) v_n; F_t = -S_t d_t - 2 sqrt(5/6) |b| sqrt(S_t m*) v_t",
+    .citation = "Hertz 1882; Mindlin 1949; Tsuji, Tanaka & Ishida 1992, doi:10.1016/0032-5910(92)88030-L; Chagas 2015, Eq. 3.6-3.12",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::laws

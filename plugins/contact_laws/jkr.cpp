@@ -40,7 +40,7 @@ constexpr Parameter kParameters[] = {
 
 constexpr Hypothesis kHypotheses[] = {
     {"adhesion", "The beads stick to each other or to the liner: surfaces attract when they touch.", "F_pull = 3/2 pi w R*",
-     "Johnson, Kendall & Roberts 1971, doi:10.1098/rspa.1971.0141", "surface_energy", 0.0, 0.0, 0.2, 0, 0, "", "cohesion"},
+     "Johnson, Kendall & Roberts 1971, doi:10.1098/rspa.1971.0141", "surface_energy", 0.0, 0.0, 0.2, "cohesion"},
 };
 
 /// The larger root of y⁴ − y = D for D ≥ kLeast.
@@ -64,11 +64,12 @@ R contact_root(const R& d) {
 class Jkr {
  public:
   static constexpr int kHistory = 4, kChannels = 5;
-  static constexpr ContactLawInfo kInfo = {4,
-                                           5,
-                                           {-1, -1, -1, 1, 1, 1},
-                                           {"slip_x", "slip_y", "slip_z", "touching", "", ""},
-                                           {"normal_damping", "tangential_damping", "friction", "stiffness_change", "adhesion", ""}};
+  static constexpr PairTermInfo kInfo = pair_term({{"slip_x", -1}, {"slip_y", -1}, {"slip_z", -1}, {"touching", 1}},
+                                                  {{"normal_damping", ChannelPart::normal, ChannelNature::dissipative},
+                                                   {"tangential_damping", ChannelPart::tangential, ChannelNature::dissipative},
+                                                   {"friction", ChannelPart::tangential, ChannelNature::dissipative},
+                                                   {"stiffness_change", ChannelPart::tangential, ChannelNature::elastic},
+                                                   {"adhesion", ChannelPart::normal, ChannelNature::dissipative}});
 
   Jkr(const Parameters& values, const PairContext& pair)
       : young_(pair.effective_young),
@@ -149,17 +150,15 @@ class Jkr {
   Cap cap_;
 };
 
-constexpr ContactLawTable kTable = make_contact_law_table<Jkr>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = law_descriptor("jkr", &kTable, kParameters);
-  d.doc = "Elastic contact with surface energy: sticks until a pull-off force, across a gap too; no-slip tangential spring.";
-  d.equation = "F = 4 E* a^3/(3 R*) - sqrt(8 pi w E* a^3), d = a^2/R* - sqrt(2 pi w a/E*), |F_t| <= mu (F_n + 2 F_pull)";
-  d.citation = "Johnson, Kendall & Roberts 1971, doi:10.1098/rspa.1971.0141; Thornton 1991, doi:10.1088/0022-3727/24/11/007";
-  d.hypotheses = kHypotheses;
-  d.hypothesis_count = 1;
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<Jkr>({
+    .name = "jkr",
+    .version = "1.0",
+    .doc = "Elastic contact with surface energy: sticks until a pull-off force, across a gap too; no-slip tangential spring.",
+    .equation = "F = 4 E* a^3/(3 R*) - sqrt(8 pi w E* a^3), d = a^2/R* - sqrt(2 pi w a/E*), |F_t| <= mu (F_n + 2 F_pull)",
+    .citation = "Johnson, Kendall & Roberts 1971, doi:10.1098/rspa.1971.0141; Thornton 1991, doi:10.1088/0022-3727/24/11/007",
+    .parameters = kParameters,
+    .hypotheses = kHypotheses,
+});
 
 }  // namespace
 }  // namespace millscope::laws

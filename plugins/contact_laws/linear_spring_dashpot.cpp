@@ -50,11 +50,10 @@ double find_stiffness(const Parameters& values, const PairContext& pair) {
 class LinearSpringDashpot {
  public:
   static constexpr int kHistory = 3, kChannels = 3;
-  static constexpr ContactLawInfo kInfo = {3,
-                                           3,
-                                           {-1, -1, -1, 1, 1, 1},
-                                           {"slip_x", "slip_y", "slip_z", "", "", ""},
-                                           {"normal_damping", "tangential_damping", "friction", "", "", ""}};
+  static constexpr PairTermInfo kInfo = pair_term({{"slip_x", -1}, {"slip_y", -1}, {"slip_z", -1}},
+                                                  {{"normal_damping", ChannelPart::normal, ChannelNature::dissipative},
+                                                   {"tangential_damping", ChannelPart::tangential, ChannelNature::dissipative},
+                                                   {"friction", ChannelPart::tangential, ChannelNature::dissipative}});
 
   LinearSpringDashpot(const Parameters& values, const PairContext& pair)
       : restitution_(values.number("restitution")),
@@ -111,15 +110,14 @@ class LinearSpringDashpot {
   Cap cap_;
 };
 
-constexpr ContactLawTable kTable = make_contact_law_table<LinearSpringDashpot>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = law_descriptor("linear_spring_dashpot", &kTable, kParameters);
-  d.doc = "Linear springs and dashpots, normal and tangential, damping from the coefficient of restitution.";
-  d.equation = "F_n = k_n d - 2 |b| sqrt(k_n m*) v_n; F_t = -k_t d_t - 2 |b| sqrt(k_t m*) v_t";
-  d.citation = "Cundall & Strack 1979, doi:10.1680/geot.1979.29.1.47";
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<LinearSpringDashpot>({
+    .name = "linear_spring_dashpot",
+    .version = "1.0",
+    .doc = "Linear springs and dashpots, normal and tangential, damping from the coefficient of restitution.",
+    .equation = "F_n = k_n d - 2 |b| sqrt(k_n m*) v_n; F_t = -k_t d_t - 2 |b| sqrt(k_t m*) v_t",
+    .citation = "Cundall & Strack 1979, doi:10.1680/geot.1979.29.1.47",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::laws

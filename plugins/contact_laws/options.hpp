@@ -1,4 +1,4 @@
-// Parameters, channels and descriptor fields that the contact laws have in common.
+// Parameters and channels that the contact laws have in common.
 #pragma once
 
 #include "millscope/contact_law.hpp"
@@ -18,21 +18,14 @@ inline constexpr Parameter cap_parameter =
     choice_parameter("cap", "spring|sum", "spring",
                      "What mu F_n limits: the spring alone (damping acts while it does not slide), or spring and damping together.");
 
-/// The slip of the tangential spring (it flips when the pair's owner is exchanged) and where the energy goes.
-inline constexpr ContactLawInfo kSpringInfo = {3,
-                                               4,
-                                               {-1, -1, -1, 1, 1, 1},
-                                               {"slip_x", "slip_y", "slip_z", "", "", ""},
-                                               {"normal_damping", "tangential_damping", "friction", "stiffness_change", "", ""}};
+/// Where the energy of a tangential spring goes whose stiffness follows the overlap.
+inline constexpr std::initializer_list<Channel> kSpringChannels = {
+    {"normal_damping", ChannelPart::normal, ChannelNature::dissipative},
+    {"tangential_damping", ChannelPart::tangential, ChannelNature::dissipative},
+    {"friction", ChannelPart::tangential, ChannelNature::dissipative},
+    {"stiffness_change", ChannelPart::tangential, ChannelNature::elastic}};
 
-template <std::size_t N>
-constexpr Descriptor law_descriptor(const char* name, const ContactLawTable* table, const Parameter (&parameters)[N]) {
-  Descriptor d = make_descriptor(Kind::contact_law, kContactLawLayout, table, sizeof(ContactLawTable));
-  d.name = name;
-  d.version = "1.0";
-  d.parameters = parameters;
-  d.parameter_count = N;
-  return d;
-}
+/// Its slip changes sign when the pair's owner is exchanged.
+inline constexpr PairTermInfo kSpringInfo = pair_term({{"slip_x", -1}, {"slip_y", -1}, {"slip_z", -1}}, kSpringChannels);
 
 }  // namespace millscope::laws

@@ -33,12 +33,13 @@ namespace millscope::laws {
 
 struct PartialSlip {
   static constexpr int kHistory = 6;
-  static constexpr ContactLawInfo kInfo = {
-      6,
-      4,
-      {-1, -1, -1, -1, -1, -1},
-      {"centre_slip_x", "centre_slip_y", "centre_slip_z", "outer_slip_x", "outer_slip_y", "outer_slip_z"},
-      {"normal_damping", "tangential_damping", "friction", "stiffness_change", "", ""}};
+  static constexpr PairTermInfo kInfo = pair_term({{"centre_slip_x", -1},
+                                                   {"centre_slip_y", -1},
+                                                   {"centre_slip_z", -1},
+                                                   {"outer_slip_x", -1},
+                                                   {"outer_slip_y", -1},
+                                                   {"outer_slip_z", -1}},
+                                                  kSpringChannels);
 
   template <class R>
   [[gnu::always_inline]] static inline Shear<R> pull(const Contact<R>& c, const R& normal_speed, const Spring<R>& spring, Cap cap,

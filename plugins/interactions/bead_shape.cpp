@@ -23,7 +23,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "options.hpp"
 #include "rolling_spring.hpp"
 
 namespace millscope::interactions {
@@ -37,14 +36,14 @@ constexpr Parameter kParameters[] = {
 constexpr Hypothesis kHypotheses[] = {
     {"bead_shape", "The beads are not round: they rock and tip over instead of rolling freely.",
      "M = -k_r theta, k_r = F_n b (alpha^2 - 1), |M| <= F_n (a - b)/pi",
-     "after Wensrich & Katterfeld 2012, doi:10.1016/j.powtec.2011.10.057", "aspect_ratio", 1.0, 1.0, 1.3, 0, 0, "damping_ratio",
+     "after Wensrich & Katterfeld 2012, doi:10.1016/j.powtec.2011.10.057", "aspect_ratio", 1.0, 1.0, 1.3,
      "rolling_resistance|rolling_friction"},
 };
 
 class BeadShape {
  public:
   static constexpr int kHistory = RollingSpring::kHistory, kChannels = RollingSpring::kChannels;
-  static constexpr ContactLawInfo kInfo = RollingSpring::kInfo;
+  static constexpr PairTermInfo kInfo = RollingSpring::kInfo;
 
   BeadShape(const Parameters& values, const PairContext&) : spring_{values.number("damping_ratio")} {
     const double alpha = values.number("aspect_ratio"), b = std::cbrt(1 / alpha), a = alpha * b;  // over R
@@ -66,15 +65,15 @@ class BeadShape {
   double stiffness_ = 0, limit_ = 0;  // k_r and M_max over R F_n at a wall
 };
 
-constexpr InteractionTable kTable = make_interaction_table<BeadShape>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = interaction_descriptor<BeadShape>("bead_shape", &kTable, kParameters, kHypotheses);
-  d.doc = "Spheres that resist rolling as beads of another aspect ratio do.";
-  d.equation = "M = -k_r theta, k_r = F_n b (alpha^2 - 1), |M| <= F_n (a - b)/pi, a = R alpha^(2/3), b = R alpha^(-1/3)";
-  d.citation = "after Wensrich & Katterfeld 2012, doi:10.1016/j.powtec.2011.10.057";
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<BeadShape>({
+    .name = "bead_shape",
+    .version = "1.0",
+    .doc = "Spheres that resist rolling as beads of another aspect ratio do.",
+    .equation = "M = -k_r theta, k_r = F_n b (alpha^2 - 1), |M| <= F_n (a - b)/pi, a = R alpha^(2/3), b = R alpha^(-1/3)",
+    .citation = "after Wensrich & Katterfeld 2012, doi:10.1016/j.powtec.2011.10.057",
+    .parameters = kParameters,
+    .hypotheses = kHypotheses,
+});
 
 }  // namespace
 }  // namespace millscope::interactions

@@ -20,7 +20,7 @@
 // `friction: net` it is taken off the cap.
 #include <numbers>
 
-#include "options.hpp"
+#include "millscope/interaction_adapter.hpp"
 
 namespace millscope::interactions {
 namespace {
@@ -38,7 +38,7 @@ constexpr Parameter kParameters[] = {
 constexpr Hypothesis kHypotheses[] = {
     {"capillary_bridge", "The beads are wet: bridges of liquid hold them together after they touch.",
      "F = 2 pi R gamma cos(theta)/(1 + 1.05 s + 2.5 s^2)", "Willett et al. 2000, doi:10.1021/la000657y", "surface_tension", 0.0, 0.0, 0.08,
-     0, 0, "contact_angle|volume_ratio", "cohesion|adhesion"},
+     "cohesion|adhesion"},
 };
 
 /// atan z for 0 ≤ z ≤ 3 from operations that IEEE fixes: three halvings of the angle, then the series; error below 1e-13.
@@ -54,7 +54,7 @@ R arctangent(R z) {
 class CapillaryBridge {
  public:
   static constexpr int kHistory = 1, kChannels = 1;
-  static constexpr ContactLawInfo kInfo = {1, 1, {1, 1, 1, 1, 1, 1}, {"bridge", "", "", "", "", ""}, {"bridge", "", "", "", "", ""}};
+  static constexpr PairTermInfo kInfo = pair_term({{"bridge", 1}}, {{"bridge", ChannelPart::normal, ChannelNature::dissipative}});
 
   CapillaryBridge(const Parameters& values, const PairContext& pair)
       : force_(4.0 * std::numbers::pi * values.number("surface_tension") * std::cos(values.number("contact_angle"))),
@@ -105,15 +105,15 @@ class CapillaryBridge {
   bool net_;
 };
 
-constexpr InteractionTable kTable = make_interaction_table<CapillaryBridge>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = interaction_descriptor<CapillaryBridge>("capillary_bridge", &kTable, kParameters, kHypotheses);
-  d.doc = "Attraction by bridges of liquid that form on touch and break at a distance.";
-  d.equation = "F = -2 pi R gamma cos(theta)/(1 + 1.05 s + 2.5 s^2), s = gap sqrt(R/V), R = 2 R*, until (1 + theta/2) V^(1/3)";
-  d.citation = "Willett et al. 2000, doi:10.1021/la000657y; Lian et al. 1993, doi:10.1006/jcis.1993.1452";
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<CapillaryBridge>({
+    .name = "capillary_bridge",
+    .version = "1.0",
+    .doc = "Attraction by bridges of liquid that form on touch and break at a distance.",
+    .equation = "F = -2 pi R gamma cos(theta)/(1 + 1.05 s + 2.5 s^2), s = gap sqrt(R/V), R = 2 R*, until (1 + theta/2) V^(1/3)",
+    .citation = "Willett et al. 2000, doi:10.1021/la000657y; Lian et al. 1993, doi:10.1006/jcis.1993.1452",
+    .parameters = kParameters,
+    .hypotheses = kHypotheses,
+});
 
 }  // namespace
 }  // namespace millscope::interactions

@@ -14,7 +14,7 @@
 // without `tangential_reduce`); with `friction: net` k A is taken off the cap, which then follows the net force.
 #include <numbers>
 
-#include "options.hpp"
+#include "millscope/interaction_adapter.hpp"
 
 namespace millscope::interactions {
 namespace {
@@ -27,13 +27,13 @@ constexpr Parameter kParameters[] = {
 
 constexpr Hypothesis kHypotheses[] = {
     {"cohesion", "Beads in touch attract each other in proportion to the contact area.", "F = -k A",
-     "Kloss et al. 2012, doi:10.1504/PCFD.2012.047457", "cohesion_energy_density", 0.0, 0.0, 1e5, 0, 0, "", "adhesion"},
+     "Kloss et al. 2012, doi:10.1504/PCFD.2012.047457", "cohesion_energy_density", 0.0, 0.0, 1e5, "adhesion"},
 };
 
 class CohesionSjkr {
  public:
   static constexpr int kHistory = 0, kChannels = 0;
-  static constexpr ContactLawInfo kInfo = {0, 0, {1, 1, 1, 1, 1, 1}, {"", "", "", "", "", ""}, {"", "", "", "", "", ""}};
+  static constexpr PairTermInfo kInfo = pair_term({}, {});
 
   CohesionSjkr(const Parameters& values, const PairContext&)
       : density_(values.number("cohesion_energy_density")), net_(values.text("friction") == "net") {}
@@ -64,15 +64,15 @@ class CohesionSjkr {
   bool net_;
 };
 
-constexpr InteractionTable kTable = make_interaction_table<CohesionSjkr>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = interaction_descriptor<CohesionSjkr>("cohesion_sjkr", &kTable, kParameters, kHypotheses);
-  d.doc = "Attraction in proportion to the area of contact.";
-  d.equation = "F = -k A";
-  d.citation = "Kloss et al. 2012, doi:10.1504/PCFD.2012.047457";
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<CohesionSjkr>({
+    .name = "cohesion_sjkr",
+    .version = "1.0",
+    .doc = "Attraction in proportion to the area of contact.",
+    .equation = "F = -k A",
+    .citation = "Kloss et al. 2012, doi:10.1504/PCFD.2012.047457",
+    .parameters = kParameters,
+    .hypotheses = kHypotheses,
+});
 
 }  // namespace
 }  // namespace millscope::interactions

@@ -16,7 +16,7 @@
 // below St = ln(H/h_min). No step takes more than half of v_n, however stiff the film.
 #include <numbers>
 
-#include "options.hpp"
+#include "millscope/interaction_adapter.hpp"
 
 namespace millscope::interactions {
 namespace {
@@ -32,14 +32,13 @@ constexpr Parameter kParameters[] = {
 
 constexpr Hypothesis kHypotheses[] = {
     {"lubrication", "A viscous film softens impacts: it takes energy before the surfaces touch and after.",
-     "F = -6 pi mu R*^2 v_n (1/h - 1/H)", "Nguyen & Ladd 2002, doi:10.1103/PhysRevE.66.046708", "viscosity", 0.0, 0.0, 0.1, 0, 0,
-     "cut|range", ""},
+     "F = -6 pi mu R*^2 v_n (1/h - 1/H)", "Nguyen & Ladd 2002, doi:10.1103/PhysRevE.66.046708", "viscosity", 0.0, 0.0, 0.1},
 };
 
 class Lubrication {
  public:
   static constexpr int kHistory = 0, kChannels = 1;
-  static constexpr ContactLawInfo kInfo = {0, 1, {1, 1, 1, 1, 1, 1}, {"", "", "", "", "", ""}, {"film_damping", "", "", "", "", ""}};
+  static constexpr PairTermInfo kInfo = pair_term({}, {{"film_damping", ChannelPart::normal, ChannelNature::dissipative}});
 
   Lubrication(const Parameters& values, const PairContext&)
       : resistance_(6.0 * std::numbers::pi * values.number("viscosity")), cut_(values.number("cut")), range_(values.number("range")) {}
@@ -84,15 +83,15 @@ class Lubrication {
   double cut_, range_;
 };
 
-constexpr InteractionTable kTable = make_interaction_table<Lubrication>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = interaction_descriptor<Lubrication>("lubrication", &kTable, kParameters, kHypotheses);
-  d.doc = "Normal force of a viscous film between surfaces that approach or part.";
-  d.equation = "F = -6 pi mu R*^2 v_n (1/max(h, h_min) - 1/H), 0 < h < H";
-  d.citation = "Nguyen & Ladd 2002, doi:10.1103/PhysRevE.66.046708";
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<Lubrication>({
+    .name = "lubrication",
+    .version = "1.0",
+    .doc = "Normal force of a viscous film between surfaces that approach or part.",
+    .equation = "F = -6 pi mu R*^2 v_n (1/max(h, h_min) - 1/H), 0 < h < H",
+    .citation = "Nguyen & Ladd 2002, doi:10.1103/PhysRevE.66.046708",
+    .parameters = kParameters,
+    .hypotheses = kHypotheses,
+});
 
 }  // namespace
 }  // namespace millscope::interactions

@@ -12,7 +12,6 @@
 // tenth is a quarter of a sphere's 2/5 m R², so that even four contacts at walls together do not turn a bead round within a step.
 // `spin: absolute` is the study's form, −μ_r L F_n ω_i/|ω_i| on each body with its own spin: it depends on the frame, brakes a bead that
 // turns with the shell as a rigid body, and its two moments are no pair. It is there to repeat the study only.
-#include "options.hpp"
 #include "rolling.hpp"
 
 namespace millscope::interactions {
@@ -29,13 +28,13 @@ constexpr Parameter kParameters[] = {
 
 constexpr Hypothesis kHypotheses[] = {
     {"rolling_friction", "Rolling is resisted: the beads are not perfect spheres, or the surfaces give way.", "T = -mu_r R* F_n w/|w|",
-     "Zhou et al. 1999, doi:10.1016/S0378-4371(99)00183-1", "rolling_friction", 0.0, 0.0, 0.2, 0, 0, "", "rolling_resistance|bead_shape"},
+     "Zhou et al. 1999, doi:10.1016/S0378-4371(99)00183-1", "rolling_friction", 0.0, 0.0, 0.2, "rolling_resistance|bead_shape"},
 };
 
 class RollingConstantTorque {
  public:
   static constexpr int kHistory = 0, kChannels = 1;
-  static constexpr ContactLawInfo kInfo = {0, 1, {1, 1, 1, 1, 1, 1}, {"", "", "", "", "", ""}, {"rolling", "", "", "", "", ""}};
+  static constexpr PairTermInfo kInfo = pair_term({}, {{"rolling", ChannelPart::rolling, ChannelNature::dissipative}});
 
   RollingConstantTorque(const Parameters& values, const PairContext&)
       : friction_(values.number("rolling_friction")),
@@ -73,15 +72,15 @@ class RollingConstantTorque {
   bool effective_, relative_;
 };
 
-constexpr InteractionTable kTable = make_interaction_table<RollingConstantTorque>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = interaction_descriptor<RollingConstantTorque>("rolling_constant_torque", &kTable, kParameters, kHypotheses);
-  d.doc = "A moment of constant size against the rolling part of the relative spin.";
-  d.equation = "T = -mu_r R* F_n w/|w|";
-  d.citation = "Zhou et al. 1999, doi:10.1016/S0378-4371(99)00183-1; Chagas 2015, Eq. 3.17";
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<RollingConstantTorque>({
+    .name = "rolling_constant_torque",
+    .version = "1.0",
+    .doc = "A moment of constant size against the rolling part of the relative spin.",
+    .equation = "T = -mu_r R* F_n w/|w|",
+    .citation = "Zhou et al. 1999, doi:10.1016/S0378-4371(99)00183-1; Chagas 2015, Eq. 3.17",
+    .parameters = kParameters,
+    .hypotheses = kHypotheses,
+});
 
 }  // namespace
 }  // namespace millscope::interactions

@@ -8,7 +8,6 @@
 // M_max    –           μ_r L F_n, N m
 //
 //   M = −k_r θ, |M| ≤ M_max; the spring itself: rolling_spring.hpp
-#include "options.hpp"
 #include "rolling_spring.hpp"
 
 namespace millscope::interactions {
@@ -22,14 +21,14 @@ constexpr Parameter kParameters[] = {
 
 constexpr Hypothesis kHypotheses[] = {
     {"rolling_resistance", "Rolling is resisted elastically at first, then plastically: beads can rest on a slope.",
-     "M = -k_r theta, |M| <= mu_r R* F_n", "Ai et al. 2011, doi:10.1016/j.powtec.2010.09.030", "rolling_friction", 0.0, 0.0, 0.2, 0, 0,
-     "damping_ratio", "rolling_friction|bead_shape"},
+     "M = -k_r theta, |M| <= mu_r R* F_n", "Ai et al. 2011, doi:10.1016/j.powtec.2010.09.030", "rolling_friction", 0.0, 0.0, 0.2,
+     "rolling_friction|bead_shape"},
 };
 
 class RollingEpsd {
  public:
   static constexpr int kHistory = RollingSpring::kHistory, kChannels = RollingSpring::kChannels;
-  static constexpr ContactLawInfo kInfo = RollingSpring::kInfo;
+  static constexpr PairTermInfo kInfo = RollingSpring::kInfo;
 
   RollingEpsd(const Parameters& values, const PairContext&)
       : spring_{values.number("damping_ratio")},
@@ -51,15 +50,15 @@ class RollingEpsd {
   bool effective_;
 };
 
-constexpr InteractionTable kTable = make_interaction_table<RollingEpsd>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = interaction_descriptor<RollingEpsd>("rolling_epsd", &kTable, kParameters, kHypotheses);
-  d.doc = "Rolling resistance by an elastic-plastic spring, optionally with a dashpot.";
-  d.equation = "M = -k_r theta, k_r = 2.25 k_n mu_r^2 R*^2, |M| <= mu_r R* F_n";
-  d.citation = "Ai et al. 2011, doi:10.1016/j.powtec.2010.09.030";
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<RollingEpsd>({
+    .name = "rolling_epsd",
+    .version = "1.0",
+    .doc = "Rolling resistance by an elastic-plastic spring, optionally with a dashpot.",
+    .equation = "M = -k_r theta, k_r = 2.25 k_n mu_r^2 R*^2, |M| <= mu_r R* F_n",
+    .citation = "Ai et al. 2011, doi:10.1016/j.powtec.2010.09.030",
+    .parameters = kParameters,
+    .hypotheses = kHypotheses,
+});
 
 }  // namespace
 }  // namespace millscope::interactions

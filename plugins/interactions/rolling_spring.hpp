@@ -18,11 +18,10 @@ namespace millscope::interactions {
 
 struct RollingSpring {
   static constexpr int kHistory = 4, kChannels = 3;
-  static constexpr ContactLawInfo kInfo = {4,
-                                           3,
-                                           {-1, -1, -1, 1, 1, 1},
-                                           {"angle_x", "angle_y", "angle_z", "stiffness", "", ""},
-                                           {"rolling_damping", "rolling", "rolling_stiffness_change", "", "", ""}};
+  static constexpr PairTermInfo kInfo = pair_term({{"angle_x", -1}, {"angle_y", -1}, {"angle_z", -1}, {"stiffness", 1}},
+                                                  {{"rolling_damping", ChannelPart::rolling, ChannelNature::dissipative},
+                                                   {"rolling", ChannelPart::rolling, ChannelNature::dissipative},
+                                                   {"rolling_stiffness_change", ChannelPart::rolling, ChannelNature::elastic}});
 
   double damping;
 

@@ -33,7 +33,7 @@ constexpr Parameter kParameters[] = {
 
 constexpr Hypothesis kHypotheses[] = {
     {"fast_beads_lost", "The camera loses fast beads.", "u = spread + per_distance d + per_speed v + scatter n <= cut", "", "per_speed",
-     0.0, 0.0, 0.05, 0, 1, "", ""},
+     0.0, 0.0, 0.05},
 };
 
 /// Slope of a straight line through the samples within half the window of sample i; nothing where there are fewer than two.
@@ -85,20 +85,14 @@ class ErrorCut {
   double cut_, spread_, per_distance_, per_speed_, scatter_, window_;
 };
 
-constexpr ObservationTable kTable = make_observation_table<ErrorCut>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::observation, kObservationLayout, &kTable, sizeof kTable);
-  d.name = "error_cut";
-  d.version = "1.0";
-  d.doc = "Loses fast and far beads: a cut on the tracker's spread, which grows with distance and speed; before noise.";
-  d.equation = "u = spread + per_distance d + per_speed v + scatter n, kept where u <= cut";
-  d.parameters = kParameters;
-  d.parameter_count = sizeof kParameters / sizeof kParameters[0];
-  d.hypotheses = kHypotheses;
-  d.hypothesis_count = 1;
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<ErrorCut>({
+    .name = "error_cut",
+    .version = "1.0",
+    .doc = "Loses fast and far beads: a cut on the tracker's spread, which grows with distance and speed; before noise.",
+    .equation = "u = spread + per_distance d + per_speed v + scatter n, kept where u <= cut",
+    .parameters = kParameters,
+    .hypotheses = kHypotheses,
+});
 
 }  // namespace
 }  // namespace millscope::observations

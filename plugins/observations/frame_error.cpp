@@ -29,13 +29,11 @@ constexpr Parameter kParameters[] = {
 };
 
 constexpr Hypothesis kHypotheses[] = {
-    {"axis_offset_x", "The mill's axis lies beside the camera's origin along x.", "x' = x + o_x", "", "offset_x", 0.0, -0.01, 0.01, 1, 1,
-     "", ""},
-    {"axis_offset_y", "The mill's axis lies beside the camera's origin along y.", "y' = y + o_y", "", "offset_y", 0.0, -0.01, 0.01, 1, 1,
-     "", ""},
-    {"tilt", "The camera is not level.", "x' = R(gamma) x", "", "tilt_z", 0.0, -0.1, 0.1, 1, 1, "", ""},
-    {"scale", "The camera's scale is wrong.", "x' = (1 + e) x", "", "scale", 0.0, -0.02, 0.02, 1, 1, "", ""},
-    {"clock", "The recording's clock is wrong.", "t' = (1 + k) t", "", "clock", 0.0, -0.02, 0.02, 1, 1, "", ""},
+    {"axis_offset_x", "The mill's axis lies beside the camera's origin along x.", "x' = x + o_x", "", "offset_x", 0.0, -0.01, 0.01, "", 1},
+    {"axis_offset_y", "The mill's axis lies beside the camera's origin along y.", "y' = y + o_y", "", "offset_y", 0.0, -0.01, 0.01, "", 1},
+    {"tilt", "The camera is not level.", "x' = R(gamma) x", "", "tilt_z", 0.0, -0.1, 0.1, "", 1},
+    {"scale", "The camera's scale is wrong.", "x' = (1 + e) x", "", "scale", 0.0, -0.02, 0.02, "", 1},
+    {"clock", "The recording's clock is wrong.", "t' = (1 + k) t", "", "clock", 0.0, -0.02, 0.02, "", 1},
 };
 
 using Matrix = std::array<std::array<double, 3>, 3>;
@@ -75,20 +73,14 @@ class FrameError {
   double scale_, clock_;
 };
 
-constexpr ObservationTable kTable = make_observation_table<FrameError>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::observation, kObservationLayout, &kTable, sizeof kTable);
-  d.name = "frame_error";
-  d.version = "1.0";
-  d.doc = "The camera's frame against the mill's: offset of the axis, tilt, scale, clock.";
-  d.equation = "x' = (1 + scale) R(tilt) x + offset, t' = (1 + clock) t";
-  d.parameters = kParameters;
-  d.parameter_count = sizeof kParameters / sizeof kParameters[0];
-  d.hypotheses = kHypotheses;
-  d.hypothesis_count = sizeof kHypotheses / sizeof kHypotheses[0];
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<FrameError>({
+    .name = "frame_error",
+    .version = "1.0",
+    .doc = "The camera's frame against the mill's: offset of the axis, tilt, scale, clock.",
+    .equation = "x' = (1 + scale) R(tilt) x + offset, t' = (1 + clock) t",
+    .parameters = kParameters,
+    .hypotheses = kHypotheses,
+});
 
 }  // namespace
 }  // namespace millscope::observations

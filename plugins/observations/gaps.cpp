@@ -45,18 +45,13 @@ class Gaps {
   double rate_, mean_length_;
 };
 
-constexpr ObservationTable kTable = make_observation_table<Gaps>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::observation, kObservationLayout, &kTable, sizeof kTable);
-  d.name = "gaps";
-  d.version = "1.0";
-  d.doc = "Times without any location, of exponentially distributed length.";
-  d.equation = "lost share = rate mean_length/(1 + rate mean_length)";
-  d.parameters = kParameters;
-  d.parameter_count = sizeof kParameters / sizeof kParameters[0];
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<Gaps>({
+    .name = "gaps",
+    .version = "1.0",
+    .doc = "Times without any location, of exponentially distributed length.",
+    .equation = "lost share = rate mean_length/(1 + rate mean_length)",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::observations

@@ -22,8 +22,7 @@ constexpr Parameter kParameters[] = {
 };
 
 constexpr Hypothesis kHypotheses[] = {
-    {"location_blur", "The camera's location window smears the path.", "x'(t) = (1/T) int x(t+s) ds", kCitation, "window", 0.0, 0.0, 0.02,
-     0, 1, "", ""},
+    {"location_blur", "The camera's location window smears the path.", "x'(t) = (1/T) int x(t+s) ds", kCitation, "window", 0.0, 0.0, 0.02},
 };
 
 /// The path and its integral from the first sample on, by straight lines.
@@ -91,21 +90,15 @@ class LocationBlur {
   double window_;
 };
 
-constexpr ObservationTable kTable = make_observation_table<LocationBlur>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::observation, kObservationLayout, &kTable, sizeof kTable);
-  d.name = "location_blur";
-  d.version = "1.0";
-  d.doc = "Moving average of the path over the location window; before sampling.";
-  d.equation = "x'(t) = (1/T) int x(t+s) ds, s from -T/2 to T/2";
-  d.citation = kCitation;
-  d.parameters = kParameters;
-  d.parameter_count = sizeof kParameters / sizeof kParameters[0];
-  d.hypotheses = kHypotheses;
-  d.hypothesis_count = 1;
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<LocationBlur>({
+    .name = "location_blur",
+    .version = "1.0",
+    .doc = "Moving average of the path over the location window; before sampling.",
+    .equation = "x'(t) = (1/T) int x(t+s) ds, s from -T/2 to T/2",
+    .citation = kCitation,
+    .parameters = kParameters,
+    .hypotheses = kHypotheses,
+});
 
 }  // namespace
 }  // namespace millscope::observations

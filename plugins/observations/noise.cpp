@@ -55,19 +55,14 @@ class Noise {
   double white_[3], correlated_[3], time_, growth_;
 };
 
-constexpr ObservationTable kTable = make_observation_table<Noise>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::observation, kObservationLayout, &kTable, sizeof kTable);
-  d.name = "noise";
-  d.version = "1.0";
-  d.doc = "White and correlated noise of each location, growing with the distance from the rig's middle.";
-  d.equation = "x' = x + (1 + growth d)(white a + correlated c(t)), <c(t) c(t+s)> = exp(-|s|/correlation_time)";
-  d.citation = kCitation;
-  d.parameters = kParameters;
-  d.parameter_count = sizeof kParameters / sizeof kParameters[0];
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<Noise>({
+    .name = "noise",
+    .version = "1.0",
+    .doc = "White and correlated noise of each location, growing with the distance from the rig's middle.",
+    .equation = "x' = x + (1 + growth d)(white a + correlated c(t)), <c(t) c(t+s)> = exp(-|s|/correlation_time)",
+    .citation = kCitation,
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::observations

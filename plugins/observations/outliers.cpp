@@ -42,18 +42,13 @@ class Outliers {
   double fraction_, distance_;
 };
 
-constexpr ObservationTable kTable = make_observation_table<Outliers>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::observation, kObservationLayout, &kTable, sizeof kTable);
-  d.name = "outliers";
-  d.version = "1.0";
-  d.doc = "A share of the locations lies somewhere else, in any direction.";
-  d.equation = "x' = x + distance E n, E exponential with mean 1, n a random direction, with probability fraction";
-  d.parameters = kParameters;
-  d.parameter_count = sizeof kParameters / sizeof kParameters[0];
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<Outliers>({
+    .name = "outliers",
+    .version = "1.0",
+    .doc = "A share of the locations lies somewhere else, in any direction.",
+    .equation = "x' = x + distance E n, E exponential with mean 1, n a random direction, with probability fraction",
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::observations

@@ -84,19 +84,14 @@ class Sampling {
   double rate_, dead_time_, shape_;
 };
 
-constexpr ObservationTable kTable = make_observation_table<Sampling>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::observation, kObservationLayout, &kTable, sizeof kTable);
-  d.name = "sampling";
-  d.version = "1.0";
-  d.doc = "Locations at uneven times: a mean rate, a dead time and the evenness of the intervals.";
-  d.equation = "t_{i+1} - t_i = dead_time + (1/rate - dead_time) G_k/k, G_k gamma-distributed with shape k";
-  d.citation = kCitation;
-  d.parameters = kParameters;
-  d.parameter_count = sizeof kParameters / sizeof kParameters[0];
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<Sampling>({
+    .name = "sampling",
+    .version = "1.0",
+    .doc = "Locations at uneven times: a mean rate, a dead time and the evenness of the intervals.",
+    .equation = "t_{i+1} - t_i = dead_time + (1/rate - dead_time) G_k/k, G_k gamma-distributed with shape k",
+    .citation = kCitation,
+    .parameters = kParameters,
+});
 
 }  // namespace
 }  // namespace millscope::observations

@@ -19,14 +19,13 @@ constexpr Parameter kParameters[] = {
 
 constexpr Hypothesis kHypotheses[] = {
     {"speed_dependent_friction", "Sliding surfaces rub less than resting ones.", "mu = mu_k + (mu_s - mu_k) exp(-v/v_s)",
-     "Bowden & Tabor 1950; Armstrong-Helouvry et al. 1994, doi:10.1016/0005-1098(94)90209-7", "kinetic_ratio", 1.0, 0.2, 1.0, 0, 0,
-     "decay_speed", ""},
+     "Bowden & Tabor 1950; Armstrong-Helouvry et al. 1994, doi:10.1016/0005-1098(94)90209-7", "kinetic_ratio", 1.0, 0.2, 1.0},
 };
 
 class FrictionBySpeed {
  public:
-  static constexpr int kHistory = 0, kChannels = 0;
-  static constexpr ContactLawInfo kInfo = {0, 0, {1, 1, 1, 1, 1, 1}, {"", "", "", "", "", ""}, {"", "", "", "", "", ""}};
+  static constexpr int kHistory = 0;
+  static constexpr PairParameterInfo kInfo = pair_parameter_info({});
   static constexpr std::uint64_t kGives = kGivesFriction;
 
   FrictionBySpeed(const Parameters& values, const PairContext&)
@@ -46,22 +45,15 @@ class FrictionBySpeed {
   double static_, kinetic_, speed_;
 };
 
-constexpr PairParameterTable kTable = make_pair_parameter_table<FrictionBySpeed>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::pair_parameter, kPairParameterLayout, &kTable, sizeof kTable);
-  d.name = "friction_by_speed";
-  d.version = "1.0";
-  d.features = FrictionBySpeed::kGives;
-  d.doc = "Coefficient of friction as a function of the sliding speed.";
-  d.equation = "mu = mu_k + (mu_s - mu_k) exp(-v/v_s)";
-  d.citation = "Bowden & Tabor 1950; Armstrong-Helouvry et al. 1994, doi:10.1016/0005-1098(94)90209-7";
-  d.parameters = kParameters;
-  d.parameter_count = sizeof kParameters / sizeof kParameters[0];
-  d.hypotheses = kHypotheses;
-  d.hypothesis_count = 1;
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<FrictionBySpeed>({
+    .name = "friction_by_speed",
+    .version = "1.0",
+    .doc = "Coefficient of friction as a function of the sliding speed.",
+    .equation = "mu = mu_k + (mu_s - mu_k) exp(-v/v_s)",
+    .citation = "Bowden & Tabor 1950; Armstrong-Helouvry et al. 1994, doi:10.1016/0005-1098(94)90209-7",
+    .parameters = kParameters,
+    .hypotheses = kHypotheses,
+});
 
 }  // namespace
 }  // namespace millscope::pair_parameters

@@ -23,13 +23,13 @@ constexpr Parameter kParameters[] = {
 
 constexpr Hypothesis kHypotheses[] = {
     {"speed_dependent_restitution", "Fast impacts lose a larger share of their energy than slow ones.", "e = 1 - (1 - e_0) (v/v_0)^(1/5)",
-     "Brilliantov et al. 1996, doi:10.1103/PhysRevE.53.5382", "strength", 0.0, 0.0, 1.0, 0, 0, "reference_speed", ""},
+     "Brilliantov et al. 1996, doi:10.1103/PhysRevE.53.5382", "strength", 0.0, 0.0, 1.0},
 };
 
 class RestitutionBySpeed {
  public:
-  static constexpr int kHistory = 1, kChannels = 0;
-  static constexpr ContactLawInfo kInfo = {1, 0, {1, 1, 1, 1, 1, 1}, {"impact_speed", "", "", "", "", ""}, {"", "", "", "", "", ""}};
+  static constexpr int kHistory = 1;
+  static constexpr PairParameterInfo kInfo = pair_parameter_info({{"impact_speed", 1}});
   static constexpr std::uint64_t kGives = kGivesRestitution;
 
   RestitutionBySpeed(const Parameters& values, const PairContext&)
@@ -58,22 +58,15 @@ class RestitutionBySpeed {
   bool plastic_;
 };
 
-constexpr PairParameterTable kTable = make_pair_parameter_table<RestitutionBySpeed>();
-
-constexpr Descriptor kDescriptor = [] {
-  Descriptor d = make_descriptor(Kind::pair_parameter, kPairParameterLayout, &kTable, sizeof kTable);
-  d.name = "restitution_by_speed";
-  d.version = "1.0";
-  d.features = RestitutionBySpeed::kGives;
-  d.doc = "Restitution as a function of the impact speed.";
-  d.equation = "e = 1 - (1 - e_0) (v/v_0)^(1/5), or e_0 (v/v_0)^(-1/4)";
-  d.citation = "Brilliantov et al. 1996, doi:10.1103/PhysRevE.53.5382; Johnson 1985, Contact Mechanics";
-  d.parameters = kParameters;
-  d.parameter_count = sizeof kParameters / sizeof kParameters[0];
-  d.hypotheses = kHypotheses;
-  d.hypothesis_count = 1;
-  return d;
-}();
+constexpr Descriptor kDescriptor = describe<RestitutionBySpeed>({
+    .name = "restitution_by_speed",
+    .version = "1.0",
+    .doc = "Restitution as a function of the impact speed.",
+    .equation = "e = 1 - (1 - e_0) (v/v_0)^(1/5), or e_0 (v/v_0)^(-1/4)",
+    .citation = "Brilliantov et al. 1996, doi:10.1103/PhysRevE.53.5382; Johnson 1985, Contact Mechanics",
+    .parameters = kParameters,
+    .hypotheses = kHypotheses,
+});
 
 }  // namespace
 }  // namespace millscope::pair_parameters

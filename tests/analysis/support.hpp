@@ -42,15 +42,10 @@ struct Drum {
 /// The plugins of this build.
 const host::Registry& build_registry();
 
-/// An instance of an analyzer of the test itself; A as make_analyzer_table wants it.
+/// An instance of an analyzer of the test itself; A as `describe` wants it.
 template <class A>
 studies::AnalyzerInstance local_instance(const std::string& name, const AnalyzerContext& context) {
-  static constexpr AnalyzerTable table = make_analyzer_table<A>();
-  static const Descriptor descriptor = [] {
-    Descriptor d = make_descriptor(Kind::analyzer, kAnalyzerLayout, &table, sizeof table);
-    d.name = "local";
-    return d;
-  }();
+  static constexpr Descriptor descriptor = describe<A>({.name = "local"});
   const config::ResolvedValues values;
   const host::Loaded loaded{&descriptor, nullptr};
   return {name, host::AnalyzerObject::create(loaded, values.view(), base::Location{}, context), values};

@@ -74,8 +74,10 @@ inline constexpr millscope::Parameter kPull[] = {
 
 template <std::size_t N>
 constexpr millscope::Descriptor descriptor(millscope::Kind kind, const char* name, const millscope::Parameter (&parameters)[N]) {
-  millscope::Descriptor d = millscope::make_descriptor(kind, 0, nullptr, 0);
+  millscope::Descriptor d{};
+  d.kind = static_cast<std::uint32_t>(kind);
   d.name = name;
+  d.doc = "";
   d.parameters = parameters;
   d.parameter_count = N;
   return d;

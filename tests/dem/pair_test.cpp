@@ -72,7 +72,7 @@ struct SeenSpins {
   double i = 0, j = 0;
 };
 
-const InteractionTable kWatcher{{0, 0, {1, 1, 1, 1, 1, 1}, {"", "", "", "", "", ""}, {"", "", "", "", "", ""}},
+const InteractionTable kWatcher{pair_term({}, {}),
                                 nullptr,
                                 nullptr,
                                 [](const void*, double) { return 0.0; },

@@ -36,7 +36,7 @@ PhysicsTable one_material() {
 }
 
 /// Two numbers per contact, the second odd: it changes sign when owner and partner change places.
-const Layout kOneEvenOneOdd{{}, {1, -1}};
+const dem::Layout kOneEvenOneOdd{{}, {1, -1}};
 
 Particles strewn(std::int64_t count, std::uint64_t seed) {
   Random random(seed);

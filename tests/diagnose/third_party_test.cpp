@@ -42,8 +42,8 @@ std::string write_wind(const Scratch& scratch) {
   replace("class Wind",
           "constexpr Hypothesis kHypotheses[] = {\n"
           "    {\"wind\", \"A wind blows through the mill.\", \"F = -6 pi eta r v\", \"Their thesis 2024\", \"viscosity\", 1.8e-5, 1.8e-5, "
-          "0.5, 0, 0, \"\", \"air_drag\"},\n};\n\nclass Wind");
-  replace("  return d;\n", "  d.hypotheses = kHypotheses;\n  d.hypothesis_count = 1;\n  return d;\n");
+          "0.5, \"air_drag\"},\n};\n\nclass Wind");
+  replace("    .parameters = kParameters,\n", "    .parameters = kParameters,\n    .hypotheses = kHypotheses,\n");
   std::ofstream(source) << text;
   return project;
 }

@@ -63,9 +63,9 @@ class Samples(unittest.TestCase):
     def test_the_parameters_of_the_contact_law(self):
         """They are those of the template, which tests/host builds; the page must not drift from it."""
         template = (SOURCE / "sdk/template/contact_law/NAME.cpp.in").read_text()
-        parameters, force = samples_of("adding_a_contact_law.md")
+        parameters, force, info = samples_of("adding_a_contact_law.md")
         self.assertIn(parameters.strip(), template)
-        for line in force.strip().rstrip(";").splitlines():
+        for line in (force.strip().rstrip(";") + "\n" + info.strip()).splitlines():
             self.assertIn(" ".join(line.split()), " ".join(template.split()))
 
 

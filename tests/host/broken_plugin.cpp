@@ -9,7 +9,7 @@
 #define WRONG_SIZE 3
 #define OLDER_ABI 4
 #define NEWER_ABI 5
-#define NEWER_MINOR 6
+#define OTHER_HYPOTHESIS 6
 #define WRONG_LAYOUT 7
 #define WRONG_TABLE_SIZE 8
 #define NO_SYMBOL 9
@@ -57,24 +57,48 @@ constexpr BodyForceTable kTable = [] {
   return t;
 }();
 
-constexpr Hypothesis kHypothesis = {"push", "something pushes", "F = strength", "A. Author 2000", "strength", 0, 0, 5, 0, 0, "", ""};
+constexpr Hypothesis kHypotheses[] = {{"push", "something pushes", "F = strength", "A. Author 2000", "strength", 0, 0, 5}};
+
+/// What the layout hash would be if Hypothesis had another member before its prior: the plugin of an SDK that was changed by hand.
+struct OtherHypothesis {
+  const char *name, *sentence, *equation, *citation, *parameter;
+  double null_value, added, prior_low, prior_high;
+  const char* excludes;
+  std::uint32_t two_sided, reserved;
+};
+
+}  // namespace
+
+template <>
+struct millscope::Layout<OtherHypothesis> {
+  using S = OtherHypothesis;
+  static constexpr std::size_t offsets[] = {offsetof(S, name),     offsetof(S, sentence),  offsetof(S, equation),
+                                            offsetof(S, citation), offsetof(S, parameter), offsetof(S, null_value),
+                                            offsetof(S, added),    offsetof(S, prior_low), offsetof(S, prior_high),
+                                            offsetof(S, excludes), offsetof(S, two_sided), offsetof(S, reserved)};
+};
+
+namespace {
+
+constexpr std::uint64_t kOtherLayout = layout_hash(
+    Kind::body_force, {}, StructList<Descriptor, Parameter, OtherHypothesis, Value, Values, Failure, BodyForceBatch, BodyForceTable>{});
 
 constexpr Descriptor kPush = [] {
-  Descriptor d = make_descriptor(Kind::body_force, kBodyForceLayout, &kTable, sizeof kTable);
-  d.name = VARIANT == NULL_NAME ? nullptr : VARIANT == BAD_NAME ? "Push Me" : "push";
-  d.doc = "Pushes along x.";
-  d.equation = "F = strength";
-  d.version = "1.2.3";
-  d.parameters = kParameters;
-  d.parameter_count = 3;
-  d.hypotheses = &kHypothesis;
-  d.hypothesis_count = 1;
+  Descriptor d = describe<Push>({.name = VARIANT == NULL_NAME  ? nullptr
+                                         : VARIANT == BAD_NAME ? "Push Me"
+                                                               : "push",
+                                 .version = "1.2.3",
+                                 .doc = "Pushes along x.",
+                                 .equation = "F = strength",
+                                 .parameters = kParameters,
+                                 .hypotheses = kHypotheses});
+  d.table = &kTable;
   if (VARIANT == WRONG_MAGIC) d.magic = 1;
   if (VARIANT == WRONG_SIZE) d.size -= 8;
-  if (VARIANT == OLDER_ABI) d.abi_major = kAbiMajor - 1;
-  if (VARIANT == NEWER_ABI) d.abi_major = kAbiMajor + 1;
-  if (VARIANT == NEWER_MINOR) d.abi_minor = kAbiMinor + 1;
+  if (VARIANT == OLDER_ABI) d.abi_version = kAbiVersion - 1;
+  if (VARIANT == NEWER_ABI) d.abi_version = kAbiVersion + 1;
   if (VARIANT == WRONG_LAYOUT) d.layout ^= 1;
+  if (VARIANT == OTHER_HYPOTHESIS) d.layout = kOtherLayout;
   if (VARIANT == WRONG_TABLE_SIZE) d.table_size += 8;
   if (VARIANT == UNKNOWN_KIND) d.kind = 99;
   return d;
@@ -98,7 +122,7 @@ constinit const Descriptor* const kItems[] = {&kPush, &kSecond};
 extern "C" {
 extern __attribute__((visibility("default"))) const DescriptorList millscope_plugins;
 constinit const DescriptorList millscope_plugins = {VARIANT == WRONG_LIST_MAGIC ? kMagic + 1 : kMagic, sizeof(DescriptorList),
-                                                    VARIANT == OLDER_LIST ? kAbiMajor - 1 : kAbiMajor, VARIANT == EMPTY_LIST ? 0U : 2U,
+                                                    VARIANT == OLDER_LIST ? kAbiVersion - 1 : kAbiVersion, VARIANT == EMPTY_LIST ? 0U : 2U,
                                                     kItems};
 }
 #else

@@ -67,7 +67,7 @@ TEST_CASE("the change of stiffness is a channel of its own and may give energy b
   const Law law = make_law("hertz_mindlin", "restitution=1 static_friction=10");
   Collision c = head_on(law, 1.0, 0.2);
   const Outcome out = c.run(1e-7);
-  CHECK(std::string(law.table().info.channel_name[3]) == "stiffness_change");
+  CHECK(std::string(law.table().info.channels[3].name) == "stiffness_change");
   CHECK(std::fabs(out.lost[3]) > 1e-4 * out.kinetic_before);
   CHECK(out.lost[0] == Approx(0.0).margin(1e-9 * out.kinetic_before));
 }

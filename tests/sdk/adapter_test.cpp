@@ -9,8 +9,8 @@ using namespace millscope;
 namespace {
 
 struct Slide {
-  static constexpr int kHistory = 1, kChannels = 0;
-  static constexpr ContactLawInfo kInfo = {1, 0, {1}, {"seen"}, {}};
+  static constexpr int kHistory = 1;
+  static constexpr PairParameterInfo kInfo = pair_parameter_info({{"seen", 1}});
   static constexpr std::uint64_t kGives = kGivesRestitution;
   Slide(const Parameters&, const PairContext&) {}
   template <class R>

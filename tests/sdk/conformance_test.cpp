@@ -17,7 +17,9 @@ template <Fault fault>
 struct Hertz {
   static constexpr int kHistory = 3, kChannels = 2;
   static constexpr int kSign = fault == Fault::history ? 1 : -1;
-  static constexpr ContactLawInfo kInfo = {3, 2, {kSign, kSign, kSign}, {"x", "y", "z"}, {"normal_damping", "sliding_friction"}};
+  static constexpr PairTermInfo kInfo = pair_term(
+      {{"x", kSign}, {"y", kSign}, {"z", kSign}},
+      {{"viscous", ChannelPart::normal, ChannelNature::dissipative}, {"sliding", ChannelPart::tangential, ChannelNature::dissipative}});
   Hertz(const Parameters&, const PairContext& pair) : young_(pair.effective_young) {}
   double restitution() const { return 1; }
   double friction() const { return 0.3; }
@@ -54,8 +56,7 @@ struct Hertz {
 
 template <Fault fault>
 bool finds(const char* check) {
-  static constexpr ContactLawTable table = make_contact_law_table<Hertz<fault>>();
-  static constexpr Descriptor descriptor = make_descriptor(Kind::contact_law, kContactLawLayout, &table, sizeof table);
+  static constexpr Descriptor descriptor = describe<Hertz<fault>>({.name = "hertz"});
   bool found = false;
   for (const Violation& v : check_contact_law(descriptor, {nullptr, 0})) {
     UNSCOPED_INFO(v.check << ": " << v.message);
@@ -70,7 +71,7 @@ enum class Wrong { none, packed, touch, moment, frame, friction };
 template <Wrong wrong>
 struct Rolling {
   static constexpr int kHistory = 0, kChannels = 1;
-  static constexpr ContactLawInfo kInfo = {0, 1, {}, {}, {"rolling_friction"}};
+  static constexpr PairTermInfo kInfo = pair_term({}, {{"rolling", ChannelPart::rolling, ChannelNature::dissipative}});
   Rolling(const Parameters&, const PairContext&) {}
   double reach(double) const { return 0; }
   template <class R>
@@ -89,8 +90,7 @@ struct Rolling {
 
 template <Wrong wrong>
 Violations violations_of() {
-  static constexpr InteractionTable table = make_interaction_table<Rolling<wrong>>();
-  static constexpr Descriptor descriptor = make_descriptor(Kind::interaction, kInteractionLayout, &table, sizeof table);
+  static constexpr Descriptor descriptor = describe<Rolling<wrong>>({.name = "rolling"});
   return check_interaction(descriptor, {nullptr, 0});
 }
 
@@ -107,8 +107,7 @@ bool finds_in_interaction(const char* check) {
 }  // namespace
 
 TEST_CASE("a right contact law passes the suite") {
-  static constexpr ContactLawTable table = make_contact_law_table<Hertz<Fault::none>>();
-  static constexpr Descriptor descriptor = make_descriptor(Kind::contact_law, kContactLawLayout, &table, sizeof table);
+  static constexpr Descriptor descriptor = describe<Hertz<Fault::none>>({.name = "hertz"});
   for (const Violation& v : check_contact_law(descriptor, {nullptr, 0})) FAIL_CHECK(v.check << ": " << v.message);
 }
 

@@ -1,8 +1,8 @@
 // What crosses the boundary between millscope and a plugin: plain data only.
 //
 // A plugin library exports one data symbol, `millscope_plugins`, a list of descriptors. The host reads magic, size, ABI version and
-// layout hash before it calls a function of the plugin (a library's constructors run at dlopen). Layout rule: the first five members of
-// Descriptor never move, so that a host of any age can say what differs.
+// layout hash before it calls a function of the plugin (a library's constructors run at dlopen). Layout rule: the first members of
+// Descriptor and DescriptorList up to `kind` and `count` never move, so that a host of any age can say what differs.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,10 @@
 namespace millscope {
 
 inline constexpr std::uint64_t kMagic = 0x504F43534C4C494DULL;  // "MILLSCOP", little endian
-inline constexpr std::uint32_t kAbiMajor = 1;                   // raised when a plugin must be rebuilt
-inline constexpr std::uint32_t kAbiMinor = 1;                   // raised when something is added at the end
+
+/// Raised when Descriptor or DescriptorList changes, or when a member keeps its place and means something else. What else changes in a
+/// struct changes the layout hash of the kinds that use it (layout.hpp), and refuses plugins of those kinds alone.
+inline constexpr std::uint32_t kAbiVersion = 2;
 
 /// What a plugin is. The layout check is per kind, so that adding a kind breaks no plugin of another.
 enum class Kind : std::uint32_t {
@@ -85,17 +87,16 @@ struct Hypothesis {
   const char* parameter;  ///< name of the parameter of this plugin
   double null_value;      ///< value at which the effect vanishes
   double prior_low, prior_high;
-  std::uint32_t two_sided;
-  std::uint32_t reobserve;        ///< 1: costs no simulation (camera effects)
-  const char* undefined_at_null;  ///< parameters without meaning at zero, "a|b", or ""
-  const char* excludes;           ///< hypotheses that cannot hold together with it, "a|b", or ""
+  const char* excludes = "";    ///< hypotheses that cannot hold together with it, "a|b", or ""
+  std::uint32_t two_sided = 0;  ///< 1: the effect may go either way from `null_value`
+  std::uint32_t reserved = 0;
 };
 
 struct Descriptor {
   std::uint64_t magic;
   std::uint32_t size;  ///< sizeof(Descriptor) as the plugin was built
-  std::uint32_t abi_major;
-  std::uint32_t abi_minor;
+  std::uint32_t abi_version;
+  std::uint32_t reserved;
   std::uint32_t kind;
   std::uint64_t layout;    ///< hash of the kind's struct layouts
   std::uint64_t features;  ///< bits of `Feature`
@@ -115,18 +116,16 @@ struct Descriptor {
 
 /// Feature bits.
 enum Feature : std::uint64_t {
-  kNoFeature = 0,
   kPreInteraction = 1,    ///< interaction that acts before the contact law
   kPostInteraction = 2,   ///< interaction that acts after it
   kGivesRestitution = 4,  ///< pair_parameter that replaces e
   kGivesFriction = 8,     ///< pair_parameter that replaces the static friction
-  kSimulationOnly = 16,   ///< analyzer that needs what a recording lacks
 };
 
 struct DescriptorList {
   std::uint64_t magic;
-  std::uint32_t size;       ///< sizeof(DescriptorList)
-  std::uint32_t abi_major;  ///< of the headers that the library was built with
+  std::uint32_t size;         ///< sizeof(DescriptorList)
+  std::uint32_t abi_version;  ///< of the headers that the library was built with
   std::uint64_t count;
   const Descriptor* const* items;
 };
@@ -135,12 +134,16 @@ struct DescriptorList {
 inline constexpr std::uint64_t kHashStart = 0xcbf29ce484222325ULL;
 constexpr std::uint64_t hash_step(std::uint64_t hash, std::uint64_t next) { return (hash ^ next) * 0x100000001b3ULL; }
 
-/// Over numbers known at compile time, byte by byte.
+/// One number more, byte by byte.
+constexpr std::uint64_t hash_number(std::uint64_t hash, std::uint64_t number) {
+  for (int byte = 0; byte < 8; ++byte) hash = hash_step(hash, (number >> (8 * byte)) & 0xffU);
+  return hash;
+}
+
+/// Over a few numbers.
 constexpr std::uint64_t hash_numbers(std::initializer_list<std::uint64_t> numbers) {
   std::uint64_t hash = kHashStart;
-  for (const std::uint64_t number : numbers) {
-    for (int byte = 0; byte < 8; ++byte) hash = hash_step(hash, (number >> (8 * byte)) & 0xffU);
-  }
+  for (const std::uint64_t number : numbers) hash = hash_number(hash, number);
   return hash;
 }
 
@@ -163,6 +166,6 @@ inline constexpr const char* kCompiler = "g++ " __VERSION__;
   extern "C" {                                                                                       \
   extern __attribute__((visibility("default"))) const ::millscope::DescriptorList millscope_plugins; \
   constinit const ::millscope::DescriptorList millscope_plugins = {                                  \
-      ::millscope::kMagic, sizeof(::millscope::DescriptorList), ::millscope::kAbiMajor,              \
+      ::millscope::kMagic, sizeof(::millscope::DescriptorList), ::millscope::kAbiVersion,            \
       sizeof millscope_plugin_items / sizeof millscope_plugin_items[0], millscope_plugin_items};     \
   }

@@ -5,7 +5,7 @@
 // and resamples them, so that all results have one joint covariance. A recording is a run with one bead: the same code serves both.
 #pragma once
 
-#include "millscope/abi.hpp"
+#include "millscope/layout.hpp"
 
 namespace millscope {
 
@@ -68,6 +68,41 @@ struct FrameBlock {
   const char* const* impact_pair;    ///< "glass~liner"
   const double* impact_energy_edge;  ///< bins + 1, J
 };
+template <>
+struct Layout<FrameBlock> {
+  using S = FrameBlock;
+  static constexpr std::size_t offsets[] = {offsetof(S, has),
+                                            offsetof(S, duration),
+                                            offsetof(S, frame_count),
+                                            offsetof(S, time),
+                                            offsetof(S, piece),
+                                            offsetof(S, omega),
+                                            offsetof(S, phase),
+                                            offsetof(S, wall_work),
+                                            offsetof(S, dissipation),
+                                            offsetof(S, channel_count),
+                                            offsetof(S, channel_name),
+                                            offsetof(S, first),
+                                            offsetof(S, weight),
+                                            offsetof(S, id),
+                                            offsetof(S, position),
+                                            offsetof(S, velocity),
+                                            offsetof(S, spin),
+                                            offsetof(S, radius),
+                                            offsetof(S, mass),
+                                            offsetof(S, position_variance),
+                                            offsetof(S, velocity_variance),
+                                            offsetof(S, location_count),
+                                            offsetof(S, location_time),
+                                            offsetof(S, location_position),
+                                            offsetof(S, location_variance),
+                                            offsetof(S, location_id),
+                                            offsetof(S, impacts),
+                                            offsetof(S, impact_pair_count),
+                                            offsetof(S, impact_bin_count),
+                                            offsetof(S, impact_pair),
+                                            offsetof(S, impact_energy_edge)};
+};
 
 /// What is the same for all blocks; 0 where unknown.
 struct AnalyzerContext {
@@ -94,6 +129,34 @@ struct AnalyzerContext {
   const double* impact_energy_edge;  ///< bins + 1, J
   double mill_length;                ///< inner, m; also where the end faces are not known
 };
+template <>
+struct Layout<AnalyzerContext> {
+  using S = AnalyzerContext;
+  static constexpr std::size_t offsets[] = {offsetof(S, mill_radius),
+                                            offsetof(S, mill_low),
+                                            offsetof(S, mill_high),
+                                            offsetof(S, omega),
+                                            offsetof(S, gravity),
+                                            offsetof(S, charge_mass),
+                                            offsetof(S, charge_count),
+                                            offsetof(S, bead_radius),
+                                            offsetof(S, bead_density),
+                                            offsetof(S, start),
+                                            offsetof(S, end),
+                                            offsetof(S, largest_id),
+                                            offsetof(S, has),
+                                            offsetof(S, is_recording),
+                                            offsetof(S, is_periodic),
+                                            offsetof(S, filling),
+                                            offsetof(S, porosity),
+                                            offsetof(S, channel_count),
+                                            offsetof(S, channel_name),
+                                            offsetof(S, impact_pair_count),
+                                            offsetof(S, impact_bin_count),
+                                            offsetof(S, impact_pair),
+                                            offsetof(S, impact_energy_edge),
+                                            offsetof(S, mill_length)};
+};
 
 /// One additive array.
 struct ArrayInfo {
@@ -102,6 +165,12 @@ struct ArrayInfo {
   std::uint32_t rank;  ///< 0: one number
   std::uint32_t reserved;
   std::uint64_t shape[kMaxRank];
+};
+template <>
+struct Layout<ArrayInfo> {
+  using S = ArrayInfo;
+  static constexpr std::size_t offsets[] = {offsetof(S, name), offsetof(S, unit), offsetof(S, rank), offsetof(S, reserved),
+                                            offsetof(S, shape)};
 };
 
 /// What the host must know of a result beyond its numbers. Bits of Result::traits.
@@ -134,11 +203,22 @@ struct Result {
   /// centres; nullptr: a mere count. Pictures, tables and comparisons find their axes here.
   const char* axis[kMaxRank];
 };
+template <>
+struct Layout<Result> {
+  using S = Result;
+  static constexpr std::size_t offsets[] = {offsetof(S, name),   offsetof(S, unit),  offsetof(S, doc),    offsetof(S, rank),
+                                            offsetof(S, traits), offsetof(S, shape), offsetof(S, values), offsetof(S, axis)};
+};
 
 /// Receives results; everything is copied before `add` returns.
 struct ResultSink {
   void* host;
   void (*add)(void* host, const Result*);
+};
+template <>
+struct Layout<ResultSink> {
+  using S = ResultSink;
+  static constexpr std::size_t offsets[] = {offsetof(S, host), offsetof(S, add)};
 };
 
 struct AnalyzerTable {
@@ -152,10 +232,14 @@ struct AnalyzerTable {
   /// Pure: the same sums give the same results.
   Status (*finish)(const void* self, const double* const* sums, const ResultSink*, Failure*);
 };
+template <>
+struct Layout<AnalyzerTable> {
+  using S = AnalyzerTable;
+  static constexpr std::size_t offsets[] = {offsetof(S, needs),  offsetof(S, create),     offsetof(S, destroy),
+                                            offsetof(S, arrays), offsetof(S, accumulate), offsetof(S, finish)};
+};
 
 inline constexpr std::uint64_t kAnalyzerLayout =
-    hash_numbers({10, sizeof(FrameBlock), sizeof(AnalyzerContext), sizeof(ArrayInfo), sizeof(Result), sizeof(AnalyzerTable), sizeof(Value),
-                  sizeof(Parameter), offsetof(FrameBlock, position), offsetof(FrameBlock, location_count), offsetof(Result, axis),
-                  offsetof(AnalyzerContext, has), offsetof(AnalyzerContext, impact_energy_edge), kMaxRank});
+    layout_hash(Kind::analyzer, {kMaxRank}, KindStructs<FrameBlock, AnalyzerContext, ArrayInfo, Result, ResultSink, AnalyzerTable>{});
 
 }  // namespace millscope

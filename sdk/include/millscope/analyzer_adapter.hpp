@@ -7,7 +7,7 @@
 //     void accumulate(const FrameBlock&, double* const* sums) const;        // adds one block
 //     void finish(const double* const* sums, Results&) const;               // pure
 //   };
-//   constexpr AnalyzerTable table = make_analyzer_table<MyAnalyzer>();
+//   constexpr Descriptor kDescriptor = describe<MyAnalyzer>({.name = "my_analyzer", .doc = "…", .parameters = kParameters});
 #pragma once
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "millscope/analyzer.hpp"
+#include "millscope/describe.hpp"
 #include "millscope/parameters.hpp"
 
 namespace millscope {
@@ -92,5 +93,19 @@ constexpr AnalyzerTable make_analyzer_table() {
   };
   return t;
 }
+
+/// What tells an analyzer from the other kinds.
+template <class C>
+concept AnalyzerClass = requires {
+  C::kNeeds;
+};
+
+template <AnalyzerClass C>
+struct Adapter<C> {
+  static constexpr Kind kind = Kind::analyzer;
+  static constexpr std::uint64_t layout = kAnalyzerLayout;
+  static constexpr std::uint64_t features = 0;
+  static constexpr AnalyzerTable table = make_analyzer_table<C>();
+};
 
 }  // namespace millscope

@@ -1,7 +1,7 @@
 // Body forces: what acts on each bead by itself (gravity, drag, buoyancy).
 #pragma once
 
-#include "millscope/abi.hpp"
+#include "millscope/layout.hpp"
 
 namespace millscope {
 
@@ -20,6 +20,13 @@ struct BodyForceBatch {
   double* added_mass;         ///< in/out, kg: fluid that moves with the bead
   double power_sum;           ///< out: W taken from the beads (drag > 0)
 };
+template <>
+struct Layout<BodyForceBatch> {
+  using S = BodyForceBatch;
+  static constexpr std::size_t offsets[] = {offsetof(S, count),    offsetof(S, time),   offsetof(S, time_step),  offsetof(S, position),
+                                            offsetof(S, velocity), offsetof(S, spin),   offsetof(S, radius),     offsetof(S, mass),
+                                            offsetof(S, force),    offsetof(S, moment), offsetof(S, added_mass), offsetof(S, power_sum)};
+};
 
 struct BodyForceTable {
   Status (*create)(const Values*, void** self, Failure*);
@@ -28,8 +35,12 @@ struct BodyForceTable {
   std::int32_t (*uniform)(const void* self, double time, double acceleration[3]);
   void (*evaluate)(const void* self, BodyForceBatch*);
 };
+template <>
+struct Layout<BodyForceTable> {
+  using S = BodyForceTable;
+  static constexpr std::size_t offsets[] = {offsetof(S, create), offsetof(S, destroy), offsetof(S, uniform), offsetof(S, evaluate)};
+};
 
-inline constexpr std::uint64_t kBodyForceLayout =
-    hash_numbers({4, sizeof(BodyForceBatch), sizeof(BodyForceTable), sizeof(Value), sizeof(Parameter), offsetof(BodyForceBatch, force)});
+inline constexpr std::uint64_t kBodyForceLayout = layout_hash(Kind::body_force, {}, KindStructs<BodyForceBatch, BodyForceTable>{});
 
 }  // namespace millscope

@@ -5,10 +5,11 @@
 //     bool uniform(double time, double (&acceleration)[3]) const;      // may be absent: not the same for every bead
 //     void act(const Bead&, BeadForce&) const;                         // may be absent when `uniform` always gives true
 //   };
-//   constexpr BodyForceTable table = make_body_force_table<MyDrag>();
+//   constexpr Descriptor kDescriptor = describe<MyDrag>({.name = "my_drag", .doc = "…", .parameters = kParameters});
 #pragma once
 
 #include "millscope/body_force.hpp"
+#include "millscope/describe.hpp"
 #include "millscope/pack.hpp"
 #include "millscope/parameters.hpp"
 
@@ -77,7 +78,10 @@ constexpr BodyForceTable make_body_force_table() {
   t.destroy = [](void* self) { delete static_cast<F*>(self); };
   t.uniform = [](const void* self, double time, double acceleration[3]) -> std::int32_t {
     if constexpr (detail::HasUniform<F>) {
-      return static_cast<const F*>(self)->uniform(time, *reinterpret_cast<double(*)[3]>(acceleration)) ? 1 : 0;
+      double found[3] = {};
+      const bool is_uniform = static_cast<const F*>(self)->uniform(time, found);
+      for (int axis = 0; axis < 3; ++axis) acceleration[axis] = found[axis];
+      return is_uniform ? 1 : 0;
     } else {
       return static_cast<void>(self), static_cast<void>(time), static_cast<void>(acceleration), 0;
     }
@@ -85,5 +89,17 @@ constexpr BodyForceTable make_body_force_table() {
   t.evaluate = &detail::act_on_beads<F>;
   return t;
 }
+
+/// What tells a body force from the other kinds.
+template <class C>
+concept BodyForceClass = detail::HasUniform<C> || detail::HasAct<C>;
+
+template <BodyForceClass C>
+struct Adapter<C> {
+  static constexpr Kind kind = Kind::body_force;
+  static constexpr std::uint64_t layout = kBodyForceLayout;
+  static constexpr std::uint64_t features = 0;
+  static constexpr BodyForceTable table = make_body_force_table<C>();
+};
 
 }  // namespace millscope

@@ -1,48 +1,9 @@
-// The tables of the kinds that act on pairs: contact_law, interaction, pair_parameter.
-//
-// One object of a law is made for each unordered pair of materials, so its parameters are plain numbers. The host hands it batches
-// of contacts, arrays of doubles padded to a multiple of kLanes; padding has overlap −1 and positive R*, m*, velocity 0, and its
-// results are ignored.
-//
-// Signs: the normal n points from j to i; velocity is that of i relative to j at the contact point; force acts on i (−force on j).
+// The table of a contact_law: normal and tangential force of a contact.
 #pragma once
 
-#include "millscope/abi.hpp"
+#include "millscope/pair_term.hpp"
 
 namespace millscope {
-
-inline constexpr int kMaxHistory = 6;
-inline constexpr int kMaxChannels = 6;
-
-struct Material {
-  const char* name;
-  double density;  ///< kg/m³
-  double young;    ///< E, Pa, after softening
-  double poisson;  ///< ν
-};
-
-/// What a law knows of its pair. A wall is body j with R = ∞ and m = ∞, so R* = R_i and m* = m_i.
-struct PairContext {
-  Material first, second;
-  double effective_young;   ///< E*: 1/E* = (1−ν₁²)/E₁ + (1−ν₂²)/E₂, Pa
-  double effective_shear;   ///< G*: 1/G* = (2−ν₁)/G₁ + (2−ν₂)/G₂, Pa
-  double smallest_radius;   ///< smallest R* among the contacts of this pair, m
-  double largest_radius;    ///< largest R*, m
-  double smallest_mass;     ///< smallest m*, kg
-  double largest_mass;      ///< largest m*, kg
-  double typical_speed;     ///< a closing speed to expect, m/s
-  std::uint32_t with_wall;  ///< 1: the second body is a wall
-  std::uint32_t reserved;
-};
-
-/// What is left of a law's history when a pair's owner is exchanged: +1 unchanged, −1 the sign flips.
-struct ContactLawInfo {
-  std::uint32_t history_count;
-  std::uint32_t channel_count;
-  std::int32_t history_sign[kMaxHistory];
-  const char* history_name[kMaxHistory];
-  const char* channel_name[kMaxChannels];
-};
 
 struct ContactBatch {
   std::int64_t count;              ///< slots, a multiple of kLanes
@@ -64,9 +25,18 @@ struct ContactBatch {
   double elastic_sum;              ///< out: Σ elastic_energy
   double power_sum[kMaxChannels];  ///< out: Σ power
 };
+template <>
+struct Layout<ContactBatch> {
+  using S = ContactBatch;
+  static constexpr std::size_t offsets[] = {
+      offsetof(S, count),   offsetof(S, time_step),   offsetof(S, overlap),      offsetof(S, normal),           offsetof(S, velocity),
+      offsetof(S, radius),  offsetof(S, mass),        offsetof(S, restitution),  offsetof(S, friction),         offsetof(S, added_cap),
+      offsetof(S, history), offsetof(S, force),       offsetof(S, normal_force), offsetof(S, normal_stiffness), offsetof(S, elastic_energy),
+      offsetof(S, power),   offsetof(S, elastic_sum), offsetof(S, power_sum)};
+};
 
 struct ContactLawTable {
-  ContactLawInfo info;
+  PairTermInfo info;
   Status (*create)(const Values*, const PairContext*, void** self, Failure*);
   void (*destroy)(void* self);
   double (*reach)(const void* self, double radius);  ///< largest gap at which the law acts, m, ≥ 0
@@ -74,86 +44,15 @@ struct ContactLawTable {
   void (*evaluate_scalar)(const void* self, ContactBatch*);                            ///< the oracle of the tests
   double (*contact_time)(const void* self, double radius, double mass, double speed);  ///< s, estimate; 0: none
 };
-
-/// Interactions see both bodies' spins and may turn them.
-struct InteractionBatch {
-  std::int64_t count;
-  double time_step;
-  const double* overlap;
-  const double* normal[3];
-  const double* velocity[3];
-  const double* spin_i[3];  ///< ω_i, rad/s
-  const double* spin_j[3];
-  const double* radius_i;          ///< m
-  const double* radius_j;          ///< m; 0 for a wall
-  const double* radius;            ///< R*
-  const double* mass;              ///< m*
-  const double* normal_force;      ///< post: total F_n of law and pre interactions
-  const double* normal_stiffness;  ///< post
-  double* history[kMaxHistory];
-  double* added_force;  ///< pre, added to: force along n, N, positive pushes apart
-  double* added_cap;    ///< pre, added to: N
-  double* moment_i[3];  ///< post, added to: N m on i
-  double* moment_j[3];  ///< post, added to: N m on j
-  double elastic_sum;
-  double power_sum[kMaxChannels];
-};
-
-struct InteractionTable {
-  ContactLawInfo info;
-  Status (*create)(const Values*, const PairContext*, void** self, Failure*);
-  void (*destroy)(void* self);
-  double (*reach)(const void* self, double radius);
-  void (*evaluate)(const void* self, InteractionBatch*);
-  void (*evaluate_scalar)(const void* self, InteractionBatch*);
-};
-
-/// e or μ as a function of the pair's state.
-struct PairParameterBatch {
-  std::int64_t count;
-  double time_step;
-  const double* overlap;
-  const double* normal[3];
-  const double* velocity[3];
-  const double* radius;
-  const double* mass;
-  double* history[kMaxHistory];
-  double* restitution;  ///< out when the plugin has kGivesRestitution
-  double* friction;     ///< out when the plugin has kGivesFriction
-};
-
-struct PairParameterTable {
-  ContactLawInfo info;
-  Status (*create)(const Values*, const PairContext*, void** self, Failure*);
-  void (*destroy)(void* self);
-  void (*evaluate)(const void* self, PairParameterBatch*);
+template <>
+struct Layout<ContactLawTable> {
+  using S = ContactLawTable;
+  static constexpr std::size_t offsets[] = {offsetof(S, info),        offsetof(S, create),   offsetof(S, destroy),
+                                            offsetof(S, reach),       offsetof(S, evaluate), offsetof(S, evaluate_scalar),
+                                            offsetof(S, contact_time)};
 };
 
 inline constexpr std::uint64_t kContactLawLayout =
-    hash_numbers({1, sizeof(ContactBatch), sizeof(ContactLawTable), sizeof(PairContext), sizeof(Value), sizeof(Parameter),
-                  offsetof(ContactBatch, history), offsetof(ContactBatch, force), offsetof(ContactBatch, power_sum),
-                  offsetof(ContactLawTable, evaluate), kMaxHistory, kMaxChannels});
-inline constexpr std::uint64_t kInteractionLayout =
-    hash_numbers({2, sizeof(InteractionBatch), sizeof(InteractionTable), sizeof(PairContext), sizeof(Value), sizeof(Parameter),
-                  offsetof(InteractionBatch, history), offsetof(InteractionBatch, moment_i), kMaxHistory, kMaxChannels});
-inline constexpr std::uint64_t kPairParameterLayout = hash_numbers(
-    {3, sizeof(PairParameterBatch), sizeof(PairParameterTable), sizeof(PairContext), sizeof(Value), sizeof(Parameter), kMaxHistory});
-
-/// What the host's loader also checks: counts within the limits, names given, signs +1 or −1.
-constexpr bool info_is_sane(const ContactLawInfo& info) {
-  if (info.history_count > kMaxHistory || info.channel_count > kMaxChannels) return false;
-  for (std::uint32_t h = 0; h < info.history_count; ++h) {
-    if (info.history_name[h] == nullptr || info.history_sign[h] * info.history_sign[h] != 1) return false;
-  }
-  for (std::uint32_t k = 0; k < info.channel_count; ++k) {
-    if (info.channel_name[k] == nullptr) return false;
-  }
-  return true;
-}
-
-/// True when the class's kInfo is sane and agrees with its kHistory and kChannels.
-template <class Law>
-inline constexpr bool kInfoIsSane = info_is_sane(Law::kInfo) && Law::kInfo.history_count == Law::kHistory&& Law::kInfo.channel_count
-                                                                    == Law::kChannels;
+    layout_hash(Kind::contact_law, {kMaxHistory, kMaxChannels}, PairStructs<PairTermInfo, Channel, ContactBatch, ContactLawTable>{});
 
 }  // namespace millscope

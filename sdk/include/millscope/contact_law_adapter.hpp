@@ -2,19 +2,20 @@
 //
 //   struct MyLaw {
 //     static constexpr int kHistory = 3, kChannels = 2;
-//     static constexpr ContactLawInfo kInfo = {…};
+//     static constexpr PairTermInfo kInfo = pair_term({histories}, {channels});
 //     explicit MyLaw(const Parameters&, const PairContext&);          // throws Refusal with the remedy
 //     double reach(double radius) const;                              // 0 for laws that act on touch
 //     double contact_time(double radius, double mass, double speed) const;  // s, estimate; 0: none
 //     double restitution() const; double friction() const;            // the pair's own e and μ
 //     template <class R> void force(const Contact<R>&, R (&history)[kHistory], Response<R, kChannels>&) const;
 //   };
-//   constexpr ContactLawTable table = make_contact_law_table<MyLaw>();
+//   constexpr Descriptor kDescriptor = describe<MyLaw>({.name = "my_law", .doc = "…", .parameters = kParameters});
 #pragma once
 
 #include <string>
 
 #include "millscope/contact_law.hpp"
+#include "millscope/describe.hpp"
 #include "millscope/pack.hpp"
 #include "millscope/parameters.hpp"
 
@@ -90,7 +91,7 @@ void evaluate_contacts(const void* self, ContactBatch* b) {
 
 template <class Law>
 constexpr ContactLawTable make_contact_law_table() {
-  static_assert(kInfoIsSane<Law>,
+  static_assert(kTermIsSane<Law>,
                 "kInfo must name kHistory histories (sign +1 or -1) and kChannels channels, within the limits of the SDK");
   ContactLawTable t{};
   t.info = Law::kInfo;
@@ -106,5 +107,19 @@ constexpr ContactLawTable make_contact_law_table() {
   t.evaluate_scalar = &evaluate_contacts<Law, double>;
   return t;
 }
+
+/// What tells a contact law from the other kinds.
+template <class C>
+concept ContactLawClass = requires(const C& law) {
+  law.contact_time(0.0, 0.0, 0.0);
+};
+
+template <ContactLawClass C>
+struct Adapter<C> {
+  static constexpr Kind kind = Kind::contact_law;
+  static constexpr std::uint64_t layout = kContactLawLayout;
+  static constexpr std::uint64_t features = 0;
+  static constexpr ContactLawTable table = make_contact_law_table<C>();
+};
 
 }  // namespace millscope

@@ -4,7 +4,7 @@
 // the beads that have candidates. The host keeps the contact histories, keyed by bead and by the `feature` that is returned.
 #pragma once
 
-#include "millscope/abi.hpp"
+#include "millscope/layout.hpp"
 
 namespace millscope {
 
@@ -13,6 +13,11 @@ struct CandidateSink {
   void* host;
   void (*add)(void* host, std::int64_t bead, std::uint32_t feature);
 };
+template <>
+struct Layout<CandidateSink> {
+  using S = CandidateSink;
+  static constexpr std::size_t offsets[] = {offsetof(S, host), offsetof(S, add)};
+};
 
 /// Beads in the geometry's own frame.
 struct GeometryBeads {
@@ -20,12 +25,22 @@ struct GeometryBeads {
   const double* position[3];  ///< m
   const double* radius;       ///< m
 };
+template <>
+struct Layout<GeometryBeads> {
+  using S = GeometryBeads;
+  static constexpr std::size_t offsets[] = {offsetof(S, count), offsetof(S, position), offsetof(S, radius)};
+};
 
 struct GeometryQuery {
   GeometryBeads beads;
   const std::int64_t* first;  ///< count + 1 offsets into `candidates`
   const std::uint32_t* candidates;
   double reach;  ///< also report gaps up to this, m
+};
+template <>
+struct Layout<GeometryQuery> {
+  using S = GeometryQuery;
+  static constexpr std::size_t offsets[] = {offsetof(S, beads), offsetof(S, first), offsetof(S, candidates), offsetof(S, reach)};
 };
 
 /// Contacts found, at most `capacity` of them, ordered by bead.
@@ -39,6 +54,12 @@ struct GeometryContacts {
   std::uint32_t* triangle;  ///< out: index into the surface's triangles (for per-triangle work), or UINT32_MAX
   std::uint32_t* material;  ///< out: index into the geometry's material slots
 };
+template <>
+struct Layout<GeometryContacts> {
+  using S = GeometryContacts;
+  static constexpr std::size_t offsets[] = {offsetof(S, capacity), offsetof(S, count),   offsetof(S, bead),     offsetof(S, overlap),
+                                            offsetof(S, normal),   offsetof(S, feature), offsetof(S, triangle), offsetof(S, material)};
+};
 
 /// Triangles for pictures and per-triangle work, and for export. Owned by the plugin, valid until destroy.
 struct Surface {
@@ -47,6 +68,12 @@ struct Surface {
   std::uint64_t triangle_count;
   const std::uint32_t* triangles;           ///< 3 per triangle, counter-clockwise seen from the beads' side
   const std::uint32_t* triangle_materials;  ///< material slot of each triangle
+};
+template <>
+struct Layout<Surface> {
+  using S = Surface;
+  static constexpr std::size_t offsets[] = {offsetof(S, vertex_count), offsetof(S, vertices), offsetof(S, triangle_count),
+                                            offsetof(S, triangles), offsetof(S, triangle_materials)};
 };
 
 /// The space that the charge may fill: a cylinder round the axis (mills) or a box.
@@ -57,6 +84,12 @@ struct Interior {
   double axis[3];
   double radius;           ///< of the bare shell, m
   double low[3], high[3];  ///< bounds in the geometry's frame; for a cylinder low[2], high[2] hold the range along the axis
+};
+template <>
+struct Layout<Interior> {
+  using S = Interior;
+  static constexpr std::size_t offsets[] = {offsetof(S, is_cylinder), offsetof(S, is_bounded), offsetof(S, axis_point), offsetof(S, axis),
+                                            offsetof(S, radius),      offsetof(S, low),        offsetof(S, high)};
 };
 
 struct GeometryTable {
@@ -73,11 +106,19 @@ struct GeometryTable {
   /// Called from many threads at once.
   void (*contacts)(const void* self, const GeometryQuery*, GeometryContacts*);
 };
+template <>
+struct Layout<GeometryTable> {
+  using S = GeometryTable;
+  static constexpr std::size_t offsets[] = {offsetof(S, create),     offsetof(S, destroy),  offsetof(S, material_slots),
+                                            offsetof(S, surface),    offsetof(S, interior), offsetof(S, report),
+                                            offsetof(S, candidates), offsetof(S, contacts)};
+};
 
 /// A bead touches at most this many places of one geometry.
 inline constexpr int kMaxWallContacts = 6;
 
-inline constexpr std::uint64_t kGeometryLayout = hash_numbers({5, sizeof(GeometryQuery), sizeof(GeometryContacts), sizeof(GeometryTable),
-                                                               sizeof(Surface), sizeof(Interior), sizeof(Value), sizeof(Parameter)});
+inline constexpr std::uint64_t kGeometryLayout =
+    layout_hash(Kind::geometry, {kMaxWallContacts},
+                KindStructs<CandidateSink, GeometryBeads, GeometryQuery, GeometryContacts, Surface, Interior, GeometryTable>{});
 
 }  // namespace millscope

@@ -10,11 +10,12 @@
 //     void touch(const WallBead&, const std::uint32_t* candidates, std::size_t count, WallContacts&) const;  // many threads
 //     void prefetch(std::uint32_t candidate) const;       // optional: called some beads before touch
 //   };
-//   constexpr GeometryTable table = make_geometry_table<MyWall>();
+//   constexpr Descriptor kDescriptor = describe<MyWall>({.name = "my_wall", .doc = "…", .parameters = kParameters});
 #pragma once
 
 #include <cstddef>
 
+#include "millscope/describe.hpp"
 #include "millscope/geometry.hpp"
 #include "millscope/pack.hpp"
 #include "millscope/parameters.hpp"
@@ -104,5 +105,19 @@ constexpr GeometryTable make_geometry_table() {
   t.contacts = &find_contacts<Wall>;
   return t;
 }
+
+/// What tells a geometry from the other kinds.
+template <class C>
+concept GeometryClass = requires(const C& wall) {
+  wall.interior();
+};
+
+template <GeometryClass C>
+struct Adapter<C> {
+  static constexpr Kind kind = Kind::geometry;
+  static constexpr std::uint64_t layout = kGeometryLayout;
+  static constexpr std::uint64_t features = 0;
+  static constexpr GeometryTable table = make_geometry_table<C>();
+};
 
 }  // namespace millscope

@@ -2,20 +2,20 @@
 //
 //   struct MyInteraction {
 //     static constexpr int kHistory = 0, kChannels = 1;               // both may be 0
-//     static constexpr ContactLawInfo kInfo = {…};
+//     static constexpr PairTermInfo kInfo = pair_term({histories}, {channels});
 //     MyInteraction(const Parameters&, const PairContext&);           // throws Refusal with the remedy
 //     double reach(double radius) const;                              // largest gap at which it acts, m; 0: on touch only
 //     template <class R> void pre(const PairState<R>&, R* history, PreResponse<R, kChannels>&) const;    // either this
 //     template <class R> void post(const PairState<R>&, R* history, PostResponse<R, kChannels>&) const;  // or this
 //   };
-//   constexpr InteractionTable table = make_interaction_table<MyInteraction>();
-//   descriptor.features = kInteractionFeatures<MyInteraction>;
+//   constexpr Descriptor kDescriptor = describe<MyInteraction>({.name = "my_interaction", .doc = "…", .parameters = kParameters});
 //
 // `pre` acts before the contact law (an added normal force, an added Coulomb cap); `post` acts after it and turns the bodies.
 // The responses are zero on entry; R is double (the oracle) or Pack. Padding has overlap −1: give zero there, as without contact.
 #pragma once
 
-#include "millscope/contact_law.hpp"
+#include "millscope/describe.hpp"
+#include "millscope/interaction.hpp"
 #include "millscope/pack.hpp"
 #include "millscope/parameters.hpp"
 
@@ -104,14 +104,14 @@ PairState<R> load_pair(const InteractionBatch& b, std::int64_t s) {
 
 /// Calls pre or post on one pack and adds what it gives to the batch; returns the response for the sums.
 template <class I, class R>
-auto respond(const I& interaction, const PairState<R>& pair, R* history, InteractionBatch& b, std::int64_t s) {
-  auto& slots = *reinterpret_cast<R(*)[I::kHistory > 0 ? I::kHistory : 1]>(history);
+auto respond(const I& interaction, const PairState<R>& pair, R (&history)[I::kHistory > 0 ? I::kHistory : 1], InteractionBatch& b,
+             std::int64_t s) {
   const R zero(0.0);
   if constexpr (HasPre<I>) {
     PreResponse<R, I::kChannels> out;
     out.added_force = out.added_cap = out.elastic_energy = zero;
     for (R& p : out.power) p = zero;
-    interaction.pre(pair, slots, out);
+    interaction.pre(pair, history, out);
     add_to(b.added_force + s, out.added_force);
     add_to(b.added_cap + s, out.added_cap);
     return out;
@@ -120,7 +120,7 @@ auto respond(const I& interaction, const PairState<R>& pair, R* history, Interac
     out.moment_i = out.moment_j = {zero, zero, zero};
     out.elastic_energy = zero;
     for (R& p : out.power) p = zero;
-    interaction.post(pair, slots, out);
+    interaction.post(pair, history, out);
     add_vector(b.moment_i, s, out.moment_i);
     add_vector(b.moment_j, s, out.moment_j);
     return out;
@@ -128,10 +128,6 @@ auto respond(const I& interaction, const PairState<R>& pair, R* history, Interac
 }
 
 }  // namespace detail
-
-/// The feature bit that the descriptor of interaction I must carry.
-template <class I>
-inline constexpr std::uint64_t kInteractionFeatures = detail::HasPre<I> ? kPreInteraction : kPostInteraction;
 
 template <class I, class R>
 void evaluate_interaction(const void* self, InteractionBatch* b) {
@@ -155,7 +151,7 @@ void evaluate_interaction(const void* self, InteractionBatch* b) {
 template <class I>
 constexpr InteractionTable make_interaction_table() {
   static_assert(detail::HasPre<I> != detail::HasPost<I>, "an interaction has either pre(…) or post(…), a template over R = double, Pack");
-  static_assert(kInfoIsSane<I>, "kInfo must name kHistory histories (sign +1 or -1) and kChannels channels, within the limits of the SDK");
+  static_assert(kTermIsSane<I>, "kInfo must name kHistory histories (sign +1 or -1) and kChannels channels, within the limits of the SDK");
   InteractionTable t{};
   t.info = I::kInfo;
   t.create = [](const Values* values, const PairContext* pair, void** self, Failure* failure) -> Status {
@@ -167,5 +163,21 @@ constexpr InteractionTable make_interaction_table() {
   t.evaluate_scalar = &evaluate_interaction<I, double>;
   return t;
 }
+
+/// What tells an interaction from the other kinds.
+template <class C>
+concept InteractionClass = requires(const C& interaction) {
+  interaction.reach(0.0);
+  C::kHistory;
+}
+&&!requires(const C& law) { law.contact_time(0.0, 0.0, 0.0); };
+
+template <InteractionClass C>
+struct Adapter<C> {
+  static constexpr Kind kind = Kind::interaction;
+  static constexpr std::uint64_t layout = kInteractionLayout;
+  static constexpr std::uint64_t features = detail::HasPre<C> ? kPreInteraction : kPostInteraction;
+  static constexpr InteractionTable table = make_interaction_table<C>();
+};
 
 }  // namespace millscope

@@ -4,7 +4,7 @@
 // `TrackContext::seed`, so the same seed gives the same track.
 #pragma once
 
-#include "millscope/abi.hpp"
+#include "millscope/layout.hpp"
 
 namespace millscope {
 
@@ -16,6 +16,12 @@ struct TrackView {
   const double* weight;          ///< confidence 0…1; 1 for a simulated bead
   const std::uint32_t* visible;  ///< 1: the camera has it
 };
+template <>
+struct Layout<TrackView> {
+  using S = TrackView;
+  static constexpr std::size_t offsets[] = {offsetof(S, count), offsetof(S, time), offsetof(S, position), offsetof(S, weight),
+                                            offsetof(S, visible)};
+};
 
 /// The same to be written.
 struct TrackBuffer {
@@ -25,11 +31,22 @@ struct TrackBuffer {
   double* weight;
   std::uint32_t* visible;
 };
+template <>
+struct Layout<TrackBuffer> {
+  using S = TrackBuffer;
+  static constexpr std::size_t offsets[] = {offsetof(S, count), offsetof(S, time), offsetof(S, position), offsetof(S, weight),
+                                            offsetof(S, visible)};
+};
 
 /// Receives the new track: the plugin asks once for room for `count` samples and fills the buffer.
 struct TrackSink {
   void* host;
   Status (*resize)(void* host, std::int64_t count, TrackBuffer*);  ///< not 0: no memory
+};
+template <>
+struct Layout<TrackSink> {
+  using S = TrackSink;
+  static constexpr std::size_t offsets[] = {offsetof(S, host), offsetof(S, resize)};
 };
 
 /// What a camera may know of the bead and the mill; 0 where unknown.
@@ -41,6 +58,13 @@ struct TrackContext {
   double omega;                ///< mean Ω about z, rad/s
   double period;               ///< along z, m: the bead has an image in each; 0: the mill is not periodic
 };
+template <>
+struct Layout<TrackContext> {
+  using S = TrackContext;
+  static constexpr std::size_t offsets[] = {offsetof(S, seed),     offsetof(S, bead_radius), offsetof(S, mill_radius),
+                                            offsetof(S, mill_low), offsetof(S, mill_high),   offsetof(S, omega),
+                                            offsetof(S, period)};
+};
 
 struct ObservationTable {
   Status (*create)(const Values*, void** self, Failure*);
@@ -48,9 +72,13 @@ struct ObservationTable {
   /// Called from many threads at once.
   Status (*observe)(const void* self, const TrackView*, const TrackContext*, const TrackSink*, Failure*);
 };
+template <>
+struct Layout<ObservationTable> {
+  using S = ObservationTable;
+  static constexpr std::size_t offsets[] = {offsetof(S, create), offsetof(S, destroy), offsetof(S, observe)};
+};
 
 inline constexpr std::uint64_t kObservationLayout =
-    hash_numbers({6, sizeof(TrackView), sizeof(TrackBuffer), sizeof(TrackSink), sizeof(TrackContext), sizeof(ObservationTable),
-                  sizeof(Value), sizeof(Parameter), offsetof(TrackContext, omega)});
+    layout_hash(Kind::observation, {}, KindStructs<TrackView, TrackBuffer, TrackSink, TrackContext, ObservationTable>{});
 
 }  // namespace millscope

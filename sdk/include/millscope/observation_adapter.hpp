@@ -4,11 +4,12 @@
 //     explicit MyNoise(const Parameters&);                                   // throws Refusal with the remedy
 //     Track observe(const TrackView&, const TrackContext&) const;            // throws Refusal
 //   };
-//   constexpr ObservationTable table = make_observation_table<MyNoise>();
+//   constexpr Descriptor kDescriptor = describe<MyNoise>({.name = "my_noise", .doc = "…", .parameters = kParameters});
 #pragma once
 
 #include <vector>
 
+#include "millscope/describe.hpp"
 #include "millscope/observation.hpp"
 #include "millscope/parameters.hpp"
 #include "millscope/random.hpp"
@@ -57,5 +58,19 @@ constexpr ObservationTable make_observation_table() {
   };
   return t;
 }
+
+/// What tells an observation from the other kinds.
+template <class C>
+concept ObservationClass = requires(const C& camera, const TrackView& view, const TrackContext& context) {
+  camera.observe(view, context);
+};
+
+template <ObservationClass C>
+struct Adapter<C> {
+  static constexpr Kind kind = Kind::observation;
+  static constexpr std::uint64_t layout = kObservationLayout;
+  static constexpr std::uint64_t features = 0;
+  static constexpr ObservationTable table = make_observation_table<C>();
+};
 
 }  // namespace millscope

@@ -1,18 +1,18 @@
 // Turns a plain C++ class into a pair_parameter plugin: e or μ as a function of the pair's state.
 //
 //   struct MyRestitution {
-//     static constexpr int kHistory = 0, kChannels = 0;
-//     static constexpr ContactLawInfo kInfo = {};
+//     static constexpr int kHistory = 1;
+//     static constexpr PairParameterInfo kInfo = pair_parameter_info({histories});
 //     static constexpr std::uint64_t kGives = kGivesRestitution;      // or kGivesFriction, or both
 //     MyRestitution(const Parameters&, const PairContext&);           // throws Refusal with the remedy
 //     template <class R> void values(const ParameterState<R>&, R* history, PairValues<R>&) const;
 //   };
-//   constexpr PairParameterTable table = make_pair_parameter_table<MyRestitution>();
-//   descriptor.features = MyRestitution::kGives;
+//   constexpr Descriptor kDescriptor = describe<MyRestitution>({.name = "my_restitution", .doc = "…", .parameters = kParameters});
 #pragma once
 
-#include "millscope/contact_law.hpp"
+#include "millscope/describe.hpp"
 #include "millscope/pack.hpp"
+#include "millscope/pair_parameter.hpp"
 #include "millscope/parameters.hpp"
 
 namespace millscope {
@@ -59,7 +59,7 @@ void evaluate_pair_parameter(const void* self, PairParameterBatch* b) {
 template <class P>
 constexpr PairParameterTable make_pair_parameter_table() {
   static_assert((P::kGives & (kGivesRestitution | kGivesFriction)) != 0, "kGives says kGivesRestitution, kGivesFriction or both");
-  static_assert(P::kChannels == 0 && kInfoIsSane<P>, "kInfo must name kHistory histories (sign +1 or -1) and no channel");
+  static_assert(is_sane(P::kInfo) && P::kInfo.history_count == P::kHistory, "kInfo must name kHistory histories (sign +1 or -1)");
   PairParameterTable t{};
   t.info = P::kInfo;
   t.create = [](const Values* values, const PairContext* pair, void** self, Failure* failure) -> Status {
@@ -69,5 +69,19 @@ constexpr PairParameterTable make_pair_parameter_table() {
   t.evaluate = &evaluate_pair_parameter<P, Pack>;
   return t;
 }
+
+/// What tells a pair parameter from the other kinds.
+template <class C>
+concept PairParameterClass = requires {
+  C::kGives;
+};
+
+template <PairParameterClass C>
+struct Adapter<C> {
+  static constexpr Kind kind = Kind::pair_parameter;
+  static constexpr std::uint64_t layout = kPairParameterLayout;
+  static constexpr std::uint64_t features = C::kGives;
+  static constexpr PairParameterTable table = make_pair_parameter_table<C>();
+};
 
 }  // namespace millscope

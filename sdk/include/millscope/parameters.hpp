@@ -88,20 +88,4 @@ constexpr Parameter optional(Parameter p) {
   return p;
 }
 
-/// Descriptor with the fields that are the same for all.
-constexpr Descriptor make_descriptor(Kind kind, std::uint64_t layout, const void* table, std::uint64_t table_size) {
-  Descriptor d{};
-  d.magic = kMagic;
-  d.size = sizeof(Descriptor);
-  d.abi_major = kAbiMajor;
-  d.abi_minor = kAbiMinor;
-  d.kind = static_cast<std::uint32_t>(kind);
-  d.layout = layout;
-  d.compiler = kCompiler;
-  d.table = table;
-  d.table_size = table_size;
-  d.name = d.version = d.doc = d.equation = d.citation = "";
-  return d;
-}
-
 }  // namespace millscope

@@ -94,7 +94,7 @@ void transformed(const Law& law, const Setting& setting, const char* name, Map m
   }
 }
 
-/// Exchanging i and j with a history that is not empty: the signs of ContactLawInfo must be right.
+/// Exchanging i and j with a history that is not empty: the signs of the histories must be right.
 inline void history_signs(const Law& law, const Setting& setting, Violations& out) {
   Contacts a = random_contacts(setting);
   const double dt = fine_step(law, setting.pair, 50);
@@ -103,13 +103,13 @@ inline void history_signs(const Law& law, const Setting& setting, Violations& ou
     move(a, dt);
   }
   Contacts b = a;
-  const ContactLawInfo& info = law.table().info;
+  const PairTermInfo& info = law.table().info;
   for (std::size_t s = 0; s < a.count; ++s) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       b.normal[axis][s] = -a.normal[axis][s];
       b.velocity[axis][s] = -a.velocity[axis][s];
     }
-    for (std::uint32_t h = 0; h < info.history_count; ++h) b.history[h][s] *= info.history_sign[h];
+    for (std::uint32_t h = 0; h < info.history_count; ++h) b.history[h][s] *= info.histories[h].sign;
   }
   a.step(law, dt);
   b.step(law, dt);
@@ -180,16 +180,16 @@ inline void elastic_derivatives(const Law& law, const Setting& setting, Violatio
 
 inline void dissipation_is_positive(const Law& law, const Setting& setting, Violations& out) {
   Contacts c = random_contacts(setting);
-  const ContactLawInfo& info = law.table().info;
+  const PairTermInfo& info = law.table().info;
   const double dt = fine_step(law, setting.pair, 50);
   for (int step = 0; step < 60; ++step) {
     c.step(law, dt);
     const double slack = 1e-9 * largest_force(c) * setting.pair.typical_speed;
     for (std::uint32_t k = 0; k < info.channel_count; ++k) {
-      if (!is_dissipative(info.channel_name[k])) continue;
+      if (info.channels[k].nature != ChannelNature::dissipative) continue;
       const double least = *std::min_element(c.power[k].begin(), c.power[k].end());
       if (least >= -slack) continue;
-      out.push_back({"dissipation >= 0", std::string(info.channel_name[k]) + text_of(" gives %g W (step %g)", least, step)});
+      out.push_back({"dissipation >= 0", std::string(info.channels[k].name) + text_of(" gives %g W (step %g)", least, step)});
       return;
     }
     move(c, dt);
@@ -201,7 +201,7 @@ inline void dissipation_is_positive(const Law& law, const Setting& setting, Viol
 /// Every check of a contact law with these values. Throws Refusal when the plugin refuses the values.
 inline Violations check_contact_law(const Descriptor& descriptor, const Values& values, const Setting& setting = {}) {
   Violations out;
-  const detail::Law law(*static_cast<const ContactLawTable*>(descriptor.table), values, setting.pair);
+  const detail::Law law(table_of<ContactLawTable>(descriptor, Kind::contact_law, kContactLawLayout), values, setting.pair);
   detail::scalar_is_packed(law, setting, out);
   detail::finite_and_nothing_beyond_reach(law, setting, out);
   detail::transformed(

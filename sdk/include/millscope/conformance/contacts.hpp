@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "millscope/conformance/values.hpp"
+#include "millscope/contact_law.hpp"
 #include "millscope/pack.hpp"
 
 namespace millscope::conformance {

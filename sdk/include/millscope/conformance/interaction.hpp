@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "millscope/conformance/contacts.hpp"
+#include "millscope/interaction.hpp"
 
 namespace millscope::conformance {
 
@@ -141,7 +142,7 @@ inline void interaction_beyond_reach(const Held<InteractionTable>& law, const Se
 }
 
 /// Exchanges i and j of every pair, histories with their signs.
-inline Pairs exchanged(const Pairs& pairs, const ContactLawInfo& info) {
+inline Pairs exchanged(const Pairs& pairs, const PairTermInfo& info) {
   Pairs other = pairs;
   std::swap(other.radius_i, other.radius_j);
   std::swap(other.spin_i, other.spin_j);
@@ -151,7 +152,7 @@ inline Pairs exchanged(const Pairs& pairs, const ContactLawInfo& info) {
     }
   }
   for (std::uint32_t h = 0; h < info.history_count; ++h) {
-    for (double& x : other.base.history[h]) x *= info.history_sign[h];
+    for (double& x : other.base.history[h]) x *= info.histories[h].sign;
   }
   return other;
 }
@@ -199,12 +200,12 @@ inline void interaction_frame_indifference(const Held<InteractionTable>& law, co
 
 inline void interaction_dissipation(const Held<InteractionTable>& law, const Setting& setting, double dt, Violations& out) {
   Pairs pairs(setting);
-  const ContactLawInfo& info = law.table().info;
+  const PairTermInfo& info = law.table().info;
   for (int step = 0; step < 60; ++step) {
     pairs.step(law, dt);
     for (std::uint32_t k = 0; k < info.channel_count; ++k) {
-      if (!is_dissipative(info.channel_name[k]) || pairs.power_sum[k] >= 0.0) continue;
-      out.push_back({"dissipation >= 0", std::string(info.channel_name[k]) + text_of(" gives %g W (step %g)", pairs.power_sum[k], step)});
+      if (info.channels[k].nature != ChannelNature::dissipative || pairs.power_sum[k] >= 0.0) continue;
+      out.push_back({"dissipation >= 0", std::string(info.channels[k].name) + text_of(" gives %g W (step %g)", pairs.power_sum[k], step)});
       return;
     }
     move(pairs.base, dt);
@@ -216,7 +217,7 @@ inline void interaction_dissipation(const Held<InteractionTable>& law, const Set
 /// Every check of an interaction with these values. Throws Refusal when the plugin refuses the values.
 inline Violations check_interaction(const Descriptor& descriptor, const Values& values, const Setting& setting = {}) {
   Violations out;
-  const Held<InteractionTable> law(*static_cast<const InteractionTable*>(descriptor.table), values, setting.pair);
+  const Held<InteractionTable> law(table_of<InteractionTable>(descriptor, Kind::interaction, kInteractionLayout), values, setting.pair);
   const double young = setting.pair.effective_young, mass = setting.pair.smallest_mass;
   const double dt = 0.02 * 2.87 * std::pow(mass * mass / (setting.pair.smallest_radius * young * young * setting.pair.typical_speed), 0.2);
   detail::interaction_scalar_is_packed(law, setting, dt, out);

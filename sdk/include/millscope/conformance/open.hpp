@@ -18,7 +18,7 @@ inline const Descriptor& open_plugin(const std::string& path, std::string_view n
   if (handle == nullptr) throw Refusal(::dlerror());
   const auto* list = static_cast<const DescriptorList*>(::dlsym(handle, "millscope_plugins"));
   if (list == nullptr) throw Refusal(path + " has no symbol millscope_plugins");
-  if (list->magic != kMagic || list->abi_major != kAbiMajor) throw Refusal(path + " was built against another SDK");
+  if (list->magic != kMagic || list->abi_version != kAbiVersion) throw Refusal(path + " was built against another SDK");
   for (std::uint64_t i = 0; i < list->count; ++i) {
     if (name == list->items[i]->name) return *list->items[i];
   }

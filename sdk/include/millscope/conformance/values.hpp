@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "millscope/contact_law.hpp"
+#include "millscope/pair_term.hpp"
 #include "millscope/parameters.hpp"
 #include "millscope/random.hpp"
 
@@ -111,13 +111,15 @@ struct Setting {
   double stiffness_tolerance = 1e-4;  ///< relative, of dF_n/dδ and dU/dδ against differences
 };
 
-/// A plugin object that is destroyed with its holder.
+/// A plugin object that is destroyed with its holder; `context` is what the kind's `create` wants besides: a PairContext, an
+/// AnalyzerContext, or nothing.
 template <class Table>
 class Held {
  public:
-  Held(const Table& table, const Values& values, const PairContext& pair) : table_(&table) {
+  template <class... Context>
+  Held(const Table& table, const Values& values, const Context&... context) : table_(&table) {
     Failure failure{};
-    if (table.create(&values, &pair, &self_, &failure) != 0) throw Refusal(failure.message);
+    if (table.create(&values, &context..., &self_, &failure) != 0) throw Refusal(failure.message);
   }
   ~Held() {
     if (self_ != nullptr) table_->destroy(self_);
@@ -125,6 +127,7 @@ class Held {
   Held(const Held&) = delete;
   Held& operator=(const Held&) = delete;
   const void* get() const { return self_; }
+  void* get() { return self_; }
   const Table& table() const { return *table_; }
 
  private:
@@ -132,18 +135,54 @@ class Held {
   void* self_ = nullptr;
 };
 
+/// The table of a descriptor. Throws Refusal when it is of another kind or was built against another SDK.
+template <class Table>
+const Table& table_of(const Descriptor& descriptor, Kind kind, std::uint64_t layout) {
+  if (descriptor.kind != static_cast<std::uint32_t>(kind)) throw Refusal(std::string(descriptor.name) + " is a plugin of another kind");
+  if (descriptor.layout != layout) throw Refusal(std::string(descriptor.name) + " was built against another SDK");
+  return *static_cast<const Table*>(descriptor.table);
+}
+
+/// The values with one number at an end of its range, in turn for every number whose end is finite. A plugin may refuse such values, but it
+/// must say why; what it accepts it must be able to compute with.
+inline std::vector<std::vector<Value>> at_ends_of_ranges(const Descriptor& descriptor, const Values& values) {
+  std::vector<std::vector<Value>> all;
+  for (std::uint64_t i = 0; i < descriptor.parameter_count; ++i) {
+    const Parameter& parameter = descriptor.parameters[i];
+    if (parameter.type != ValueType::number) continue;
+    for (const double end : {parameter.minimum, parameter.maximum}) {
+      if (!std::isfinite(end)) continue;
+      all.emplace_back(values.items, values.items + values.count);
+      for (Value& value : all.back()) {
+        if (std::string_view(value.name) != parameter.name) continue;
+        value.number[0] = end;
+        value.given = 1;
+      }
+    }
+  }
+  return all;
+}
+
+/// Makes an object of each of `at_ends_of_ranges` and hands it to `use`; a refusal without a reason is a violation.
+template <class Table, class Use, class... Context>
+void with_ends_of_ranges(const Descriptor& descriptor, const Table& table, const Values& values, Violations& out, const Use& use,
+                         const Context&... context) {
+  for (const std::vector<Value>& changed : at_ends_of_ranges(descriptor, values)) {
+    try {
+      const Held<Table> object(table, {changed.data(), changed.size()}, context...);
+      use(object);
+    } catch (const Refusal& refusal) {
+      if (std::string_view(refusal.what()).empty()) out.push_back({"refusal", "values were refused without a reason"});
+    }
+  }
+}
+
 /// A rotation by 0.9 rad about (1, 2, 2)/3, for frame indifference.
 inline void rotate(const double in[3], double out[3]) {
   constexpr double k[3] = {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0};
   const double c = std::cos(0.9), s = std::sin(0.9), along = (1.0 - c) * (k[0] * in[0] + k[1] * in[1] + k[2] * in[2]);
   const double across[3] = {k[1] * in[2] - k[2] * in[1], k[2] * in[0] - k[0] * in[2], k[0] * in[1] - k[1] * in[0]};
   for (int axis = 0; axis < 3; ++axis) out[axis] = c * in[axis] + s * across[axis] + along * k[axis];
-}
-
-/// Whether a channel must never give energy.
-inline bool is_dissipative(const char* channel) {
-  const std::string_view name = channel;
-  return name.ends_with("friction") || name.ends_with("damping");
 }
 
 }  // namespace millscope::conformance
