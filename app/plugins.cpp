@@ -57,11 +57,11 @@ int plugin(const Arguments& arguments) {
                   "Writes a plugin project of its own (CMake, source, test, README) that builds against the installed SDK.",
                   "millscope plugin new contact_law my_law");
   options.positional("ACTION", "new");
-  options.positional("KIND", "contact_law, interaction, body_force, observation, analyzer");
+  options.positional("KIND", "contact_law, interaction, pair_parameter, body_force, geometry, observation, analyzer");
   options.positional("NAME", "lower_case_words");
   options.choices("ACTION", {"new"});
   std::vector<std::string> kinds;
-  for (const Kind k : host::scaffold_kinds()) kinds.push_back(host::text(k));
+  for (const Kind k : host::all_kinds()) kinds.push_back(host::text(k));
   options.choices("KIND", kinds);
   options.add()("directory", po::value<std::string>()->value_name("DIR")->default_value("."), "where to put it");
   if (!options.parse(arguments)) return kDone;

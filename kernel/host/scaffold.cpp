@@ -1,7 +1,6 @@
 #include "kernel/host/scaffold.hpp"
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <fstream>
@@ -75,11 +74,6 @@ void copy_folder(const fs::path& source, const fs::path& target, Kind kind, std:
 
 }  // namespace
 
-const std::vector<Kind>& scaffold_kinds() {
-  static const std::vector<Kind> kinds = {Kind::contact_law, Kind::interaction, Kind::body_force, Kind::observation, Kind::analyzer};
-  return kinds;
-}
-
 std::string template_directory() {
   std::error_code trouble;
   const fs::path prefix = fs::read_symlink("/proc/self/exe", trouble).parent_path().parent_path();
@@ -94,9 +88,7 @@ std::string scaffold(Kind kind, std::string_view name, const std::string& parent
   check_name(name);
   const fs::path templates = template_directory();
   if (!fs::is_directory(templates / text(kind))) {
-    std::vector<std::string> words;
-    for (const Kind known : scaffold_kinds()) words.push_back(text(known));
-    throw UserError(fmt::format("there is no template for a {}; known: {}", text(kind), fmt::join(words, ", ")));
+    throw UserError(fmt::format("the template of a {} is missing in {}; install millscope again", text(kind), templates.string()));
   }
   std::error_code trouble;
   const fs::path target = fs::absolute(fs::path(parent) / name);

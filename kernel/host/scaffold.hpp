@@ -3,17 +3,13 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "millscope/abi.hpp"
 
 namespace millscope::host {
 
-/// Kinds that have a template.
-const std::vector<Kind>& scaffold_kinds();
-
-/// Writes the project `parent/name` (CMakeLists.txt, name.cpp, test, README.md) and returns its path. Throws UserError for a bad name,
-/// a kind without template, an existing target, a template that is not installed.
+/// Writes the project `parent/name` (CMakeLists.txt, name.cpp, test, README.md) and returns its path. Throws UserError for a bad name, an
+/// existing target, a template that is not installed.
 std::string scaffold(Kind kind, std::string_view name, const std::string& parent = ".");
 
 /// Where the templates are: beside the executable (../share/millscope/template), or in the source tree of this build.

@@ -47,7 +47,7 @@ class Analyzer {
     const std::string directory = std::string(MILLSCOPE_BINARY_DIR) + "/lib/millscope/plugins";
     const Descriptor& d = conformance::open_plugin(conformance::best_build(directory, name), name);
     conformance::ValueSet values(d);
-    set(values, options);
+    values.read(options);
     table_ = static_cast<const AnalyzerTable*>(d.table);
     Failure failure{};
     const Values view = values.view();
@@ -86,18 +86,6 @@ class Analyzer {
   Outcome of(const Frames& frames) const { return of(frames.block()); }
 
  private:
-  /// "key=value key=value": numbers or choices.
-  static void set(conformance::ValueSet& values, const std::string& text) {
-    std::size_t at = 0;
-    while (at < text.size()) {
-      const std::size_t end = std::min(text.find(' ', at), text.size()), equal = text.find('=', at);
-      const std::string key = text.substr(at, equal - at), value = text.substr(equal + 1, end - equal - 1);
-      char* rest = nullptr;
-      const double number = std::strtod(value.c_str(), &rest);
-      *rest == '\0' ? values.set(key, number) : values.set(key, value.c_str());
-      at = end + 1;
-    }
-  }
   static void keep(void* host, const Result* r) {
     Found found{r->unit, r->doc, {r->shape, r->shape + r->rank}, {}, {}};
     std::uint64_t size = 1;

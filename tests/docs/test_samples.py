@@ -36,14 +36,12 @@ class Samples(unittest.TestCase):
         return done.stdout
 
     def build(self, kind, name, source, test=None):
-        """A scaffold with the page's source (and the body of its test) in the place of the template's; what `describe` says of it."""
+        """A scaffold with the page's source (and its test) in the place of the template's; what `describe` says of it."""
         self.run_command(COMMAND, "plugin", "new", kind, name, "--directory", self.root)
         project, built = self.root / name, self.root / name / "build"
         (project / f"{name}.cpp").write_text(source)
         if test:
-            text = (project / "test.cpp").read_text()
-            begin, end = text.index("double found = 0;"), text.index("}  // namespace\n\nint main")
-            (project / "test.cpp").write_text(text[:begin] + test + "\n" + text[end:])
+            (project / "test.cpp").write_text(test)
         self.run_command(CMAKE, "-S", project, "-B", built, f"-DCMAKE_CXX_COMPILER={COMPILER}", f"-DCMAKE_CXX_FLAGS={STRICT}",
                          f"-DCMAKE_PREFIX_PATH={self.root / 'sdk'}")
         self.run_command(CMAKE, "--build", built)
@@ -54,6 +52,13 @@ class Samples(unittest.TestCase):
         source, test = samples_of("adding_an_analyzer.md")
         page = self.build("analyzer", "height_profile", source, test)
         self.assertIn("Bins from the bottom of the shell to its top.", page)
+
+    def test_the_description_of_any_plugin(self):
+        """It is that of the geometry's template."""
+        (sample,) = samples_of("adding_a_plugin.md")
+        template = (SOURCE / "sdk/template/geometry/NAME.cpp.in").read_text().replace("@CLASS@", "MyFloor").replace("@NAME@", "my_floor")
+        for part in sample.strip().split("\n\n"):
+            self.assertIn(part, template)
 
     def test_the_hypothesis(self):
         (source,) = samples_of("adding_a_hypothesis.md")

@@ -53,16 +53,17 @@ void build_and_load(Kind kind) {
 
 TEST_CASE("a scaffolded contact law builds, passes its test and loads") { build_and_load(Kind::contact_law); }
 TEST_CASE("a scaffolded interaction builds, passes its test and loads") { build_and_load(Kind::interaction); }
+TEST_CASE("a scaffolded pair parameter builds, passes its test and loads") { build_and_load(Kind::pair_parameter); }
+TEST_CASE("a scaffolded geometry builds, passes its test and loads") { build_and_load(Kind::geometry); }
 TEST_CASE("a scaffolded body force builds, passes its test and loads") { build_and_load(Kind::body_force); }
 TEST_CASE("a scaffolded observation builds, passes its test and loads") { build_and_load(Kind::observation); }
 TEST_CASE("a scaffolded analyzer builds, passes its test and loads") { build_and_load(Kind::analyzer); }
 
-TEST_CASE("scaffold refuses bad names, existing targets and kinds without template, and writes nothing") {
+TEST_CASE("scaffold refuses bad names and existing targets, and writes nothing") {
   const Temporary folder;
   for (const char* name : {"", "My", "1st", "a-b", "../up", "a b", "/abs"}) {
     CHECK_THAT(refusal([&] { scaffold(Kind::contact_law, name, folder.text()); }), Contains("plugin name"));
   }
-  CHECK_THAT(refusal([&] { scaffold(Kind::geometry, "my_shape", folder.text()); }), Contains("no template") && Contains("contact_law"));
   CHECK(fs::is_empty(folder.path()));
   scaffold(Kind::analyzer, "mine", folder.text());
   CHECK_THAT(refusal([&] { scaffold(Kind::analyzer, "mine", folder.text()); }), Contains("exists already"));

@@ -15,19 +15,7 @@ inline const Descriptor& plugin(const std::string& name) { return open_plugin(be
 /// "key=value key=value": numbers or choices.
 inline ValueSet values_of(const Descriptor& d, const std::string& text) {
   ValueSet values(d);
-  std::size_t at = 0;
-  while (at < text.size()) {
-    const std::size_t end = std::min(text.find(' ', at), text.size()), equal = text.find('=', at);
-    const std::string key = text.substr(at, equal - at), value = text.substr(equal + 1, end - equal - 1);
-    char* rest = nullptr;
-    const double number = std::strtod(value.c_str(), &rest);
-    if (*rest == '\0') {
-      values.set(key, number);
-    } else {
-      values.set(key, value.c_str());
-    }
-    at = end + 1;
-  }
+  values.read(text);
   return values;
 }
 

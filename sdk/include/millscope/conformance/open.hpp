@@ -11,16 +11,21 @@
 
 namespace millscope::conformance {
 
-/// The descriptor of that name in a library file, which stays open. Throws Refusal when the library or the name is not there, or when
-/// the library was built against another SDK.
-inline const Descriptor& open_plugin(const std::string& path, std::string_view name) {
+/// What a library file lists; it stays open. Throws Refusal when there is no such library, or when it was built against another SDK.
+inline const DescriptorList& open_library(const std::string& path) {
   void* handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) throw Refusal(::dlerror());
   const auto* list = static_cast<const DescriptorList*>(::dlsym(handle, "millscope_plugins"));
   if (list == nullptr) throw Refusal(path + " has no symbol millscope_plugins");
   if (list->magic != kMagic || list->abi_version != kAbiVersion) throw Refusal(path + " was built against another SDK");
-  for (std::uint64_t i = 0; i < list->count; ++i) {
-    if (name == list->items[i]->name) return *list->items[i];
+  return *list;
+}
+
+/// The descriptor of that name in a library file. Throws Refusal as `open_library` does, and when the name is not there.
+inline const Descriptor& open_plugin(const std::string& path, std::string_view name) {
+  const DescriptorList& list = open_library(path);
+  for (std::uint64_t i = 0; i < list.count; ++i) {
+    if (name == list.items[i]->name) return *list.items[i];
   }
   throw Refusal(path + " has no plugin called '" + std::string(name) + "'");
 }

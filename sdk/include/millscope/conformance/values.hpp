@@ -1,7 +1,9 @@
 // What a conformance check needs to make a plugin object: values from the plugin's own list, and a pair of materials.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <deque>
 #include <string>
 #include <string_view>
@@ -46,6 +48,18 @@ class ValueSet {
     texts_.emplace_back(text);
     value.text = texts_.back().c_str();
     value.given = 1;
+    return *this;
+  }
+  /// "key=value key=value": numbers, or texts where no number can be read.
+  ValueSet& read(const std::string& text) {
+    for (std::size_t at = 0, end = 0; at < text.size(); at = end + 1) {
+      end = std::min(text.find(' ', at), text.size());
+      const std::size_t equal = text.find('=', at);
+      const std::string key = text.substr(at, equal - at), value = text.substr(equal + 1, end - equal - 1);
+      char* rest = nullptr;
+      const double number = std::strtod(value.c_str(), &rest);
+      *rest == '\0' && !value.empty() ? set(key, number) : set(key, value.c_str());
+    }
     return *this;
   }
   bool has(std::string_view name) const {
