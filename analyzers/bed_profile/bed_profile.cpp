@@ -9,11 +9,14 @@
 // v > 0 is carried with the shell, v < 0 flows down the surface. g is known only when all is seen, so beads are gathered in cells of a
 // fixed map first; each cell stands at the mean place of its beads, so that its width blurs v only where v bends within it.
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "analyzers/common/angle.hpp"
 #include "analyzers/common/grid.hpp"
 #include "analyzers/common/mill.hpp"
+
+#include "millscope/element.hpp"
 
 namespace millscope::analyzers {
 namespace {
@@ -55,9 +58,9 @@ class BedProfile {
   void accumulate(const FrameBlock& block, double* const* sums) const {
     for (std::int64_t s = block.first[0]; s < block.first[block.frame_count]; ++s) {
       const double x = block.position[0][s], y = block.position[1][s], w = block.weight[s];
-      const std::int64_t column = cells_.at(x), line = cells_.at(y);
-      if (column < 0 || line < 0 || !range_.contains(block.position[2][s])) continue;
-      double* m = sums[0] + (line * kCells + column) * kMoments;
+      const std::optional<std::int64_t> cell = cell_at(cells_, x, y);
+      if (!cell || !range_.contains(block.position[2][s])) continue;
+      double* m = sums[0] + *cell * kMoments;
       m[kTime] += w;
       m[kX] += w * x;
       m[kY] += w * y;
@@ -67,7 +70,7 @@ class BedProfile {
   }
 
   void finish(const double* const* sums, Results& results) const {
-    const auto n = static_cast<std::size_t>(points_);
+    const auto n = as_size(points_);
     double time = 0, x = 0, y = 0;
     for (std::int64_t c = 0; c < kCells * kCells; ++c) {
       const double* m = sums[0] + c * kMoments;
@@ -106,7 +109,7 @@ class BedProfile {
       const double place = (x * bed.normal_x + y * bed.normal_y + radius_) / step(), along = m[kVx] * bed.along_x + m[kVy] * bed.along_y;
       const std::int64_t k = std::clamp<std::int64_t>(static_cast<std::int64_t>(place), 0, points_ - 2);
       const double upper = std::clamp(place - static_cast<double>(k), 0.0, 1.0);
-      const auto at = static_cast<std::size_t>(k);
+      const auto at = as_size(k);
       weight[at] += (1 - upper) * m[kTime], momentum[at] += (1 - upper) * along;
       weight[at + 1] += upper * m[kTime], momentum[at + 1] += upper * along;
     }

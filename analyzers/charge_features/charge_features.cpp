@@ -18,6 +18,8 @@
 #include "analyzers/charge_features/shell.hpp"
 #include "analyzers/common/flight.hpp"
 
+#include "millscope/element.hpp"
+
 namespace millscope::analyzers {
 namespace {
 
@@ -105,18 +107,13 @@ class ChargeFeatures {
   }
 
  private:
-  std::int64_t map_index(double x, double y) const {
-    const std::int64_t ix = shape_.cells.at(x), iy = shape_.cells.at(y);
-    return ix < 0 || iy < 0 ? -1 : iy * shape_.cells.count + ix;
-  }
-
   void add_sample(const FrameBlock& block, std::int64_t s, double* const* sums) const {
     const double x = block.position[0][s], y = block.position[1][s], z = block.position[2][s], w = block.weight[s];
     const double u = block.velocity[0][s], v = block.velocity[1][s], axial = block.velocity[2][s];
     const double r = std::sqrt(x * x + y * y), speed = std::sqrt(u * u + v * v + axial * axial);
-    const std::int64_t cell = map_index(x, y), ring = shape_.rings.at(r), height = shape_.heights.at(y);
+    const std::optional<std::int64_t> cell = cell_at(shape_.cells, x, y), ring = shape_.rings.at(r), height = shape_.heights.at(y);
     sums[kTotals][kTotalTime] += w;
-    if (cell < 0 || ring < 0 || height < 0) {
+    if (!cell || !ring || !height) {
       sums[kTotals][kTotalOutside] += w;
       return;
     }
@@ -126,10 +123,10 @@ class ChargeFeatures {
       sums[kEndBands][kShareTime] += w;
       sums[kEndBands][kShareSpeed] += w * speed;
     }
-    sums[kHeights][kHeightMoments * height + kHeightTime] += w;
-    sums[kHeights][kHeightMoments * height + kHeightX] += w * x;
+    sums[kHeights][kHeightMoments * *height + kHeightTime] += w;
+    sums[kHeights][kHeightMoments * *height + kHeightX] += w * x;
     if (r > 0) {
-      double* polar = sums[kPolar] + kPolarMoments * (shape_.angles.at(shape_.angle(x, y)) * shape_.rings.count + ring);
+      double* polar = sums[kPolar] + kPolarMoments * (*shape_.angles.at(shape_.angle(x, y)) * shape_.rings.count + *ring);
       polar[kPolarTime] += w;
       polar[kOutward] += w * (x * u + y * v) / r;
       polar[kAround] += w * shape_.sense * (x * v - y * u) / r;
@@ -139,7 +136,7 @@ class ChargeFeatures {
       sums[kPockets][kShareSpeed] += w * speed;
       return;
     }
-    double* map = sums[kMap] + kMapMoments * cell;
+    double* map = sums[kMap] + kMapMoments * *cell;
     map[kCellTime] += w;
     map[kCellVx] += w * u;
     map[kCellVy] += w * v;
@@ -157,16 +154,18 @@ class ChargeFeatures {
   void add_flights(const FrameBlock& block, const Track& track, const std::vector<Arc>& arcs, double* const* sums) const {
     std::size_t next = 0;
     for (std::size_t i = 0; i < track.size(); ++i) {
-      const std::int64_t s = track.points[i].sample, cell = map_index(block.position[0][s], block.position[1][s]);
+      const std::int64_t s = track.points[i].sample;
+      const std::optional<std::int64_t> cell = cell_at(shape_.cells, block.position[0][s], block.position[1][s]);
       while (next < arcs.size() && arcs[next].last < i) ++next;
-      if (cell < 0) continue;
-      double* map = sums[kMap] + kMapMoments * cell;
+      if (!cell) continue;
+      double* map = sums[kMap] + kMapMoments * *cell;
       map[kCellWatched] += block.weight[s];
       if (next < arcs.size() && arcs[next].first <= i) map[kCellFlight] += block.weight[s];
     }
     const auto count = [&](FieldArray name, std::size_t i) {
-      const std::int64_t s = track.points[i].sample, bin = shape_.angles.at(shape_.angle(block.position[0][s], block.position[1][s]));
-      if (bin >= 0) sums[name][bin] += 1;
+      const std::int64_t s = track.points[i].sample;
+      const std::optional<std::int64_t> bin = shape_.angles.at(shape_.angle(block.position[0][s], block.position[1][s]));
+      if (bin) sums[name][*bin] += 1;
     };
     for (const Arc& arc : arcs) {
       if (arc.launch_seen) count(kLaunches, arc.first);
@@ -284,8 +283,8 @@ class ChargeFeatures {
         time += fields.polar(a, k)[kPolarTime];
         flow += fields.polar(a, k)[kOutward];
       }
-      occupancy[static_cast<std::size_t>(a)] = ratio(time, all) / shape_.angles.width();
-      outward[static_cast<std::size_t>(a)] = ratio(flow, time);
+      element(occupancy, a) = ratio(time, all) / shape_.angles.width();
+      element(outward, a) = ratio(flow, time);
     }
     results.add("angle_edges_deg", "deg", shape_.angles.edges(kDegrees).data(), {kAngleBins + 1},
                 "Edges of the angles from 6 o'clock, positive in the turning sense.");

@@ -10,6 +10,8 @@
 #include "analyzers/common/grid.hpp"
 #include "analyzers/common/mill.hpp"
 
+#include "millscope/element.hpp"
+
 namespace millscope::analyzers {
 
 /// The additive arrays, in this order.
@@ -69,7 +71,7 @@ inline double quantile(const std::vector<double>& histogram, const Bins& bins, d
   if (!(sum > 0)) return kNaN;
   double below = 0;
   for (std::int64_t i = 0; i < bins.count; ++i) {
-    const double here = histogram[static_cast<std::size_t>(i)];
+    const double here = element(histogram, i);
     if (below + here >= part * sum && here > 0) return bins.edge(i) + bins.width() * (part * sum - below) / here;
     below += here;
   }

@@ -18,6 +18,8 @@
 #include "analyzers/charge_features/fields.hpp"
 #include "analyzers/common/centre.hpp"
 
+#include "millscope/element.hpp"
+
 namespace millscope::analyzers {
 
 enum Region { kNothing, kEnMasse, kCascading, kCataracting, kEye, kPocket, kRegions };
@@ -26,9 +28,9 @@ enum Region { kNothing, kEnMasse, kCascading, kCataracting, kEye, kPocket, kRegi
 inline bool in_pocket(const ChargeFields& fields, double x, double y) {
   const FieldShape& shape = fields.shape();
   const double r = std::hypot(x, y);
-  const std::int64_t ring = shape.rings.at(r);
-  return shape.lifters > 0 && r > shape.radius - shape.lifters && ring >= 0 &&
-         fields.polar(shape.angles.at(shape.angle(x, y)), ring)[kPolarTime] > 0;
+  const std::optional<std::int64_t> ring = shape.rings.at(r);
+  return shape.lifters > 0 && r > shape.radius - shape.lifters && ring.has_value() &&
+         fields.polar(*shape.angles.at(shape.angle(x, y)), *ring)[kPolarTime] > 0;
 }
 
 /// Labels of all cells, row by row along y.
@@ -36,8 +38,8 @@ inline std::vector<Region> label_regions(const ChargeFields& fields, const std::
   const FieldShape& shape = fields.shape();
   const Bins& cells = shape.cells;
   const std::int64_t n = cells.count;
-  std::vector<Region> labels(static_cast<std::size_t>(n * n), kNothing);
-  const auto label = [&](std::int64_t ix, std::int64_t iy) -> Region& { return labels[static_cast<std::size_t>(iy * n + ix)]; };
+  std::vector<Region> labels(as_size(n * n), kNothing);
+  const auto label = [&](std::int64_t ix, std::int64_t iy) -> Region& { return element(labels, iy * n + ix); };
   for (std::int64_t iy = 0; iy < n; ++iy) {
     for (std::int64_t ix = 0; ix < n; ++ix) {
       const double* cell = fields.cell(ix, iy);
@@ -73,7 +75,7 @@ inline std::vector<RegionSums> sum_regions(const ChargeFields& fields, const std
   for (std::int64_t iy = 0; iy < cells.count; ++iy) {
     for (std::int64_t ix = 0; ix < cells.count; ++ix) {
       const double* cell = fields.cell(ix, iy);
-      RegionSums& region = regions[static_cast<std::size_t>(labels[static_cast<std::size_t>(iy * cells.count + ix)])];
+      RegionSums& region = element(regions, element(labels, iy * cells.count + ix));
       region.time += cell[kCellTime];
       region.speed += cell[kCellSpeed];
     }
@@ -92,7 +94,7 @@ inline double surface_angle(const ChargeFields& fields, const std::vector<Region
   double vx = 0, vy = 0;
   for (std::int64_t iy = 0; iy < cells.count; ++iy) {
     for (std::int64_t ix = 0; ix < cells.count; ++ix) {
-      if (labels[static_cast<std::size_t>(iy * cells.count + ix)] != kCascading) continue;
+      if (element(labels, iy * cells.count + ix) != kCascading) continue;
       if (std::fabs(std::remainder(shape.angle(cells.centre(ix), cells.centre(iy)) - middle, 2 * std::numbers::pi)) > std::numbers::pi / 6)
         continue;
       vx += fields.cell(ix, iy)[kCellVx];

@@ -17,6 +17,8 @@
 #include "analyzers/charge_features/fields.hpp"
 #include "analyzers/common/centre.hpp"
 
+#include "millscope/element.hpp"
+
 namespace millscope::analyzers {
 
 /// Angles in rad; NaN where the data do not say. All are NaN where less than a tenth of the stream along the shell leaves it: the charge
@@ -47,8 +49,8 @@ inline std::vector<StreamCell> rising_stream(const ChargeFields& fields, const C
   const double from = shape.angle(centre.x, centre.y), r = std::hypot(centre.x, centre.y);
   const double inner = r + kStreamStart * (shape.reach - r), speed = shape.omega * shape.reach;
   std::vector<StreamCell> cells;
-  for (std::int64_t a = shape.angles.at(from); a < shape.angles.count; ++a) {
-    for (std::int64_t k = shape.rings.at(inner); k < shape.rings.count; ++k) {
+  for (std::int64_t a = shape.angles.at(from).value_or(shape.angles.count); a < shape.angles.count; ++a) {
+    for (std::int64_t k = shape.rings.at(inner).value_or(shape.rings.count); k < shape.rings.count; ++k) {
       const double* cell = fields.polar(a, k);
       if (!(cell[kPolarTime] > 0) || shape.rings.centre(k) < inner) continue;
       cells.push_back({shape.angles.centre(a), 1 - shape.rings.centre(k) / shape.reach, cell[kPolarTime],
@@ -68,13 +70,13 @@ inline Hinge best_hinge(const std::vector<StreamCell>& cells, double b, const Bi
   struct Sums {
     double s0 = 0, s1 = 0, s2 = 0, y0 = 0, y1 = 0;
   };
-  std::vector<Sums> bins(static_cast<std::size_t>(places.count));
+  std::vector<Sums> bins(as_size(places.count));
   double all = 0;
   for (const StreamCell& cell : cells) {
     const double s = cell.angle + b * cell.depth;
-    const std::int64_t bin = s >= places.high ? places.count - 1 : places.at(s);
-    if (bin < 0) continue;
-    Sums& sum = bins[static_cast<std::size_t>(bin)];
+    const std::optional<std::int64_t> bin = s >= places.high ? places.count - 1 : places.at(s);
+    if (!bin) continue;
+    Sums& sum = element(bins, *bin);
     sum.s0 += cell.time;
     sum.s1 += cell.time * s;
     sum.s2 += cell.time * s * s;
@@ -85,7 +87,7 @@ inline Hinge best_hinge(const std::vector<StreamCell>& cells, double b, const Bi
   Hinge best;
   Sums far;
   for (std::int64_t i = places.count - 1; i >= 0; --i) {
-    const Sums& here = bins[static_cast<std::size_t>(i)];
+    const Sums& here = element(bins, i);
     far.s0 += here.s0, far.s1 += here.s1, far.s2 += here.s2, far.y0 += here.y0, far.y1 += here.y1;
     const double t = places.edge(i), square = far.s2 - t * (2 * far.s1 - t * far.s0), mixed = far.y1 - t * far.y0;
     if (!(mixed > 0 && square > 0 && far.s0 > kLeastSupport * all) || mixed > kSteepest * square) continue;
@@ -114,7 +116,7 @@ inline double exchange(const ChargeFields& fields, const std::vector<double>& fl
   const FieldShape& shape = fields.shape();
   double sum = 0, largest = 0, stream = 0;
   for (std::int64_t a = from; a < turn; ++a) {
-    sum += flow[static_cast<std::size_t>(a)];
+    sum += element(flow, a);
     largest = std::fmax(largest, sum);
   }
   for (std::int64_t k = 0; k < shape.rings.count; ++k) {
@@ -127,10 +129,10 @@ inline double exchange(const ChargeFields& fields, const std::vector<double>& fl
 /// Net flow through the zone next to the shell per angle: outward positive. m
 inline std::vector<double> shell_flow(const ChargeFields& fields) {
   const FieldShape& shape = fields.shape();
-  std::vector<double> flow(static_cast<std::size_t>(shape.angles.count), 0.0);
+  std::vector<double> flow(as_size(shape.angles.count), 0.0);
   for (std::int64_t a = 0; a < shape.angles.count; ++a) {
     for (std::int64_t k = 0; k < shape.rings.count; ++k) {
-      if (shape.rings.centre(k) > kShellZone * shape.reach) flow[static_cast<std::size_t>(a)] += fields.polar(a, k)[kOutward];
+      if (shape.rings.centre(k) > kShellZone * shape.reach) element(flow, a) += fields.polar(a, k)[kOutward];
     }
   }
   return flow;
@@ -142,14 +144,14 @@ inline double flow_quantile(const std::vector<double>& flow, const Bins& angles,
                             double part) {
   double sum = 0, largest = 0;
   for (std::int64_t i = 0; i < count; ++i) {
-    sum += flow[static_cast<std::size_t>(from + i * step)];
+    sum += element(flow, from + i * step);
     largest = std::fmax(largest, sum);
   }
   if (!(largest > 0)) return kNaN;
   double before = 0;
   for (std::int64_t i = 0; i < count; ++i) {
     const std::int64_t bin = from + i * step;
-    const double after = before + flow[static_cast<std::size_t>(bin)];
+    const double after = before + element(flow, bin);
     if (after >= part * largest) {
       const double inside = (part * largest - before) / (after - before);
       return step > 0 ? angles.edge(bin) + inside * angles.width() : angles.edge(bin + 1) - inside * angles.width();
@@ -163,8 +165,8 @@ inline double flow_quantile(const std::vector<double>& flow, const Bins& angles,
 
 inline ShellFeatures find_shell_features(const ChargeFields& fields, const Centre& centre) {
   const Bins& angles = fields.shape().angles;
-  const std::int64_t turn = angles.at(fields.shape().angle(centre.x, centre.y)), top = angles.count - 1,
-                     bottom = angles.at(-2 * std::numbers::pi / 3);
+  const std::int64_t turn = *angles.at(fields.shape().angle(centre.x, centre.y)), top = angles.count - 1,
+                     bottom = *angles.at(-2 * std::numbers::pi / 3);
   std::vector<double> flow = detail::shell_flow(fields);
   ShellFeatures found;
   if (detail::exchange(fields, flow, bottom, turn) < detail::kLeastExchange) return found;
@@ -181,15 +183,15 @@ inline ShellFeatures find_shell_features(const ChargeFields& fields, const Centr
 /// the charge rises or all falls. It maximises the flow between it and the shell, ∫ v_θ occupancy dr.
 inline std::vector<double> equilibrium_surface(const ChargeFields& fields, std::int64_t merge) {
   const FieldShape& shape = fields.shape();
-  std::vector<double> surface(static_cast<std::size_t>(shape.angles.count / merge), kNaN);
+  std::vector<double> surface(as_size(shape.angles.count / merge), kNaN);
   constexpr double kLeastFall = 0.02;  // of the rising flow: less is noise
   for (std::size_t sector = 0; sector < surface.size(); ++sector) {
-    std::vector<double> flow(static_cast<std::size_t>(shape.rings.count), 0.0), time(flow);
+    std::vector<double> flow(as_size(shape.rings.count), 0.0), time(flow);
     for (std::int64_t a = 0; a < merge; ++a) {
       for (std::int64_t k = 0; k < shape.rings.count; ++k) {
         const double* cell = fields.polar(static_cast<std::int64_t>(sector) * merge + a, k);
-        flow[static_cast<std::size_t>(k)] += cell[kAround];
-        time[static_cast<std::size_t>(k)] += cell[kPolarTime];
+        element(flow, k) += cell[kAround];
+        element(time, k) += cell[kPolarTime];
       }
     }
     double sum = 0, largest = 0;

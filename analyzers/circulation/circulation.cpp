@@ -15,6 +15,8 @@
 #include "analyzers/circulation/statistics.hpp"
 #include "analyzers/common/centre.hpp"
 
+#include "millscope/element.hpp"
+
 namespace millscope::analyzers {
 namespace {
 
@@ -85,7 +87,7 @@ class Circulation {
       resample(block, track, step_, period_, series);
       add_spread(series[kSignalZ], spread_lags_, sums[kSpread]);
       for (std::int64_t signal = 0; signal < kSignals; ++signal) {
-        add_correlation(series[static_cast<std::size_t>(signal)], lags_, sums[kCorrelation] + kCorrelationMoments * lags_ * signal);
+        add_correlation(element(series, signal), lags_, sums[kCorrelation] + kCorrelationMoments * lags_ * signal);
       }
     });
   }
@@ -104,12 +106,12 @@ class Circulation {
     const Bins cells(-kHalf * radius_, kHalf * radius_, kCells);
     std::vector<double> map(3 * kCells * kCells, 0.0);
     for (std::int64_t s = block.first[0]; s < block.first[block.frame_count]; ++s) {
-      const std::int64_t ix = cells.at(block.position[0][s]), iy = cells.at(block.position[1][s]);
-      if (ix < 0 || iy < 0 || !(block.weight[s] > 0)) continue;
-      double* cell = map.data() + 3 * (iy * kCells + ix);
-      cell[0] += block.weight[s];
-      cell[1] += block.weight[s] * block.velocity[0][s];
-      cell[2] += block.weight[s] * block.velocity[1][s];
+      const std::optional<std::int64_t> cell = cell_at(cells, block.position[0][s], block.position[1][s]);
+      if (!cell || !(block.weight[s] > 0)) continue;
+      double* sum = map.data() + 3 * *cell;
+      sum[0] += block.weight[s];
+      sum[1] += block.weight[s] * block.velocity[0][s];
+      sum[2] += block.weight[s] * block.velocity[1][s];
     }
     return find_centre(FlowMap{cells, map.data(), 3, radius_, sense_});
   }
@@ -118,12 +120,10 @@ class Circulation {
     sums[kTotals][kAngle] += found.angle;
     sums[kTotals][kFollowed] += span;
     for (const double time : found.completed) {
-      const std::int64_t bin = times_.at(time);
-      sums[bin < 0 ? kUnfinished : kCompleted][bin < 0 ? times_.count : bin] += 1;
+      const std::optional<std::int64_t> bin = times_.at(time);
+      sums[bin ? kCompleted : kUnfinished][bin.value_or(times_.count)] += 1;
     }
-    if (found.unfinished < 0) return;
-    const std::int64_t bin = times_.at(found.unfinished);
-    sums[kUnfinished][bin < 0 ? times_.count : bin] += 1;
+    if (found.unfinished) sums[kUnfinished][times_.at(*found.unfinished).value_or(times_.count)] += 1;
   }
 
   void add_rates(Results& results, const double* const* sums) const {
@@ -141,7 +141,7 @@ class Circulation {
   }
 
   void add_times(Results& results, const double* const* sums) const {
-    const auto bins = static_cast<std::size_t>(times_.count);
+    const auto bins = as_size(times_.count);
     double completed = 0, unfinished = 0;
     for (std::size_t i = 0; i <= bins; ++i) completed += sums[kCompleted][i], unfinished += sums[kUnfinished][i];
     results.add("circulations_completed", "1", completed, "Circulations seen from passage to passage.", kBookkeeping | kNotNegative);
@@ -177,7 +177,7 @@ class Circulation {
   }
 
   void add_correlations(Results& results, const double* const* sums) const {
-    std::vector<double> lag(static_cast<std::size_t>(lags_));
+    std::vector<double> lag(as_size(lags_));
     for (std::size_t i = 0; i < lag.size(); ++i) lag[i] = static_cast<double>(i) * step_;
     results.add("lag", "s", lag.data(), {lag.size()}, "Lags of the correlations.");
     const double time = sums[kTotals][kTime] - sums[kTotals][kCoarse];

@@ -4,12 +4,15 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "analyzers/common/angle.hpp"
 #include "analyzers/common/grid.hpp"
 #include "analyzers/common/mill.hpp"
 #include "analyzers/common/tracks.hpp"
+
+#include "millscope/element.hpp"
 
 namespace millscope::analyzers {
 
@@ -49,7 +52,7 @@ inline void resample(const FrameBlock& block, const Track& track, double step, d
     for (int signal = 0; signal < kSignals; ++signal) {
       double a = value(i, signal), b = value(i + 1, signal);
       if (signal == kSignalZ) a += turns * period, b += (turns + jump(i)) * period;
-      series[static_cast<std::size_t>(signal)].push_back(a + part * (b - a));
+      element(series, signal).push_back(a + part * (b - a));
     }
   }
 }
@@ -94,7 +97,7 @@ inline void add_spread(const std::vector<double>& z, const std::vector<std::int6
   for (std::size_t l = 0; l < lags.size(); ++l) {
     double* sum = sums + kSpreadMoments * static_cast<std::int64_t>(l);
     for (std::int64_t i = 0; i + lags[l] < n; i += std::max<std::int64_t>(1, lags[l] / 4)) {
-      const double moved = z[static_cast<std::size_t>(i + lags[l])] - z[static_cast<std::size_t>(i)];
+      const double moved = element(z, i + lags[l]) - element(z, i);
       sum[kSpreadPairs] += 1;
       sum[kSpreadSum] += moved;
       sum[kSpreadSquare] += moved * moved;
@@ -105,15 +108,16 @@ inline void add_spread(const std::vector<double>& z, const std::vector<std::int6
 /// Circulations of one track about a centre. A circulation goes from one passage of the half-line from the centre away from the mill's
 /// axis to the next one after a whole turn about the centre; going back and forth over the line counts once.
 struct Circulations {
-  double angle = 0;               ///< turned about the centre in the mill's sense over the track, rad
-  std::vector<double> completed;  ///< s
-  double unfinished = -1;         ///< time since the last passage when the track ended, s; −1: no passage
+  double angle = 0;                  ///< turned about the centre in the mill's sense over the track, rad
+  std::vector<double> completed;     ///< s
+  std::optional<double> unfinished;  ///< time since the last passage when the track ended, s; none without a passage
 };
 
 inline Circulations follow(const FrameBlock& block, const Track& track, double sense, double centre_x, double centre_y) {
   Circulations found;
   const double line = std::atan2(centre_y, sense * centre_x);
-  double angle = 0, before = 0, highest = 0, last = -1;
+  double angle = 0, before = 0, highest = 0;
+  std::optional<double> last;  // passage, s
   for (std::size_t i = 0; i < track.size(); ++i) {
     const std::int64_t s = track.points[i].sample;
     const double now = angle_of(block.position[1][s] - centre_y, sense * (block.position[0][s] - centre_x)) - line;
@@ -128,7 +132,7 @@ inline Circulations follow(const FrameBlock& block, const Track& track, double s
     const double turn = 2 * std::numbers::pi * (std::floor(highest / (2 * std::numbers::pi)) + 1);
     if (next >= turn) {
       const double t = track.time(i - 1) + (track.time(i) - track.time(i - 1)) * (turn - angle) / (next - angle);
-      if (last >= 0) found.completed.push_back(t - last);
+      if (last) found.completed.push_back(t - *last);
       last = t;
     }
     highest = std::fmax(highest, next);
@@ -136,7 +140,7 @@ inline Circulations follow(const FrameBlock& block, const Track& track, double s
     before = now;
   }
   found.angle += angle;
-  if (last >= 0) found.unfinished = track.time(track.size() - 1) - last;
+  if (last) found.unfinished = track.time(track.size() - 1) - *last;
   return found;
 }
 

@@ -5,6 +5,8 @@
 
 #include "analyzers/circulation/series.hpp"
 
+#include "millscope/element.hpp"
+
 namespace millscope::analyzers {
 
 /// Share of circulations that last longer than each edge (Kaplan & Meier 1958): Π (1 − d_i/n_i), d_i circulations completed in bin i, n_i
@@ -28,7 +30,7 @@ inline std::vector<double> survival(const double* completed, const double* unfin
 /// Time that the share `part` of circulations is shorter than; NaN where the data do not reach.
 inline double survival_quantile(const std::vector<double>& share, const Bins& bins, double part) {
   for (std::int64_t i = 0; i < bins.count; ++i) {
-    const double before = share[static_cast<std::size_t>(i)], after = share[static_cast<std::size_t>(i) + 1];
+    const double before = element(share, i), after = share[as_size(i) + 1];
     if (before > 1 - part && after <= 1 - part) return bins.edge(i) + bins.width() * (before - 1 + part) / (before - after);
   }
   return kNaN;
@@ -64,14 +66,14 @@ inline Spread find_spread(const std::vector<std::int64_t>& lags, double step, co
 
 /// Correlation with itself against the lag; NaN where no pair was seen.
 inline std::vector<double> correlation(const double* sums, std::int64_t lags) {
-  std::vector<double> all(static_cast<std::size_t>(lags), kNaN);
+  std::vector<double> all(as_size(lags), kNaN);
   for (std::int64_t l = 0; l < lags; ++l) {
     const double* sum = sums + kCorrelationMoments * l;
     const double n = sum[kPairs];
     if (!(n > 0)) continue;
     const double head = sum[kHead] / n, tail = sum[kTail] / n;
     const double spread = std::sqrt((sum[kHeadSquare] / n - head * head) * (sum[kTailSquare] / n - tail * tail));
-    if (spread > 0) all[static_cast<std::size_t>(l)] = (sum[kProduct] / n - head * tail) / spread;
+    if (spread > 0) element(all, l) = (sum[kProduct] / n - head * tail) / spread;
   }
   return all;
 }

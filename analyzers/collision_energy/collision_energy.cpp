@@ -9,6 +9,7 @@
 
 #include "analyzers/common/grid.hpp"
 #include "millscope/analyzer_adapter.hpp"
+#include "millscope/element.hpp"
 
 namespace millscope::analyzers {
 namespace {
@@ -50,7 +51,7 @@ class CollisionEnergy {
   }
 
   void finish(const double* const* sums, Results& results) const {
-    const auto bins = static_cast<std::size_t>(bins_);
+    const auto bins = as_size(bins_);
     const double time = *sums[1];
     results.add("energy_edges", "J", edges_.data(), {bins + 1},
                 "Edges of the bins of impact energy; the outer bins hold what lies beyond, too.");
@@ -71,7 +72,7 @@ class CollisionEnergy {
 
  private:
   void add_pair(Results& results, const std::string& name, const std::string& pair, const double* counts, double time) const {
-    const auto bins = static_cast<std::size_t>(bins_);
+    const auto bins = as_size(bins_);
     std::vector<double> rate(bins), power(bins);
     double total = 0, energy = 0;
     for (std::size_t i = 0; i < bins; ++i) {

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
+
+#include "millscope/element.hpp"
 
 namespace millscope::analyzers {
 
@@ -19,10 +22,10 @@ struct Bins {
   Bins() = default;
   Bins(double from, double to, std::int64_t bins) : low(from), high(to), count(bins), per_unit(static_cast<double>(bins) / (to - from)) {}
 
-  /// Number of the bin that holds `value`; −1 outside and for NaN.
-  std::int64_t at(double value) const {
+  /// Number of the bin that holds `value`; none outside and for NaN.
+  std::optional<std::int64_t> at(double value) const {
     const double place = (value - low) * per_unit;
-    if (!(place >= 0 && place <= static_cast<double>(count))) return -1;
+    if (!(place >= 0 && place <= static_cast<double>(count))) return std::nullopt;
     const auto bin = static_cast<std::int64_t>(place);
     return bin - (bin == count ? 1 : 0);
   }
@@ -39,11 +42,18 @@ struct Bins {
   double centre(std::int64_t i) const { return low + (static_cast<double>(i) + 0.5) * width(); }
   /// count + 1 numbers, each multiplied by `factor` (for another unit).
   std::vector<double> edges(double factor = 1) const {
-    std::vector<double> all(static_cast<std::size_t>(count) + 1);
-    for (std::int64_t i = 0; i <= count; ++i) all[static_cast<std::size_t>(i)] = factor * edge(i);
+    std::vector<double> all(as_size(count) + 1);
+    for (std::int64_t i = 0; i <= count; ++i) element(all, i) = factor * edge(i);
     return all;
   }
 };
+
+/// Number of the cell that holds (x, y) in a square of bins, row by row along y; none outside.
+inline std::optional<std::int64_t> cell_at(const Bins& bins, double x, double y) {
+  const std::optional<std::int64_t> column = bins.at(x), row = bins.at(y);
+  if (!column || !row) return std::nullopt;
+  return *row * bins.count + *column;
+}
 
 /// sum/weight; NaN where nothing was seen.
 inline double ratio(double sum, double weight) { return weight > 0 ? sum / weight : kNaN; }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "millscope/analyzer.hpp"
+#include "millscope/element.hpp"
 
 namespace millscope::analyzers {
 
@@ -30,11 +31,11 @@ void for_each_track(const FrameBlock& block, std::int64_t stride, Visit&& visit)
   if (end <= begin) return;
   const auto [low, high] = std::minmax_element(block.id + begin, block.id + end);
   const std::int64_t lowest = *low;
-  const auto beads = static_cast<std::size_t>(*high - lowest) + 1;
+  const auto beads = as_size(*high - lowest) + 1;
 
   // Counting sort by bead: where each bead's samples start, then its frames and samples in time order.
   std::vector<std::size_t> start(beads + 1, 0);
-  for (std::int64_t s = begin; s < end; ++s) start[static_cast<std::size_t>(block.id[s] - lowest) + 1] += block.id[s] % stride == 0;
+  for (std::int64_t s = begin; s < end; ++s) start[as_size(block.id[s] - lowest) + 1] += block.id[s] % stride == 0;
   for (std::size_t b = 0; b < beads; ++b) start[b + 1] += start[b];
   struct Place {
     std::int32_t frame;
@@ -45,8 +46,7 @@ void for_each_track(const FrameBlock& block, std::int64_t stride, Visit&& visit)
   for (std::int64_t f = 0; f < block.frame_count; ++f) {
     for (std::int64_t s = block.first[f]; s < block.first[f + 1]; ++s) {
       if (block.id[s] % stride != 0) continue;
-      places[next[static_cast<std::size_t>(block.id[s] - lowest)]++] = {static_cast<std::int32_t>(f),
-                                                                        static_cast<std::int32_t>(s - block.first[f])};
+      places[element(next, block.id[s] - lowest)++] = {static_cast<std::int32_t>(f), static_cast<std::int32_t>(s - block.first[f])};
     }
   }
 

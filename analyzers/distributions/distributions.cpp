@@ -12,6 +12,8 @@
 #include "analyzers/common/grid.hpp"
 #include "analyzers/common/mill.hpp"
 
+#include "millscope/element.hpp"
+
 namespace millscope::analyzers {
 namespace {
 
@@ -105,7 +107,7 @@ class Distributions {
   }
 
   void add_distribution(Results& results, const Axis& axis, const double* slots) const {
-    const auto count = static_cast<std::size_t>(axis.bins.count);
+    const auto count = as_size(axis.bins.count);
     const double all = total(slots, axis.bins);
     std::vector<double> percent(count), cumulative(count + 1);
     double below = slots[0];
@@ -129,10 +131,10 @@ class Distributions {
   void add_radial_density(Results& results, const double* slots) const {
     const Bins& rings = axes_[kR].bins;
     const double all = total(slots, rings);
-    std::vector<double> density(static_cast<std::size_t>(rings.count));
+    std::vector<double> density(as_size(rings.count));
     for (std::int64_t i = 0; i < rings.count; ++i) {
       const double inner = rings.edge(i), outer = rings.edge(i + 1);
-      density[static_cast<std::size_t>(i)] = ratio(slots[i + 1], all) / (std::numbers::pi * (outer * outer - inner * inner));
+      element(density, i) = ratio(slots[i + 1], all) / (std::numbers::pi * (outer * outer - inner * inner));
     }
     results.add("radial_density", "1/m^2", density.data(), {density.size()}, "Fraction of the beads' time per area of the ring.",
                 {"r_edges"});

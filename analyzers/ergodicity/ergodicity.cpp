@@ -9,11 +9,14 @@
 // would make it: a bead that stays on its streamline for a while visits the same cells again.
 #include <array>
 #include <numbers>
+#include <optional>
 
 #include "analyzers/common/grid.hpp"
 #include "analyzers/common/mill.hpp"
 #include "analyzers/common/tracks.hpp"
 #include "analyzers/ergodicity/fluctuation.hpp"
+
+#include "millscope/element.hpp"
 
 namespace millscope::analyzers {
 namespace {
@@ -77,7 +80,7 @@ class Ergodicity {
 
   void finish(const double* const* sums, Results& results) const {
     std::array<Fluctuation, kQuantities> found;
-    for (std::int64_t q = 0; q < kQuantities; ++q) found[static_cast<std::size_t>(q)] = fluctuation(sums, q);
+    for (std::int64_t q = 0; q < kQuantities; ++q) element(found, q) = fluctuation(sums, q);
     double verdict = 1;
     for (const Fluctuation& f : found) verdict = std::fmin(verdict, f.verdict);
     const bool lasting = verdict < 0;
@@ -89,11 +92,6 @@ class Ergodicity {
   }
 
  private:
-  static std::int64_t cell(const Bins& bins, double x, double y) {
-    const std::int64_t ix = bins.at(x), iy = bins.at(y);
-    return ix < 0 || iy < 0 ? -1 : iy * bins.count + ix;
-  }
-
   void add_sample(const FrameBlock& block, std::int64_t s, std::int64_t window, double* const* sums) const {
     const double x = block.position[0][s], y = block.position[1][s], w = block.weight[s];
     const double u = block.velocity[0][s], v = block.velocity[1][s], axial = block.velocity[2][s];
@@ -104,35 +102,37 @@ class Ergodicity {
       moment[1] += w * f[q];
       moment[2] += w * f[q] * f[q];
     }
-    const std::int64_t fine = cell(cells_, x, y);
-    if (fine >= 0) sums[kMap][fine] += w;
+    const std::optional<std::int64_t> fine = cell_at(cells_, x, y);
+    if (fine) sums[kMap][*fine] += w;
     if (block.id[s] % stride_ != 0) return;
-    const std::int64_t bead = block.id[s] / stride_, coarse = cell(coarse_, x, y), single = single_of(bead);
+    const std::int64_t bead = block.id[s] / stride_;
+    const std::optional<std::int64_t> coarse = cell_at(coarse_, x, y), single = single_of(bead);
     double* sum = sums[kWindows] + (window * beads_ + bead) * (kQuantities + 1);
     sum[0] += w;
     for (std::int64_t q = 0; q < kQuantities; ++q) sum[q + 1] += w * f[q];
-    if (coarse >= 0) sums[kBeadCoarse][bead * kCoarse * kCoarse + coarse] += w;
-    if (fine >= 0 && single >= 0) sums[kSingleMaps][single * cells_.count * cells_.count + fine] += w;
+    if (coarse) sums[kBeadCoarse][bead * kCoarse * kCoarse + *coarse] += w;
+    if (fine && single) sums[kSingleMaps][*single * cells_.count * cells_.count + *fine] += w;
   }
 
-  /// Number of the single bead, or −1. Singles are spread evenly over the followed beads.
-  std::int64_t single_of(std::int64_t bead) const {
+  /// Number of the single bead, if it is one. Singles are spread evenly over the followed beads.
+  std::optional<std::int64_t> single_of(std::int64_t bead) const {
     const std::int64_t every = beads_ / singles_;
-    return bead % every == 0 && bead / every < singles_ ? bead / every : -1;
+    if (bead % every != 0 || bead / every >= singles_) return std::nullopt;
+    return bead / every;
   }
 
   static void add_visits(const FrameBlock& block, const Track& track, const Bins& bins, double* sums) {
-    std::int64_t here = -1;
+    std::optional<std::int64_t> here;
     double dwell = 0;
     const auto leave = [&] {
-      if (here < 0 || !(dwell > 0)) return;
-      double* sum = sums + kVisitMoments * here;
+      if (!here || !(dwell > 0)) return;
+      double* sum = sums + kVisitMoments * *here;
       sum[kVisitTime] += dwell;
       sum[kVisits] += 1;
       sum[kVisitSquare] += dwell * dwell;
     };
     for (const TrackPoint& point : track.points) {
-      const std::int64_t now = cell(bins, block.position[0][point.sample], block.position[1][point.sample]);
+      const std::optional<std::int64_t> now = cell_at(bins, block.position[0][point.sample], block.position[1][point.sample]);
       if (now != here) {
         leave();
         here = now;
@@ -196,9 +196,9 @@ class Ergodicity {
     results.add("time_per_bead", "s", seconds, "Mean time over which each bead was followed.", kBookkeeping | kNotNegative);
     const double per_arm = context_.charge_mass * context_.gravity * std::fabs(context_.omega);
     if (!(per_arm > 0)) return;
-    std::vector<double> single(static_cast<std::size_t>(singles_), kNaN);
+    std::vector<double> single(as_size(singles_), kNaN);
     for (std::int64_t bead = 0; bead < beads_; ++bead) {
-      if (single_of(bead) >= 0) single[static_cast<std::size_t>(single_of(bead))] = per_arm * means[static_cast<std::size_t>(bead)];
+      if (const auto number = single_of(bead)) element(single, *number) = per_arm * element(means, bead);
     }
     results.add("power_all", "W", per_arm * arm, "M g <x> |Omega| of the whole charge.");
     results.add("power_single", "W", single.data(), {single.size()}, "The same from each of the single beads.");
@@ -206,7 +206,7 @@ class Ergodicity {
 
   void add_maps(Results& results, const double* const* sums) const {
     const std::int64_t n = cells_.count;
-    const auto size = static_cast<std::size_t>(n * n), s = static_cast<std::size_t>(singles_), side = static_cast<std::size_t>(n);
+    const auto size = as_size(n * n), s = as_size(singles_), side = as_size(n);
     std::vector<double> all(sums[kMap], sums[kMap] + size), single(sums[kSingleMaps], sums[kSingleMaps] + size * s);
     normalise(all.data(), size);
     for (std::size_t i = 0; i < s; ++i) normalise(single.data() + i * size, size);
@@ -243,7 +243,7 @@ class Ergodicity {
   }
 
   std::vector<double> marginal(const double* map, bool along_x) const {
-    const auto n = static_cast<std::size_t>(cells_.count);
+    const auto n = as_size(cells_.count);
     std::vector<double> percent(n, 0.0);
     for (std::size_t iy = 0; iy < n; ++iy) {
       for (std::size_t ix = 0; ix < n; ++ix) percent[along_x ? ix : iy] += 100 * map[iy * n + ix];
@@ -254,7 +254,7 @@ class Ergodicity {
   /// Between-bead variance of the coarse cells' occupancy over what chance visits of the same lengths would give.
   double inflation(const double* const* sums) const {
     constexpr std::size_t kCells = kCoarse * kCoarse;
-    std::vector<double> time(static_cast<std::size_t>(beads_), 0.0);
+    std::vector<double> time(as_size(beads_), 0.0);
     double all = 0, per_bead = 0;
     for (std::size_t bead = 0; bead < time.size(); ++bead) {
       for (std::size_t c = 0; c < kCells; ++c) time[bead] += sums[kBeadCoarse][bead * kCells + c];
@@ -275,7 +275,7 @@ class Ergodicity {
 
   void add_cell_times(Results& results, const double* const* sums) const {
     constexpr double kError = 0.1;
-    const auto n = static_cast<std::size_t>(cells_.count);
+    const auto n = as_size(cells_.count);
     const double factor = inflation(sums);
     std::vector<double> needed(n * n, kNaN);
     double all = 0, weighted = 0, weight = 0;

@@ -23,6 +23,8 @@
 
 #include "analyzers/common/grid.hpp"
 
+#include "millscope/element.hpp"
+
 namespace millscope::analyzers {
 
 /// Sums per window and bead of one quantity: time (s) and time × f, `stride` numbers apart.
@@ -36,11 +38,11 @@ struct WindowSums {
 
 /// Mean of f over windows from … to − 1, per bead; NaN where a bead was not seen.
 inline std::vector<double> bead_means(const WindowSums& sums, std::int64_t from, std::int64_t to) {
-  std::vector<double> means(static_cast<std::size_t>(sums.beads));
+  std::vector<double> means(as_size(sums.beads));
   for (std::int64_t bead = 0; bead < sums.beads; ++bead) {
     double time = 0, value = 0;
     for (std::int64_t w = from; w < to; ++w) time += sums.t(w, bead), value += sums.v(w, bead);
-    means[static_cast<std::size_t>(bead)] = ratio(value, time);
+    element(means, bead) = ratio(value, time);
   }
   return means;
 }
@@ -74,7 +76,7 @@ struct Fluctuation {
 namespace detail {
 
 inline void add_metric(const WindowSums& sums, Fluctuation& out) {
-  std::vector<double> time(static_cast<std::size_t>(sums.beads), 0.0), value(time), means(time);
+  std::vector<double> time(as_size(sums.beads), 0.0), value(time), means(time);
   for (std::int64_t w = 0; w < sums.windows; ++w) {
     double elapsed = 0, seen = 0;
     for (std::size_t bead = 0; bead < time.size(); ++bead) {
@@ -109,7 +111,7 @@ inline void add_decay(double instant_variance, Fluctuation& out) {
 inline double memory_within(const WindowSums& sums, double window, double between) {
   constexpr double kStill = 1e-3;  // of the variance between beads: they stand still in f
   const std::vector<double> means = bead_means(sums, 0, sums.windows);
-  const auto beads = static_cast<std::size_t>(sums.beads), windows = static_cast<std::size_t>(sums.windows);
+  const auto beads = as_size(sums.beads), windows = as_size(sums.windows);
   std::vector<double> deviation(windows * beads);
   for (std::size_t i = 0; i < deviation.size(); ++i) {
     const auto w = static_cast<std::int64_t>(i / beads), bead = static_cast<std::int64_t>(i % beads);

@@ -10,11 +10,14 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <optional>
 
 #include "analyzers/common/flight.hpp"
 #include "analyzers/common/grid.hpp"
 #include "analyzers/common/mill.hpp"
 #include "analyzers/free_flight/arc_fit.hpp"
+
+#include "millscope/element.hpp"
 
 namespace millscope::analyzers {
 namespace {
@@ -46,7 +49,7 @@ class FreeFlight {
         trim_(p.number("trim")),
         exact_(p.number("exact")),
         roughest_(p.number("roughest")),
-        least_points_(static_cast<std::size_t>(p.integer("least_points"))),
+        least_points_(as_size(p.integer("least_points"))),
         stride_(even_stride(context.largest_id, p.integer("beads"))),
         angles_(-std::numbers::pi, std::numbers::pi, kAngleBins) {}
 
@@ -90,7 +93,7 @@ class FreeFlight {
    public:
     explicit Locations(const FrameBlock& block) : block_(&block) {
       if ((block.has & kHasLocations) == 0) return;
-      order_.resize(static_cast<std::size_t>(block.location_count));
+      order_.resize(as_size(block.location_count));
       for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<std::int64_t>(i);
       std::sort(order_.begin(), order_.end(), [&](std::int64_t a, std::int64_t b) {
         return std::pair(block.location_id[a], block.location_time[a]) < std::pair(block.location_id[b], block.location_time[b]);
@@ -155,8 +158,8 @@ class FreeFlight {
   }
 
   void count_angle(const FrameBlock& block, std::int64_t s, double* counts) const {
-    const std::int64_t bin = angles_.at(std::atan2(sense_ * block.position[0][s], -block.position[1][s]));
-    if (bin >= 0) counts[bin] += 1;
+    const std::optional<std::int64_t> bin = angles_.at(std::atan2(sense_ * block.position[0][s], -block.position[1][s]));
+    if (bin) counts[*bin] += 1;
   }
 
   static void add_counts(Results& results, const double* t) {
@@ -214,7 +217,7 @@ class FreeFlight {
     double all = 0, below = 0, median = kNaN;
     for (std::int64_t i = 0; i < kAngleBins; ++i) all += counts[i];
     for (std::int64_t i = 0; i < kAngleBins; ++i) {
-      density[static_cast<std::size_t>(i)] = ratio(counts[i], all) / angles_.width();
+      element(density, i) = ratio(counts[i], all) / angles_.width();
       if (below < 0.5 * all && below + counts[i] >= 0.5 * all) median = angles_.edge(i) + angles_.width() * (0.5 * all - below) / counts[i];
       below += counts[i];
     }

@@ -8,12 +8,15 @@
 // Σ v̂·Δv / Σ Δt by speed, v̂ the direction of the mean of both velocities: what brakes fast beads.
 #include <algorithm>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "analyzers/common/angle.hpp"
 #include "analyzers/common/grid.hpp"
 #include "analyzers/common/mill.hpp"
 #include "analyzers/common/tracks.hpp"
+
+#include "millscope/element.hpp"
 
 namespace millscope::analyzers {
 namespace {
@@ -56,8 +59,8 @@ class MeanAcceleration {
   }
 
   void finish(const double* const* sums, Results& results) const {
-    const auto rings = static_cast<std::size_t>(rings_.count), sectors = static_cast<std::size_t>(sectors_.count);
-    const auto speeds = static_cast<std::size_t>(speeds_.count);
+    const auto rings = as_size(rings_.count), sectors = as_size(sectors_.count);
+    const auto speeds = as_size(speeds_.count);
     const std::size_t cells = rings * sectors;
     std::vector<double> x(cells), y(cells), vx(cells), vy(cells), time(cells), along(speeds);
     for (std::size_t i = 0; i < cells; ++i) {
@@ -81,25 +84,25 @@ class MeanAcceleration {
 
  private:
   void step(const FrameBlock& block, const Track& track, std::size_t i, double* const* sums) const {
-    const auto before = static_cast<std::size_t>(track.points[i - 1].sample), after = static_cast<std::size_t>(track.points[i].sample);
+    const std::int64_t before = track.points[i - 1].sample, after = track.points[i].sample;
     const double duration = track.time(i) - track.time(i - 1);
     const double z = 0.5 * (block.position[2][before] + block.position[2][after]);
     if (!(duration > 0) || !range_.contains(z)) return;
     const double x = 0.5 * (block.position[0][before] + block.position[0][after]),
                  y = 0.5 * (block.position[1][before] + block.position[1][after]);
     const double dx = block.velocity[0][after] - block.velocity[0][before], dy = block.velocity[1][after] - block.velocity[1][before];
-    const std::int64_t ring = rings_.at(std::hypot(x, y)), sector = sectors_.at(angle_of(sense_ * x, -y));
+    const std::optional<std::int64_t> ring = rings_.at(std::hypot(x, y)), sector = sectors_.at(angle_of(sense_ * x, -y));
     const double vx = 0.5 * (block.velocity[0][before] + block.velocity[0][after]),
                  vy = 0.5 * (block.velocity[1][before] + block.velocity[1][after]);
-    if (ring >= 0 && sector >= 0) {
-      double* m = sums[0] + (ring * sectors_.count + sector) * kMoments;
+    if (ring && sector) {
+      double* m = sums[0] + (*ring * sectors_.count + *sector) * kMoments;
       m[kTime] += duration, m[kX] += dx, m[kY] += dy, m[kVx] += vx * duration, m[kVy] += vy * duration;
     }
     const double speed = std::hypot(vx, vy);
-    const std::int64_t bin = shell_speed_ > 0 ? speeds_.at(speed / shell_speed_) : -1;
-    if (bin < 0 || !(speed > 0)) return;
-    sums[1][bin * kSpeedMoments + kSpeedTime] += duration;
-    sums[1][bin * kSpeedMoments + kAlong] += (dx * vx + dy * vy) / speed;
+    const std::optional<std::int64_t> bin = shell_speed_ > 0 ? speeds_.at(speed / shell_speed_) : std::nullopt;
+    if (!bin || !(speed > 0)) return;
+    sums[1][*bin * kSpeedMoments + kSpeedTime] += duration;
+    sums[1][*bin * kSpeedMoments + kAlong] += (dx * vx + dy * vy) / speed;
   }
 
   AxialRange range_;

@@ -52,13 +52,14 @@ class Cells {
   const Bins& middle() const { return middle_; }
   const Bins& slow() const { return slow_; }
 
-  /// Number of the cell; −1 outside.
+  /// Number of the cell; none outside.
   template <bool polar, bool axial>
-  std::int64_t at(double x, double y, double z) const {
-    const std::int64_t a = polar ? fast_.at(angle_of(sense_ * x, -y)) : fast_.at(x);
-    const std::int64_t b = polar ? middle_.at(std::sqrt(x * x + y * y)) : middle_.at(y);
-    const std::int64_t c = axial ? slow_.at(z) : 0;
-    return (a | b | c) < 0 ? -1 : (c * middle_.count + b) * fast_.count + a;
+  std::optional<std::int64_t> at(double x, double y, double z) const {
+    const std::optional<std::int64_t> a = polar ? fast_.at(angle_of(sense_ * x, -y)) : fast_.at(x);
+    const std::optional<std::int64_t> b = polar ? middle_.at(std::sqrt(x * x + y * y)) : middle_.at(y);
+    const std::optional<std::int64_t> c = axial ? slow_.at(z) : 0;
+    if (!a || !b || !c) return std::nullopt;
+    return (*c * middle_.count + *b) * fast_.count + *a;
   }
 
   /// Volume of each cell inside the bare shell, m³; empty where the length or the shell is unknown.

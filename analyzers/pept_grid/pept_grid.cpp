@@ -10,9 +10,12 @@
 // A visit is an entry into a cell, seen in two samples of the same bead that follow each other without a gap.
 #include <algorithm>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "analyzers/pept_grid/cells.hpp"
+
+#include "millscope/element.hpp"
 
 namespace millscope::analyzers {
 namespace {
@@ -76,31 +79,33 @@ class PeptGrid {
   }
 
  private:
+  /// Where a bead was in the frame before; no cell: outside.
   struct Seen {
-    std::int32_t cell = kUnknown, piece = 0;
+    std::optional<std::int64_t> cell;
+    std::int32_t piece = 0;
+    bool known = false;
   };
-  static constexpr std::int32_t kUnknown = -2;
 
   template <bool polar, bool axial>
   void add(const FrameBlock& block, double* const* sums) const {
     thread_local std::vector<Seen> last;
-    last.assign(static_cast<std::size_t>(largest_id_) + 1, Seen{});
+    last.assign(as_size(largest_id_) + 1, Seen{});
     double time = 0, in_range = 0;
     for (std::int64_t f = 0; f < block.frame_count; ++f) {
       for (std::int64_t s = block.first[f]; s < block.first[f + 1]; ++s) {
         const double x = block.position[0][s], y = block.position[1][s], z = block.position[2][s], weight = block.weight[s];
         const bool counts = range_.contains(z);
         // A sample without weight is a trimmed one, except in the first frame, which another block has counted.
-        const std::int64_t cell = counts && (weight > 0 || f == 0) ? cells_.at<polar, axial>(x, y, z) : -1;
+        const std::optional<std::int64_t> cell = counts && (weight > 0 || f == 0) ? cells_.at<polar, axial>(x, y, z) : std::nullopt;
         const std::int64_t id = block.id[s];
         if (id < 0 || id > largest_id_) throw Refusal("pept_grid: a sample has the id " + std::to_string(id) + ", beyond the largest one");
-        Seen& seen = last[static_cast<std::size_t>(id)];
-        const bool entered = seen.cell != cell && seen.cell != kUnknown && seen.piece == block.piece[f];
-        seen = {static_cast<std::int32_t>(cell), block.piece[f]};
+        Seen& seen = element(last, id);
+        const bool entered = seen.known && seen.cell != cell && seen.piece == block.piece[f];
+        seen = {cell, block.piece[f], true};
         time += weight;
         in_range += counts ? weight : 0;
-        if (cell < 0) continue;
-        double* m = sums[0] + cell * kMoments;
+        if (!cell) continue;
+        double* m = sums[0] + *cell * kMoments;
         m[kVisits] += entered ? 1 : 0;
         add_motion<polar>(m, weight, x, y, block, s);
       }
@@ -146,7 +151,7 @@ class PeptGrid {
   template <class Value>
   void add_field(Results& results, const char* name, const char* unit, const char* doc, Value value, const double* moments,
                  std::uint32_t traits = 0) const {
-    std::vector<double> field(static_cast<std::size_t>(cells_.count()));
+    std::vector<double> field(as_size(cells_.count()));
     for (std::size_t i = 0; i < field.size(); ++i) field[i] = value(moments + i * kMoments);
     add_values(results, name, unit, doc, field, traits);
   }

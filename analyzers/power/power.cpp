@@ -10,10 +10,13 @@
 //
 // Bbosa's sum is an estimator with a bias; the last three agree in the steady state.
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "analyzers/common/grid.hpp"
 #include "analyzers/common/mill.hpp"
+
+#include "millscope/element.hpp"
 
 namespace millscope::analyzers {
 namespace {
@@ -84,10 +87,10 @@ class Power {
     whole[kAllY] += mass * y;
     whole[kAllXOmega] += mass * x * omega;
     whole[kAllOmega] += mass * omega;
-    const std::int64_t column = x_.at(x), row = y_.at(y);
-    if ((column | row) < 0) return;
+    const std::optional<std::int64_t> column = x_.at(x), row = y_.at(y);
+    if (!column || !row) return;
     const double turning = (x * block.velocity[1][s] - y * block.velocity[0][s]) / std::max(x * x + y * y, 1e-14);
-    double* m = moments + (row * x_.count + column) * kMoments;
+    double* m = moments + (*row * x_.count + *column) * kMoments;
     m[kMass] += mass;
     m[kTurning] += mass * std::fabs(turning);
     m[kSignedTurning] += mass * turning;
@@ -112,7 +115,7 @@ class Power {
   }
 
   void add_cells(Results& results, const double* moments, double mass) const {
-    const std::size_t count = static_cast<std::size_t>(x_.count * y_.count);
+    const std::size_t count = as_size(x_.count * y_.count);
     std::vector<double> bbosa(count), lift(count);
     double of_mean = 0, is_signed = 0, sum = 0, inside = 0;
     for (std::size_t i = 0; i < count; ++i) {

@@ -9,11 +9,14 @@
 // over it or fly.
 #include <algorithm>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "analyzers/common/angle.hpp"
 #include "analyzers/common/grid.hpp"
 #include "analyzers/common/mill.hpp"
+
+#include "millscope/element.hpp"
 
 namespace millscope::analyzers {
 namespace {
@@ -64,12 +67,12 @@ class Slip {
       const double shell_angle = pitch_ > 0 ? block.phase[f] + lifter_angle_ : 0;
       for (std::int64_t s = block.first[f]; s < block.first[f + 1]; ++s) {
         const double x = block.position[0][s], y = block.position[1][s], radius_square = x * x + y * y;
-        const std::int64_t ring = rings_.at(std::sqrt(radius_square));
-        if (ring < 0 || !range_.contains(block.position[2][s]) || !in_sector(x, y)) continue;
-        const std::int64_t phase = pitch_ > 0 ? phases_.at(lifter_phase(x, y, shell_angle)) : 0;
+        const std::optional<std::int64_t> ring = rings_.at(std::sqrt(radius_square));
+        if (!ring || !range_.contains(block.position[2][s]) || !in_sector(x, y)) continue;
+        const std::int64_t phase = pitch_ > 0 ? *phases_.at(lifter_phase(x, y, shell_angle)) : 0;
         const double weight = block.weight[s];
         const double turning = sense_ * (x * block.velocity[1][s] - y * block.velocity[0][s]) / std::max(radius_square, 1e-14);
-        double* m = sums[0] + (ring * phases_.count + phase) * kMoments;
+        double* m = sums[0] + (*ring * phases_.count + phase) * kMoments;
         m[kTime] += weight;
         m[kTurning] += weight * turning;
         m[kSquare] += weight * turning * turning;
@@ -79,7 +82,7 @@ class Slip {
   }
 
   void finish(const double* const* sums, Results& results) const {
-    const auto rings = static_cast<std::size_t>(rings_.count), phases = static_cast<std::size_t>(phases_.count);
+    const auto rings = as_size(rings_.count), phases = as_size(phases_.count);
     std::vector<double> of_ring(rings * kMoments), ratios(rings), slip(rings), spread(rings), share(rings), by_phase(rings * phases);
     double all = 0;
     for (std::size_t i = 0; i < rings * phases; ++i) {

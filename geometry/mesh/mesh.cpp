@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "millscope/element.hpp"
+
 namespace millscope::geometry {
 
 namespace {
@@ -36,7 +38,7 @@ void check_extent(const Soup& soup, double scale) {
 }
 
 void check_count(const Soup& soup, const MeshOptions& options) {
-  const std::size_t total = soup.size() * static_cast<std::size_t>(options.placement.repeat) * (options.period > 0 ? 3 : 1);
+  const std::size_t total = soup.size() * as_size(options.placement.repeat) * (options.period > 0 ? 3 : 1);
   if (total <= options.max_triangles) return;
   throw Refusal(std::to_string(total) + " triangles after repeating exceed max_triangles = " + std::to_string(options.max_triangles) +
                 ": export a coarser mesh or raise max_triangles");

@@ -5,6 +5,8 @@
 
 #include "geometry/mesh/topology.hpp"
 
+#include "millscope/element.hpp"
+
 namespace millscope::geometry {
 
 namespace {
@@ -87,7 +89,7 @@ void MeshContact::collect(const WallBead& bead, const std::uint32_t* candidates,
 bool MeshContact::contains(const Hit& other, const Hit& hit, const Point& centre) const {
   const TriangleRecord& mine = record(hit);
   const TriangleRecord& theirs = record(other);
-  const Places& places = kPlaces[static_cast<std::size_t>(hit.region)];
+  const Places& places = element(kPlaces, hit.region);
   int shared = 0;
   for (int k = 0; k < places.count; ++k) {
     const std::uint32_t vertex = mine.vertex[places.corner[k]];

@@ -2,6 +2,8 @@
 #include "geometry/import/guarded_import.hpp"
 #include "geometry/mesh/mesh.hpp"
 
+#include "millscope/element.hpp"
+
 namespace millscope::geometry {
 
 namespace {
@@ -27,13 +29,13 @@ MeshOptions options_of(const Parameters& p) {
   o.placement.translate = point_of(p.vector("translate"));
   o.placement.repeat = static_cast<int>(p.integer("repeat"));
   o.period = p.number("period");
-  o.max_triangles = static_cast<std::size_t>(p.integer("max_triangles"));
+  o.max_triangles = as_size(p.integer("max_triangles"));
   return o;
 }
 
 Soup import_file(const Parameters& p) {
   ImportLimits limits;
-  limits.max_triangles = static_cast<std::size_t>(p.integer("max_triangles"));
+  limits.max_triangles = as_size(p.integer("max_triangles"));
   metres_per_unit(p.text("unit"));  // before the long part
   return import_mesh(p.text("file"), limits);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "millscope/element.hpp"
 #include "millscope/parameters.hpp"
 
 namespace millscope::geometry {
@@ -49,8 +50,8 @@ void turn_axis_to_z(Soup& soup, const std::string& axis) {
 
 void repeat_round_z(Soup& soup, int times) {
   const std::size_t corners = soup.corners.size(), triangles = soup.size();
-  soup.corners.reserve(corners * static_cast<std::size_t>(times));
-  soup.slots.reserve(triangles * static_cast<std::size_t>(times));
+  soup.corners.reserve(corners * as_size(times));
+  soup.slots.reserve(triangles * as_size(times));
   for (int k = 1; k < times; ++k) {
     const Rotation turn = rotation_about({0, 0, 1}, 2 * std::numbers::pi * k / times);
     for (std::size_t i = 0; i < corners; ++i) soup.corners.push_back(turn(soup.corners[i]));

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "millscope/element.hpp"
+
 namespace millscope::geometry {
 
 namespace {
@@ -36,7 +38,7 @@ void look_at(const Point (&ends)[2], std::vector<double>& nearest) {
   for (auto i = static_cast<long>(std::ceil(from / step)); static_cast<double>(i) * step <= to; ++i) {
     const double angle = static_cast<double>(i) * step, across = std::cos(angle) * edge_y - std::sin(angle) * edge_x;
     if (across == 0) continue;
-    double& seen = nearest[static_cast<std::size_t>(((i % kLooks) + kLooks) % kLooks)];
+    double& seen = element(nearest, ((i % kLooks) + kLooks) % kLooks);
     seen = std::min(seen, std::fabs(moment / across));
   }
 }

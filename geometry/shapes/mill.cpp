@@ -62,7 +62,7 @@ Mill::Mill(const char* kind, const MillShape& shape, double facet, int rows) : p
     throw Refusal(std::string(kind) + ": facet " + std::to_string(facet) + " m with axial_cuts " + std::to_string(rows) +
                   " makes more than 20 million triangles: give a longer facet (0.003 m suits a mill of 0.3 m)");
   }
-  int next = 1;
+  std::uint32_t next = 1;
   if (shape.lifters > 0) slots_.lifter = next++, slot_names_ += "|lifter";
   if (shape.end_faces) slots_.end = next++, slot_names_ += "|end";
   surface_ = std::make_unique<MillSurface>(profile_, slots_, facet, rows);
@@ -80,7 +80,7 @@ void Mill::candidates(const GeometryBeads& beads, double margin, const Candidate
     const double x = beads.position[0][i], y = beads.position[1][i], z = beads.position[2][i], reach = beads.radius[i] + margin;
     const double safe = free - reach;
     if (safe <= 0 || x * x + y * y > safe * safe) sink.add(sink.host, i, kOutline);
-    if (slots_.end < 0) continue;
+    if (!slots_.end) continue;
     if (z < reach) sink.add(sink.host, i, kLowEnd);
     if (z > length - reach) sink.add(sink.host, i, kHighEnd);
   }
@@ -102,13 +102,13 @@ void Mill::touch(const WallBead& bead, const std::uint32_t* candidates, std::siz
       const int n = profile_.touch({p.x, p.y}, bead.radius, bead.reach, found);
       for (int k = 0; k < n; ++k) {
         const ProfileContact& c = found[k];
-        const auto slot = static_cast<std::uint32_t>(c.piece == Piece::shell ? slots_.shell : slots_.lifter);
+        const std::uint32_t slot = c.piece == Piece::shell ? slots_.shell : *slots_.lifter;
         out.add({c.overlap, {c.normal[0], c.normal[1], 0}, feature_of(c), surface_->triangle_at(c, p.z), slot});
       }
     } else if (candidates[i] == kLowEnd) {
-      out.add({bead.radius - p.z, {0, 0, 1}, ends, kNoTriangle, static_cast<std::uint32_t>(slots_.end)});
+      out.add({bead.radius - p.z, {0, 0, 1}, ends, kNoTriangle, *slots_.end});
     } else {
-      out.add({bead.radius - (profile_.shape().length - p.z), {0, 0, -1}, ends + 1, kNoTriangle, static_cast<std::uint32_t>(slots_.end)});
+      out.add({bead.radius - (profile_.shape().length - p.z), {0, 0, -1}, ends + 1, kNoTriangle, *slots_.end});
     }
   }
 }

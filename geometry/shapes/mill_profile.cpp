@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "millscope/element.hpp"
 #include "millscope/parameters.hpp"
 
 namespace millscope::geometry {
@@ -65,7 +66,7 @@ MillProfile::MillProfile(const MillShape& shape) : shape_(shape) {
 }
 
 MillProfile::Folded MillProfile::in_sector(double x, double y, int sector) const {
-  const auto k = static_cast<std::size_t>(sector);
+  const auto k = as_size(sector);
   return {x * cosine_[k] + y * sine_[k], y * cosine_[k] - x * sine_[k], sector};
 }
 
@@ -141,7 +142,7 @@ int MillProfile::touch(const double (&centre)[2], double radius, double reach, P
   int count = 0;
   const auto keep = [&](bool touched, int sector) {  // back from the lifter's frame to the mill's
     if (!touched) return;
-    const auto k = static_cast<std::size_t>(sector);
+    const auto k = as_size(sector);
     const double u = out[count].normal[0], v = out[count].normal[1];
     out[count].normal[0] = u * cosine_[k] - v * sine_[k];
     out[count].normal[1] = u * sine_[k] + v * cosine_[k];

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "millscope/element.hpp"
+
 namespace millscope::geometry {
 
 namespace {
@@ -24,9 +26,9 @@ MillSurface::MillSurface(const MillProfile& profile, const MillSlots& slots, dou
   }
   build_outline();
   add_walls(slots);
-  if (slots.end >= 0) {
-    add_end_face(static_cast<std::uint32_t>(slots.end), false);
-    add_end_face(static_cast<std::uint32_t>(slots.end), true);
+  if (slots.end) {
+    add_end_face(*slots.end, false);
+    add_end_face(*slots.end, true);
   }
 }
 
@@ -81,8 +83,8 @@ void MillSurface::add_walls(const MillSlots& slots) {
     for (std::size_t i = 0; i < n; ++i) triangles_.add_vertex({outline_[2 * i], outline_[2 * i + 1], z});
   }
   for (std::size_t i = 0; i < n; ++i) {
-    const auto material = static_cast<std::uint32_t>(pieces_[i] == Piece::shell ? slots.shell : slots.lifter);
-    for (std::size_t row = 0; row < static_cast<std::size_t>(rows_); ++row) {
+    const std::uint32_t material = pieces_[i] == Piece::shell ? slots.shell : *slots.lifter;
+    for (std::size_t row = 0; row < as_size(rows_); ++row) {
       const auto a = static_cast<std::uint32_t>(row * n + i), b = static_cast<std::uint32_t>(row * n + (i + 1) % n);
       const auto up = static_cast<std::uint32_t>(n);
       triangles_.add_triangle({a, b + up, b}, material);
@@ -137,7 +139,7 @@ void MillSurface::add_end_face(std::uint32_t material, bool at_top) {
 std::uint32_t MillSurface::triangle_at(const ProfileContact& contact, double z) const {
   const int start[4] = {0, face_cuts_, face_cuts_ + top_cuts_, 2 * face_cuts_ + top_cuts_};
   const int count[4] = {face_cuts_, top_cuts_, face_cuts_, shell_cuts_};
-  const auto piece = static_cast<std::size_t>(contact.piece);
+  const auto piece = as_size(contact.piece);
   const double place = contact.fraction * count[piece], height = std::clamp(z / profile_.shape().length, 0.0, 1.0) * rows_;
   const int chord = std::min(static_cast<int>(place), count[piece] - 1), row = std::min(static_cast<int>(height), rows_ - 1);
   const int segment = contact.sector * (start[3] + shell_cuts_) + start[piece] + chord;

@@ -1,14 +1,18 @@
 // Triangles of a mill: the outline in short chords with their vertices on the true outline, swept along z, and its end faces.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "geometry/shapes/mill_profile.hpp"
 #include "geometry/shapes/triangulation.hpp"
 
 namespace millscope::geometry {
 
-/// Material slots as the triangles and contacts number them; −1: the mill has no such part.
+/// Material slots as the triangles and contacts number them; none where the mill has no such part.
 struct MillSlots {
-  int shell = 0, lifter = -1, end = -1;
+  std::uint32_t shell = 0;
+  std::optional<std::uint32_t> lifter, end;
 };
 
 /// How many chords each piece of the outline is cut into, so that a contact finds its triangle without a search.

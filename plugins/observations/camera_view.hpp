@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "millscope/element.hpp"
 #include "millscope/observation_adapter.hpp"
 
 namespace millscope::observations {
@@ -39,7 +40,7 @@ class Middle {
 /// Track as it came in.
 inline Track copy_of(const TrackView& view) {
   Track track;
-  track.reserve(static_cast<std::size_t>(view.count));
+  track.reserve(as_size(view.count));
   for (std::int64_t i = 0; i < view.count; ++i) track.push_back(sample_at(view, i));
   return track;
 }

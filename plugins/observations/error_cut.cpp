@@ -16,6 +16,8 @@
 
 #include "camera_view.hpp"
 
+#include "millscope/element.hpp"
+
 namespace millscope::observations {
 namespace {
 
@@ -70,7 +72,7 @@ class ErrorCut {
     Random random(context.seed);
     double speed = 0;  // of the location before, where this one stands alone
     for (std::int64_t i = 0; i < view.count; ++i) {
-      TrackSample& s = track[static_cast<std::size_t>(i)];
+      TrackSample& s = element(track, i);
       if (per_speed_ > 0.0) speed = speed_at(view, i, window_).value_or(speed);
       const double usual = spread_ + per_distance_ * middle_.distance(s.position, context) + per_speed_ * speed;
       const double u = std::max(usual + scatter_ * random.normal(), 0.1 * usual);

@@ -12,6 +12,8 @@
 
 #include "camera_view.hpp"
 
+#include "millscope/element.hpp"
+
 namespace millscope::observations {
 namespace {
 
@@ -31,10 +33,10 @@ class Path {
   explicit Path(const TrackView& view) : view_(view) {
     for (int axis = 0; axis < 3; ++axis) {
       std::vector<double>& sum = integral_[axis];
-      sum.assign(static_cast<std::size_t>(view.count), 0.0);
+      sum.assign(as_size(view.count), 0.0);
       const double* x = view.position[axis];
       for (std::int64_t i = 1; i < view.count; ++i) {
-        const auto at = static_cast<std::size_t>(i);
+        const auto at = as_size(i);
         // Relative to the first point: a long track must not lose digits.
         sum[at] = sum[at - 1] + (view.time[i] - view.time[i - 1]) * (0.5 * (x[i] + x[i - 1]) - x[0]);
       }
@@ -56,7 +58,7 @@ class Path {
   double integral(int axis, std::int64_t i, double t) const {
     const double* x = view_.position[axis];
     const double s = t - view_.time[i], slope = (x[i + 1] - x[i]) / (view_.time[i + 1] - view_.time[i]);
-    return integral_[axis][static_cast<std::size_t>(i)] + s * (x[i] - x[0] + 0.5 * slope * s);
+    return element(integral_[axis], i) + s * (x[i] - x[0] + 0.5 * slope * s);
   }
 
   TrackView view_;
