@@ -43,14 +43,14 @@ Json to_json(const Answer& a, const std::string& salt) {
   Json effects = Json::array(), theta = Json::object();
   for (const TrueEffect& e : a.effects) {
     effects.push_back({{"hypothesis", e.hypothesis},
-                       {"share", e.share},
+                       {"strength", e.strength},
                        {"parameter", e.parameter},
                        {"value", e.value},
                        {"vanishes_at", e.vanishes_at},
                        {"far", e.far}});
   }
   for (const auto& [name, value] : a.theta) theta[name] = value;
-  return {{"schema_version", 1}, {"set", a.set},       {"salt", salt},   {"kind", name_of(a.kind)},
+  return {{"schema_version", 2}, {"set", a.set},       {"salt", salt},   {"kind", name_of(a.kind)},
           {"name", a.name},      {"effects", effects}, {"theta", theta}, {"made", a.made}};
 }
 
@@ -59,8 +59,10 @@ Answer answer_from(const Json& j) {
   a.set = j.at("set");
   a.kind = kind_from(j.at("kind"));
   a.name = j.at("name");
+  // A sealed answer stays as its hash was published: those of version 1 call a strength a share.
+  const char* strength = j.at("schema_version") == 1 ? "share" : "strength";
   for (const Json& e : j.at("effects"))
-    a.effects.push_back({e.at("hypothesis"), e.at("share"), e.at("parameter"), e.at("value"), e.at("vanishes_at"), e.at("far")});
+    a.effects.push_back({e.at("hypothesis"), e.at(strength), e.at("parameter"), e.at("value"), e.at("vanishes_at"), e.at("far")});
   for (const auto& [name, value] : j.at("theta").items()) a.theta.emplace_back(name, value.get<double>());
   a.made = j.value("made", Json::object());
   return a;

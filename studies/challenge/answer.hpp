@@ -15,10 +15,10 @@ namespace millscope::challenge {
 /// A hypothesis that is true, in the numbers of the study.
 struct TrueEffect {
   std::string hypothesis;
-  double share = 0;
+  double strength = 0;
   std::string parameter;            ///< as diagnosis.json calls it
   double value = 0;                 ///< of the parameter
-  double vanishes_at = 0, far = 1;  ///< share 0 and 1
+  double vanishes_at = 0, far = 1;  ///< strength 0 and 1
 };
 
 struct Answer {

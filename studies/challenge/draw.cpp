@@ -53,8 +53,8 @@ Eigen::VectorXd draw_theta(const Challenge& challenge, const SetsOf& sets, const
 
 naming::ActiveCandidate draw_effect(const SetsOf& sets, const std::string& name, const diagnose::Question& q, base::RandomStream& random) {
   const auto found = std::find_if(q.candidates.begin(), q.candidates.end(), [&](const auto& c) { return c.name == name; });
-  const double share = found->on_or_off() ? 1 : sets.low + (sets.high - sets.low) * random.uniform();
-  return {static_cast<int>(found - q.candidates.begin()), diagnose::rounded_strength(*found, share)};
+  const double strength = found->on_or_off() ? 1 : sets.low + (sets.high - sets.low) * random.uniform();
+  return {static_cast<int>(found - q.candidates.begin()), diagnose::rounded_strength(*found, strength)};
 }
 
 }  // namespace

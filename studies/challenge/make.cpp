@@ -27,9 +27,9 @@ std::string study_text(const diagnose::Question& q, const fs::path& folder) {
   return out;
 }
 
-TrueEffect true_effect(const diagnose::Candidate& c, double share) {
-  if (c.on_or_off()) return {c.name, share, "share", share, 0, 1};
-  return {c.name, share, c.parameter, diagnose::rounded(c.value(share)), c.null_value, c.far};
+TrueEffect true_effect(const diagnose::Candidate& c, double strength) {
+  if (c.on_or_off()) return {c.name, strength, "strength", strength, 0, 1};
+  return {c.name, strength, c.parameter, diagnose::rounded(c.value(strength)), c.null_value, c.far};
 }
 
 Answer answer_of(const diagnose::Question& q, const Truth& truth, const std::string& set) {

@@ -87,16 +87,16 @@ std::string page_text(const Page& page) {
 
 Json score_json(const Page& page) {
   const Score& s = page.score;
-  Json theta = Json::object(), power = Json::array(), doses = Json::array(), recovery = Json::array(), gains = Json::array();
+  Json theta = Json::object(), power = Json::array(), estimates = Json::array(), recovery = Json::array(), gains = Json::array();
   for (const auto& [name, count] : s.theta) theta[name] = count_json(count);
   for (const PowerBin& b : s.power) power.push_back({{"lambda_from", b.low}, {"lambda_to", b.high}, {"named", count_json(b.named)}});
-  for (const Dose& d : s.doses)
-    doses.push_back({{"set", d.set}, {"hypothesis", d.hypothesis}, {"truth", d.truth}, {"estimate", d.estimate}, {"named", d.found}});
+  for (const Estimated& d : s.estimates)
+    estimates.push_back({{"set", d.set}, {"hypothesis", d.hypothesis}, {"truth", d.truth}, {"estimate", d.estimate}, {"named", d.found}});
   for (const Recovery& r : s.recovery)
     recovery.push_back({{"parameter", r.parameter}, {"sets", r.sets}, {"error_retuned", r.retuned}, {"error_unmasked", r.unmasked}});
   for (const GainCount& g : s.gains)
     gains.push_back({{"against", g.model}, {"surely", count_json(g.surely)}, {"median_improvement", g.median}});
-  return {{"schema_version", 1},
+  return {{"schema_version", 2},
           {"command", page.command},
           {"manifest_hash", page.manifests.at(0).second},
           {"sets", s.sets},
@@ -118,7 +118,7 @@ Json score_json(const Page& page) {
           {"strength_coverage", count_json(s.strength)},
           {"parameter_coverage", theta},
           {"power", power},
-          {"dose_response", {{"slope", s.line.slope}, {"intercept", s.line.intercept}, {"doses", doses}, {"shares_at_zero", s.at_zero}}},
+          {"strengths", {{"slope", s.line.slope}, {"intercept", s.line.intercept}, {"estimates", estimates}, {"at_zero", s.at_zero}}},
           {"recovery", recovery},
           {"held_out", gains},
           {"confusion", {{"truths", s.truths}, {"diagnoses", s.answers}, {"counts", s.confusion}}},

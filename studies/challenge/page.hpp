@@ -25,7 +25,7 @@ nlohmann::ordered_json score_json(const Page& page);
 
 /// "3 of 4 (75 %; 90 %: 25 … 99 %)"; "none tried".
 std::string count_text(const Count& count);
-/// The tables of the page: of every set, confusion, power, dose, coverage, recovery, gains.
+/// The tables of the page: of every set, confusion, power, strengths, coverage, recovery, gains.
 std::string tables_text(const Page& page);
 
 }  // namespace millscope::challenge

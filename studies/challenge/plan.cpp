@@ -29,8 +29,8 @@ Kind read_kind(const Node& node) {
 
 void read_strength(const Node& node, SetsOf& sets) {
   const std::vector<Node> ends = node.items();
-  if (ends.size() != 2) node.fail(fmt::format("has {} values; give the least and the largest share, e.g. [0.3, 1]", ends.size()));
-  const auto range = between(-1, 1, "as a share of the prior range");
+  if (ends.size() != 2) node.fail(fmt::format("has {} values; give the least and the largest strength, e.g. [0.3, 1]", ends.size()));
+  const auto range = between(-1, 1, "as a part of the prior range");
   sets.low = config::read_number(ends[0], "1", range);
   sets.high = config::read_number(ends[1], "1", range);
   if (!(sets.low <= sets.high)) node.fail("has its lower end above the upper one; turn them round");
@@ -79,8 +79,8 @@ void check_hypothesis(const SetsOf& sets, const std::string& name, const diagnos
   if (found == question.candidates.end())
     throw base::UserError(sets.where, fmt::format("'{}' is no hypothesis of the study; {}", name, config::suggestion(name, names)));
   if (!found->on_or_off() && (sets.low < found->range.low || sets.high > found->range.high)) {
-    throw base::UserError(sets.where, fmt::format("the strength {:.3g} … {:.3g} of '{}' leaves its range; give shares of {:.3g} … {:.3g}",
-                                                  sets.low, sets.high, name, found->range.low, found->range.high));
+    throw base::UserError(sets.where, fmt::format("the strength {:.3g} … {:.3g} of '{}' leaves its range; give {:.3g} … {:.3g}", sets.low,
+                                                  sets.high, name, found->range.low, found->range.high));
   }
   for (const std::string& other : sets.hypotheses) {
     if (std::find(found->excludes.begin(), found->excludes.end(), other) != found->excludes.end())

@@ -41,7 +41,7 @@ Found found_from(const Json& j) {
   f.named = j.at("named").get<std::vector<std::string>>();
   for (const Json& h : j.at("hypotheses")) {
     Tested t{h.at("name"), h.at("class"), {}, {}};
-    for (const Json& point : h.at("lambda_at")) t.lambda_curve.emplace_back(number(point.at("share")), number(point.at("lambda")));
+    for (const Json& point : h.at("lambda_at")) t.lambda_curve.emplace_back(number(point.at("strength")), number(point.at("lambda")));
     const Json& of = h.at("parameters");
     if (!of.empty()) t.strength = interval_from(of.begin().value());
     f.hypotheses.push_back(std::move(t));
@@ -58,7 +58,13 @@ std::optional<Found> read_found(const fs::path& set) {
   const fs::path file = set / "diagnosis" / "diagnosis.json", failed = set / "diagnosis" / "failed.txt";
   if (fs::exists(file)) {
     try {
-      return found_from(Json::parse(base::text_of(file)));
+      const Json diagnosis = Json::parse(base::text_of(file));
+      if (diagnosis.at("schema_version") != 2)
+        throw base::UserError(
+            fmt::format("{}: is of another schema_version than 2, in which 'share' is called 'strength'; remove it and run the challenge "
+                        "again",
+                        file.string()));
+      return found_from(diagnosis);
     } catch (const Json::exception& e) {
       throw base::UserError(
           fmt::format("{}: is no diagnosis that can be scored ({}); remove it and run the challenge again", file.string(), e.what()));

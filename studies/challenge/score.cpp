@@ -21,8 +21,8 @@ bool best_is(const Found& f, const std::string& name) {
   return best != nullptr && best->name == name;
 }
 
-/// The share that a value stands for.
-double share_of(const TrueEffect& e, double value) { return (value - e.vanishes_at) / (e.far - e.vanishes_at); }
+/// The strength that a value stands for.
+double strength_of(const TrueEffect& e, double value) { return (value - e.vanishes_at) / (e.far - e.vanishes_at); }
 
 void score_none(const Marked& m, Score& s) {
   if (!m.found->failure.empty()) return;
@@ -59,19 +59,19 @@ void add_power(const Marked& m, Score& s) {
   for (const TrueEffect& e : m.answer.effects) {
     const Tested* tested = m.found->find(e.hypothesis);
     if (tested == nullptr) continue;
-    const double lambda = tested->lambda(e.share);
+    const double lambda = tested->lambda(e.strength);
     for (PowerBin& bin : s.power) {
       if (lambda >= bin.low && lambda < bin.high) bin.named.add(m.found->names(e.hypothesis) && m.found->named.size() <= 2);
     }
   }
 }
 
-void add_dose(const Marked& m, Score& s) {
+void add_estimate(const Marked& m, Score& s) {
   if (m.answer.kind != Kind::effect) return;
   const TrueEffect& e = m.answer.effects.front();
   const Tested* tested = m.found->find(e.hypothesis);
   if (tested == nullptr || !tested->strength) return;
-  s.doses.push_back({m.answer.set, e.hypothesis, e.share, share_of(e, tested->strength->value), m.found->names(e.hypothesis)});
+  s.estimates.push_back({m.answer.set, e.hypothesis, e.strength, strength_of(e, tested->strength->value), m.found->names(e.hypothesis)});
   if (tested->strength->known()) s.strength.add(tested->strength->holds(e.value));
 }
 
@@ -107,10 +107,10 @@ void add_recovery(const Marked& m, Score& s) {
   }
 }
 
-Line line_of(const std::vector<Dose>& doses) {
-  if (doses.size() < kFewForALine) return {};
+Line line_of(const std::vector<Estimated>& estimates) {
+  if (estimates.size() < kFewForALine) return {};
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (const Dose& d : doses) n += 1, x += d.truth, y += d.estimate, xx += d.truth * d.truth, xy += d.truth * d.estimate;
+  for (const Estimated& d : estimates) n += 1, x += d.truth, y += d.estimate, xx += d.truth * d.truth, xy += d.truth * d.estimate;
   const double slope = (n * xy - x * y) / (n * xx - x * x);
   return {slope, (y - slope * x) / n};
 }
@@ -125,7 +125,7 @@ void add_at_zero(const std::vector<Marked>& sets, Score& s) {
     if (!m.found || m.answer.kind != Kind::none) continue;
     for (const Tested& t : m.found->hypotheses) {
       const auto e = known.find(t.name);
-      if (e != known.end() && t.strength) s.at_zero.push_back(share_of(e->second, t.strength->value));
+      if (e != known.end() && t.strength) s.at_zero.push_back(strength_of(e->second, t.strength->value));
     }
   }
 }
@@ -170,12 +170,12 @@ void add_confusion(const std::vector<Marked>& sets, Score& s) {
 
 }  // namespace
 
-double Tested::lambda(double share) const {
-  const auto after = std::find_if(lambda_curve.begin(), lambda_curve.end(), [&](const auto& point) { return point.first >= share; });
+double Tested::lambda(double strength) const {
+  const auto after = std::find_if(lambda_curve.begin(), lambda_curve.end(), [&](const auto& point) { return point.first >= strength; });
   if (after == lambda_curve.end()) return lambda_curve.empty() ? 0 : lambda_curve.back().second;
   if (after == lambda_curve.begin()) return after->second;
   const auto before = std::prev(after);
-  const double part = (share - before->first) / (after->first - before->first);
+  const double part = (strength - before->first) / (after->first - before->first);
   const double root = (1 - part) * std::sqrt(before->second) + part * std::sqrt(after->second);
   return root * root;
 }
@@ -234,12 +234,12 @@ Score score(const std::vector<Marked>& sets) {
       classes += size > 0 ? 1 : 0;
     }
     add_power(m, s);
-    add_dose(m, s);
+    add_estimate(m, s);
     add_theta(m, s);
     add_recovery(m, s);
   }
   if (classes > 0) s.mean_class = class_sum / classes;
-  s.line = line_of(s.doses);
+  s.line = line_of(s.estimates);
   add_at_zero(sets, s);
   add_gains(sets, s);
   add_confusion(sets, s);

@@ -19,11 +19,11 @@ using naming::Interval;
 /// One hypothesis of a diagnosis.
 struct Tested {
   std::string name, class_of;                           ///< "best", "not rejected", …
-  std::vector<std::pair<double, double>> lambda_curve;  ///< (share, λ), shares rising
+  std::vector<std::pair<double, double>> lambda_curve;  ///< (strength, λ), strengths rising
   std::optional<Interval> strength;
 
-  /// λ at a share, by its root between those of the curve.
-  double lambda(double share) const;
+  /// λ at a strength, by its root between those of the curve.
+  double lambda(double strength) const;
 };
 
 struct Gain {
@@ -77,9 +77,9 @@ struct PowerBin {
   Count named;       ///< alone or in a class of two
 };
 
-struct Dose {
+struct Estimated {
   std::string set, hypothesis;
-  double truth = 0, estimate = 0;  ///< shares of the prior range
+  double truth = 0, estimate = 0;  ///< strengths
   bool found = false;              ///< the hypothesis is among those named
 };
 
@@ -117,9 +117,9 @@ struct Score {
   Count strength;                                    ///< truth in the 90 % interval
   std::vector<std::pair<std::string, Count>> theta;  ///< the same, by parameter
   std::vector<PowerBin> power;
-  std::vector<Dose> doses;
+  std::vector<Estimated> estimates;
   Line line;
-  std::vector<double> at_zero;  ///< estimated shares of hypotheses in sets that hide nothing
+  std::vector<double> at_zero;  ///< estimated strengths of hypotheses in sets that hide nothing
   std::vector<Recovery> recovery;
   std::vector<GainCount> gains;
 

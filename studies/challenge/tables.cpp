@@ -17,10 +17,10 @@ void append(std::string& out, fmt::format_string<Values...> text, Values&&... va
 }
 
 void every_set(const Page& page, std::string& out) {
-  out += "## Every set\n\n| set | hidden | strength (share of the prior range) | diagnosis |\n|---|---|---|---|\n";
+  out += "## Every set\n\n| set | hidden | strength (1: the far end of the prior range) | diagnosis |\n|---|---|---|---|\n";
   for (const Marked& m : page.sets) {
     std::string strength;
-    for (const TrueEffect& e : m.answer.effects) strength += fmt::format("{}{:.2f}", strength.empty() ? "" : ", ", e.share);
+    for (const TrueEffect& e : m.answer.effects) strength += fmt::format("{}{:.2f}", strength.empty() ? "" : ", ", e.strength);
     append(out, "| {} | {} | {} | {}{} |\n", m.answer.set, label_of(m.answer), strength, m.found ? label_of(*m.found) : "not diagnosed yet",
            m.found && !m.found->failure.empty() ? ": " + m.found->failure : "");
   }
@@ -52,23 +52,24 @@ void power(const Score& s, std::string& out) {
   out += "\n";
 }
 
-void doses(const Score& s, std::string& out) {
-  out += "## Dose and response\n\n";
-  if (!s.doses.empty()) {
-    out += "| set | hypothesis | hidden share | estimated share | named |\n|---|---|---|---|---|\n";
-    for (const Dose& d : s.doses)
+void strengths(const Score& s, std::string& out) {
+  out += "## Strengths\n\n";
+  if (!s.estimates.empty()) {
+    out += "| set | hypothesis | hidden strength | estimated strength | named |\n|---|---|---|---|---|\n";
+    for (const Estimated& d : s.estimates)
       append(out, "| {} | {} | {:.2f} | {:.2f} | {} |\n", d.set, d.hypothesis, d.truth, d.estimate, d.found ? "yes" : "no");
     out += "\n";
   }
   if (std::isfinite(s.line.slope))
-    append(out, "Least squares: estimate = {:.2f} + {:.2f} × hidden share.\n", s.line.intercept, s.line.slope);
+    append(out, "Least squares: estimate = {:.2f} + {:.2f} × hidden strength.\n", s.line.intercept, s.line.slope);
   if (!s.at_zero.empty()) {
     const double mean = std::accumulate(s.at_zero.begin(), s.at_zero.end(), 0.0) / static_cast<double>(s.at_zero.size());
-    append(out,
-           "Where nothing is hidden, {} fitted shares have a mean of {:.2f} and a maximum of {:.2f}; one-sided ones cannot be below 0.\n",
-           s.at_zero.size(), mean, *std::max_element(s.at_zero.begin(), s.at_zero.end()));
+    append(
+        out,
+        "Where nothing is hidden, {} fitted strengths have a mean of {:.2f} and a maximum of {:.2f}; one-sided ones cannot be below 0.\n",
+        s.at_zero.size(), mean, *std::max_element(s.at_zero.begin(), s.at_zero.end()));
   }
-  if (s.doses.empty() && s.at_zero.empty()) out += "No strength was estimated.\n";
+  if (s.estimates.empty() && s.at_zero.empty()) out += "No strength was estimated.\n";
   out += "\n";
 }
 
@@ -104,7 +105,7 @@ std::string tables_text(const Page& page) {
   every_set(page, out);
   confusion(page.score, out);
   power(page.score, out);
-  doses(page.score, out);
+  strengths(page.score, out);
   coverage(page.score, out);
   gains(page.score, out);
   return out;

@@ -54,6 +54,17 @@ Json from_file(const char* kind, const char* file, const fs::path& folder) {
   return section;
 }
 
+/// Of files whose keys changed: version 2 calls a strength what version 1 called a share or a dose.
+Json from_second_version(const char* kind, const char* file, const fs::path& folder) {
+  Json section = from_file(kind, file, folder);
+  if (section[kind].value("schema_version", Json()) != 2)
+    throw base::UserError(
+        fmt::format("{}: is of another schema_version than 2, in which 'share' and 'dose' are called 'strength'; run the "
+                    "command that wrote it again",
+                    (folder / file).string()));
+  return section;
+}
+
 }  // namespace
 
 Json begun(const char* kind, const std::string& title, const fs::path& folder) {
@@ -91,10 +102,10 @@ Json calibration_section(const fs::path& folder) {
 
 Json validation_section(const fs::path& folder) { return from_file("validation", "validation.json", folder); }
 
-Json diagnosis_section(const fs::path& folder) { return from_file("diagnosis", "diagnosis.json", folder); }
+Json diagnosis_section(const fs::path& folder) { return from_second_version("diagnosis", "diagnosis.json", folder); }
 
 Json challenge_section(const fs::path& folder) {
-  Json section = from_file("challenge", "score.json", folder);
+  Json section = from_second_version("challenge", "score.json", folder);
   section["score"] = section["challenge"];
   section.erase("challenge");
   return section;

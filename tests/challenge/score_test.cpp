@@ -9,8 +9,8 @@ using Catch::WithinAbs;
 
 namespace {
 
-TrueEffect rolling(double share) { return {"rolling", share, "mu_r", 0.2 * share, 0, 0.2}; }
-TrueEffect bridge(double share) { return {"bridge", share, "gamma", 10 * share, 0, 10}; }
+TrueEffect rolling(double strength) { return {"rolling", strength, "mu_r", 0.2 * strength, 0, 0.2}; }
+TrueEffect bridge(double strength) { return {"bridge", strength, "gamma", 10 * strength, 0, 10}; }
 
 Answer answer(const std::string& set, Kind kind, std::vector<TrueEffect> effects = {}) {
   return {set, kind, kind == Kind::outside ? "soft" : "", std::move(effects), {{"friction", 0.3}}, {}};
@@ -26,7 +26,7 @@ Found found(const std::string& verdict, std::vector<std::string> named) {
 /// A value whose interval was not worked out.
 Interval open(double value) { return {value, std::nan(""), std::nan("")}; }
 
-/// λ of an effect that is linear in its share.
+/// λ of an effect that is linear in its strength.
 std::vector<std::pair<double, double>> square_law(double full) { return {{0, 0}, {0.25, full / 16}, {1, full}}; }
 
 /// Ten sets: three with nothing, one of them rightly; four with one effect, one of which failed; two at once; one outside; one to come.
@@ -109,7 +109,7 @@ TEST_CASE("strengths, parameters, power and gains") {
   REQUIRE(s.recovery.size() == 1);
   CHECK_THAT(s.recovery[0].retuned, WithinAbs(0.1, 1e-12));
   CHECK_THAT(s.recovery[0].unmasked, WithinAbs(0.02, 1e-12));
-  REQUIRE(s.doses.size() == 3);  // 0.5 → 0.55, 1 → 0.85, 0.4 → 0.1
+  REQUIRE(s.estimates.size() == 3);  // 0.5 → 0.55, 1 → 0.85, 0.4 → 0.1
   CHECK_THAT(s.line.slope, WithinAbs(0.645 / 0.62, 1e-9));
   CHECK_THAT(s.line.intercept, WithinAbs((1.5 - 1.9 * 0.645 / 0.62) / 3, 1e-9));
   REQUIRE(s.at_zero.size() == 1);
@@ -123,7 +123,7 @@ TEST_CASE("strengths, parameters, power and gains") {
   CHECK(s.gains[0].median == 1.5);
 }
 
-TEST_CASE("lambda at a share lies between those of the diagnosis, its root evenly") {
+TEST_CASE("lambda at a strength lies between those of the diagnosis, its root evenly") {
   const Tested bent{"wear", "best", {{-1, 36}, {0, 0}, {0.5, 16}, {1, 25}}, {}};
   CHECK(bent.lambda(0.5) == Approx(16));
   CHECK(bent.lambda(0.25) == Approx(4));

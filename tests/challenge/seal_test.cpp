@@ -24,8 +24,8 @@ std::vector<Answer> two_answers() {
   return {none, worn};
 }
 
-const std::string kDiagnosis = R"({"verdict": "named", "named": ["wear"],
-  "hypotheses": [{"name": "wear", "class": "best", "lambda_at": [{"share": 0, "lambda": 0}, {"share": 1, "lambda": 49}],
+const std::string kDiagnosis = R"({"schema_version": 2, "verdict": "named", "named": ["wear"],
+  "hypotheses": [{"name": "wear", "class": "best", "lambda_at": [{"strength": 0, "lambda": 0}, {"strength": 1, "lambda": 49}],
                   "parameters": {"height": {"value": 0.0041, "low90": 0.0039, "high90": 0.0043, "unit": "m", "vanishes_at": 0.005}}}],
   "contact_parameters": {"retuned": {"friction": {"value": 0.4, "low90": 0.3, "high90": 0.5}},
                          "unmasked": {"friction": {"value": 0.2, "low90": 0.1, "high90": null}}},
@@ -48,12 +48,34 @@ TEST_CASE("sealed answers come back as they were") {
   CHECK(manifest_hash(folder.path) != hash);  // another salt
 }
 
+TEST_CASE("an answer that was sealed when a strength was called a share is read as it is") {
+  nlohmann::ordered_json old = to_json(two_answers()[1], "salt");
+  CHECK(old["effects"][0]["strength"] == 0.5);
+  old["effects"][0]["share"] = 0.25;
+  CHECK(answer_from(old).effects[0].strength == 0.5);
+  old["effects"][0].erase("strength");
+  CHECK_THROWS(answer_from(old));
+  old["schema_version"] = 1;
+  CHECK(answer_from(old).effects[0].strength == 0.25);
+}
+
+TEST_CASE("a diagnosis of before the strength had its name is refused with it") {
+  const testing::Scratch folder;
+  std::string old = kDiagnosis;
+  old.replace(old.find("2, \"verdict\""), 1, "1");
+  write(folder.path / "diagnosis" / "diagnosis.json", old);
+  const std::string message = testing::refusal([&] { read_found(folder.path); });
+  CHECK(message.find("diagnosis.json: is of another schema_version than 2, in which 'share' is called 'strength'") != std::string::npos);
+  write(folder.path / "diagnosis" / "diagnosis.json", kDiagnosis);
+  CHECK(read_found(folder.path)->verdict == "named");
+}
+
 TEST_CASE("an answer that was changed afterwards is refused") {
   const testing::Scratch folder;
   write(folder / "study.yaml", "base: x");
   seal(folder.path, two_answers(), folder / "study.yaml");
   const fs::path file = folder.path / "answers" / "set_002.json";
-  std::string text = base::text_of(file);
+  std::string text = millscope::base::text_of(file);
   text.replace(text.find("0.004"), 5, "0.003");
   write(file, text);
   const std::string message = testing::refusal([&] { read_sets(folder.path); });
@@ -78,7 +100,7 @@ TEST_CASE("diagnoses are read as they were written, failures with their reason")
   const Score s = score(sets);
   CHECK(s.best_right.hits == 1);
   CHECK(s.strength.hits == 1);
-  CHECK(s.doses[0].estimate == Approx(0.45));
+  CHECK(s.estimates[0].estimate == Approx(0.45));
   CHECK(s.gains[0].surely.hits == 0);
   write(folder.path / "set_002" / "diagnosis" / "diagnosis.json", "{}");
   CHECK(testing::refusal([&] { read_sets(folder.path); }).find("is no diagnosis that can be scored") != std::string::npos);

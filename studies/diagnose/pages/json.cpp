@@ -26,7 +26,7 @@ Json own_parameter(const Told& t, Index j) {
     return {{c.name, interval(judged.theta[*alternative.freed])}};
   }
   const Candidate& c = t.question.candidates[*alternative.candidate];
-  if (c.on_or_off()) return {{"share", interval(naming::without_interval(judged.strength.value))}};  // there is nothing between
+  if (c.on_or_off()) return {{"strength", interval(naming::without_interval(judged.strength.value))}};  // there is nothing between
   Json out = interval(parameter_at(c, judged.strength));
   out["unit"] = c.unit;
   out["vanishes_at"] = c.null_value;
@@ -55,7 +55,7 @@ std::string region_of(const Told& t, std::size_t condition, Index observable) {
 Json lambda_curve(const Told& t, Index alternative) {
   Json out = Json::array();
   for (const auto& [strength, lambda] : t.diagnosis.naming.judged[alternative].lambda_curve)
-    out.push_back({{"share", strength}, {"lambda", lambda}});
+    out.push_back({{"strength", strength}, {"lambda", lambda}});
   return out;
 }
 
@@ -179,7 +179,7 @@ Json diagnosis_json(const Told& t) {
                      {"p_first", p.p_first},
                      {"p_goodness", p.goodness_p}});
   }
-  return {{"schema_version", 1},
+  return {{"schema_version", 2},
           {"verdict", name_of(d.verdict)},
           {"sentence", d.sentence},
           {"named", d.named},

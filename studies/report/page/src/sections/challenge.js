@@ -26,17 +26,17 @@ function power(score, key) {
       x: { name: "named", ...SHARE } })));
 }
 
-function doses(score, key) {
-  const { doses: all = [], slope, intercept, shares_at_zero: zero = [] } = score.dose_response ?? {};
+function strengths(score, key) {
+  const { estimates: all = [], slope, intercept, at_zero: zero = [] } = score.strengths ?? {};
   if (all.length === 0) return null;
-  const of = (named) => all.filter((dose) => dose.named === named).map((dose) => [100 * dose.truth, 100 * dose.estimate]);
-  const most = Math.max(100, ...all.map((dose) => 100 * Math.max(dose.truth, dose.estimate)));
-  const least = Math.min(0, ...all.map((dose) => 100 * Math.min(dose.truth, dose.estimate)));
+  const of = (named) => all.filter((one) => one.named === named).map((one) => [100 * one.truth, 100 * one.estimate]);
+  const most = Math.max(100, ...all.map((one) => 100 * Math.max(one.truth, one.estimate)));
+  const least = Math.min(0, ...all.map((one) => 100 * Math.min(one.truth, one.estimate)));
   const series = [{ name: "named", dots: true, points: of(true) }, { name: "not named", dots: true, outline: true, points: of(false) },
     { name: "hidden = estimated", points: [[least, least], [most, most]], dashed: true, colour: "#7f7f7f", width: 1.2 }].filter((one) => one.points.length);
   if (isNumber(slope) && isNumber(intercept)) series.push({ name: "least squares", points: [least, most].map((x) => [x, 100 * intercept + slope * x]), width: 1.4, colour: "#009e73" });
-  return block(`${key}-doses`, "Dose and response", figure("Hidden against estimated strength, as shares of the prior range, whether the effect was named or not.",
-    lines(`${key}-doses`, { label: `${all.length} hidden strengths and their estimates`, series, hover: "item", x: { name: "hidden strength", unit: "%", min: Math.floor(least / 10) * 10, max: Math.ceil(most / 10) * 10 },
+  return block(`${key}-strengths`, "Strengths", figure("Hidden against estimated strength, 100 % the far end of the prior range, whether the effect was named or not.",
+    lines(`${key}-strengths`, { label: `${all.length} hidden strengths and their estimates`, series, hover: "item", x: { name: "hidden strength", unit: "%", min: Math.floor(least / 10) * 10, max: Math.ceil(most / 10) * 10 },
       y: { name: "estimated strength", unit: "%" }, height: 340 })),
   isNumber(slope) ? paragraph(`Least squares: estimate = ${number(100 * intercept, 3)} % + ${number(slope, 3)} × hidden.`) : null,
   zero.length ? note(`Where nothing was hidden, the mean estimated strength is ${percent(zero.reduce((sum, value) => sum + value, 0) / zero.length)} of the range (${zero.length} estimates).`) : null);
@@ -61,7 +61,7 @@ export function challenge(section, key) {
       ["Strength in its 90 % interval", share(score.strength_coverage), null], ["Sets", number(score.sets), `${number(score.diagnosed)} diagnosed${todo ? `, ${todo} to be diagnosed` : ""}${score.failed ? `, ${score.failed} failed` : ""}`]],
     blocks: [
       block(`${key}-counts`, "What was counted", countTable("Counts with 90 % intervals (Clopper & Pearson 1934)", COUNTS.map(([name, text]) => [text, score[name]]))),
-      power(score, key), doses(score, key), confusion(score, key),
+      power(score, key), strengths(score, key), confusion(score, key),
       block(`${key}-coverage`, "Intervals", countTable("How often the 90 % intervals hold the truth", coverage),
         score.recovery?.length ? table({ caption: "Mean distance of parameters from the truth", rows: score.recovery, columns: [{ label: "parameter", value: (row) => words(row.parameter) },
           { label: "sets", number: true, value: (row) => number(row.sets) }, { label: "retuned", number: true, value: (row) => number(row.error_retuned, 3) },

@@ -74,15 +74,15 @@ function found(diagnosis, key) {
     const row = hypotheses.find((one) => one.name === name);
     if (row) lines.push(`${words(name)}: ${strength(row)}; ${pValue(row.p_value)} among all candidates; with it the recordings look like a draw of the model with ${pValue(row.p_goodness)}.`);
   }
-  const rivals = hypotheses.filter((row) => isNumber(row.p_against_best) && !named.includes(row.name));
+  const others = hypotheses.filter((row) => isNumber(row.p_against_best) && !named.includes(row.name));
   const second = pairs.map((pair) => `Beside ${words(pair.first)} (${pValue(pair.p_first)}), ${words(pair.second)} helps most, with ${pValue(pair.p_second)}`
     + (pair.p_second < 0.05 ? "." : ": it is not needed."));
   const why = { no_mismatch: "The base with its parameters retuned describes the recordings, so nothing was looked for further.",
     undetectable: "No candidate could be seen in these data, even at its strongest.", outside_library: "The base is rejected, and no candidate brings it near enough.",
     ambiguous: diagnosis.named_together ? "Two effects are asked for together." : "The candidates above cannot be told apart with these data, or the held-out data do not confirm them yet." }[verdict];
   return block(`${key}-found`, "What was found", why ? paragraph(why) : null, lines.length ? list(lines) : null,
-    rivals.length ? table({ caption: "Rivals: if one of them were true, how often would the best seem better by so much?", rows: rivals, columns: [
-      { label: "rival", value: (row) => words(row.name) }, { label: "p", number: true, value: (row) => probability(row.p_against_best) },
+    others.length ? table({ caption: "The other candidates: if one of them were true, how often would the best seem better by so much?", rows: others, columns: [
+      { label: "candidate", value: (row) => words(row.name) }, { label: "p", number: true, value: (row) => probability(row.p_against_best) },
       { label: "judgement", value: (row) => row.class }] }) : null,
     second.length ? list(second) : null);
 }

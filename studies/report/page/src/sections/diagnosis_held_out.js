@@ -20,16 +20,16 @@ function condition(held, key, index) {
   const metered = isNumber(held.recorded_power_W); // a velocity profile tells no power
   return block(id, `Held out: ${held.condition}`,
     paragraph((metered ? `Recorded power ${quantity(held.recorded_power_W, "W")}. ` : "")
-      + (held.improves_on_every_rival ? "The corrected model predicts this condition better than every rival." : gained.length ? "The corrected model is not surely better than every rival here." : "")),
+      + (held.improves_on_every_rival ? "The corrected model predicts this condition better than every rival model." : gained.length ? "The corrected model is not surely better than every rival model here." : "")),
     element("div", { class: "halves" }, figure("Misfit per number in the condition that was not fitted: about 1 when only chance differs, and smaller where errors were taken cautiously.",
       bars(`${id}-misfit`, { label: models.map((model) => `${model.model} ${number(model.misfit, 3)}`).join(", "), rows: models.map((model) => model.model),
         groups: [{ name: "", values: models.map((model) => model.misfit) }], x: { name: "misfit per number" } })),
     metered ? figure("Error of the predicted power.", bars(`${id}-power`, { label: models.map((model) => `${model.model} ${signed(model.power_percent, 2)} %`).join(", "),
       rows: models.map((model) => model.model), groups: [{ name: "", values: models.map((model) => model.power_percent) }], x: { name: "predicted less recorded power", unit: "%" } })) : null),
-    gained.length ? figure("What the correction gains on each rival, with 90 % intervals: right of zero, it predicts better.", intervals(`${id}-gain`, {
+    gained.length ? figure("What the correction gains on each rival model, with 90 % intervals: right of zero, it predicts better.", intervals(`${id}-gain`, {
       label: gained.map((model) => `${model.model} ${number(gain(model).value, 3)}`).join(", "), rows: gained.map((model) => model.model),
       groups: [{ name: "", values: gained.map((model) => ({ value: gain(model).value, low: gain(model).low90, high: gain(model).high90 })) }],
-      x: { name: "misfit of the rival less that of the corrected model" }, zero: 0 })) : null,
+      x: { name: "misfit of the rival model less that of the corrected model" }, zero: 0 })) : null,
     table({ caption: `Predictions for ${held.condition}`, rows: models, classOf: (model) => (model.model === "corrected" ? "strong" : null), columns: [
       { label: "model", value: (model) => model.model }, { label: "what it is", wide: true, value: (model) => model.is },
       { label: "simulated", value: (model) => (model.simulated ? "yes" : "computed from others") }, { label: "misfit", number: true, value: (model) => number(model.misfit, 3) },
