@@ -37,8 +37,7 @@ double surface_speed(const Assembly& a) { return velocity(a, 0)[0] + kRadius * s
 }  // namespace
 
 TEST_CASE("a sliding sphere begins to roll after 2 v0/(7 mu g) at 5/7 of its speed") {
-  for (const char* law :
-       {"{kind: hertz_mindlin}", "{kind: hertz_mindlin_deresiewicz}", "{kind: hertz_mindlin, cap: sum}"}) {
+  for (const char* law : {"{kind: hertz_mindlin}", "{kind: hertz_mindlin_deresiewicz}", "{kind: hertz_mindlin, cap: sum}"}) {
     INFO(law);
     Setup s;
     s.law = law;
