@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "app/commands.hpp"
+#include "kernel/base/program.hpp"
 #include "kernel/config/document.hpp"
 
 namespace millscope::app {
@@ -44,7 +45,7 @@ constexpr Command kCommands[] = {
 };
 
 void print_help() {
-  fmt::print("millscope {}: see inside a tumbling mill\n\nusage: millscope COMMAND …\n\n", MILLSCOPE_VERSION);
+  fmt::print("millscope {}: see inside a tumbling mill\n\nusage: millscope COMMAND …\n\n", base::version());
   for (const Command& c : kCommands) {
     if (c.what != nullptr) fmt::print("  {:<10} {}\n", c.name, c.what);
   }
@@ -65,7 +66,7 @@ int dispatch(const Arguments& all) {
     return all.empty() ? kBadInput : kDone;
   }
   if (all[0] == "--version") {
-    fmt::print("millscope {}\n", MILLSCOPE_VERSION);
+    fmt::print("millscope {}\n", base::version_and_commit());
     return kDone;
   }
   std::vector<std::string> names;

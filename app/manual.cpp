@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "app/tables.hpp"
+#include "kernel/base/program.hpp"
 
 namespace millscope::app {
 namespace {
@@ -64,7 +65,7 @@ int manual(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
   const std::vector<CommandTable> tables = all_tables();
   fmt::print(".TH MILLSCOPE 1 \"\" \"millscope {}\" \"User Commands\"\n.SH NAME\nmillscope \\- see inside a tumbling mill\n",
-             MILLSCOPE_VERSION);
+             base::version());
   fmt::print(".SH SYNOPSIS\n.B millscope\n.I COMMAND\n[\\fIARGUMENT\\fR ...]\n.br\n.B millscope\n.I COMMAND\n.B \\-\\-help\n");
   fmt::print(".SH DESCRIPTION\n");
   print_paragraph(

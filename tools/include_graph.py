@@ -14,7 +14,7 @@ HEADING = "## Rooms and arrows"
 OUTSIDE = ("tests", "docs")  # tests may include any room
 SOURCES = (".cpp", ".hpp", ".c", ".h", ".in", ".S")
 INCLUDE = re.compile(r'^\s*#\s*include\s+(["<])([^">]+)[">]', re.M)
-SYSTEM_HEADER = re.compile(r"(sys/|experimental/)?[a-z0-9_]+(\.h)?")  # <vector>, <unistd.h>, <sys/stat.h>
+SYSTEM_HEADER = re.compile(r"(sys/|gnu/|experimental/)?[a-z0-9_-]+(\.h)?")  # <vector>, <unistd.h>, <sys/stat.h>
 NOT_SYSTEM = ("hdf5.h", "nlopt.h", "zlib.h", "cairo.h")
 TICKED = re.compile(r"`([^`]+)`")
 

@@ -211,7 +211,8 @@ nlohmann::json provenance_json(const Registry& registry) {
                     {"compiler", r.compiler},
                     {"path", r.path},
                     {"instruction_set", r.instruction_set},
-                    {"file_hash", r.file_hash}});
+                    {"file_hash", r.file_hash},
+                    {"code_hash", r.code_hash}});
   }
   return list;
 }

@@ -14,6 +14,7 @@
 #include "kernel/base/text.hpp"
 #include "kernel/host/descriptor_check.hpp"
 #include "kernel/host/directory_check.hpp"
+#include "kernel/host/library_code.hpp"
 
 namespace millscope::host {
 
@@ -25,12 +26,24 @@ constexpr const char* kSymbol = "millscope_plugins";
   throw base::UserError(fmt::format("plugin library '{}' is not loaded: {}", path, what));
 }
 
-/// FNV-1a over the bytes of a file; refuses what is no shared library before the system's loader sees it.
-std::string hash_file(const std::string& path) {
-  const std::optional<std::string> bytes = base::text_if_readable(path);
+/// The bytes of a file; refuses what is no shared library before the system's loader sees it.
+std::string read_library(const std::string& path) {
+  std::optional<std::string> bytes = base::text_if_readable(path);
   if (!bytes) refuse(path, "it cannot be read");
   if (bytes->size() < sizeof(ElfW(Ehdr)) || !bytes->starts_with(ELFMAG)) refuse(path, "it is not a shared library (no ELF file)");
-  return base::Hash().add(*bytes).text();
+  return *std::move(bytes);
+}
+
+/// Over the builds for all instruction sets, whichever of them this machine takes, as their results are the same, and over the libraries
+/// that the one that was loaded needs.
+std::string code_hash_of(const std::filesystem::path& path, const std::string& level, const std::string& loaded) {
+  const std::filesystem::path folder = level.empty() ? path.parent_path() : path.parent_path().parent_path();
+  base::Hash hash;
+  for (const char* build : {"", "v2", "v3", "v4"}) {
+    if (const auto bytes = base::text_if_readable(folder / build / path.filename())) hash.add(build).add(code_digest(*bytes));
+  }
+  for (const std::string& library : needed_libraries(loaded)) hash.add(library);
+  return hash.text();
 }
 
 boost::dll::shared_library open_handle(const std::string& path) {
@@ -79,7 +92,7 @@ std::vector<const Descriptor*> checked_descriptors(const std::string& path, cons
 }  // namespace
 
 struct Library::State {
-  std::string path, level, hash;
+  std::string path, level, hash, code_hash;
   boost::dll::shared_library handle;
   std::vector<const Descriptor*> descriptors;
 };
@@ -91,9 +104,11 @@ std::shared_ptr<const Library> Library::open(const std::string& path, const std:
   if (trouble) throw base::UserError(fmt::format("plugin library '{}' does not exist or cannot be reached", path));
   state->level = level;
   require_private(state->path);
-  state->hash = hash_file(state->path);
+  const std::string bytes = read_library(state->path);
+  state->hash = base::Hash().add(bytes).text();
   state->handle = open_handle(state->path);
   state->descriptors = checked_descriptors(state->path, list_of(state->path, state->handle));
+  state->code_hash = code_hash_of(state->path, level, bytes);
   return std::shared_ptr<const Library>(new Library(std::move(state)));
 }
 
@@ -103,6 +118,7 @@ Library::~Library() = default;
 const std::string& Library::path() const { return state_->path; }
 const std::string& Library::level() const { return state_->level; }
 const std::string& Library::hash() const { return state_->hash; }
+const std::string& Library::code_hash() const { return state_->code_hash; }
 const std::vector<const Descriptor*>& Library::descriptors() const { return state_->descriptors; }
 
 }  // namespace millscope::host

@@ -23,6 +23,8 @@ class Library {
   const std::string& path() const;   ///< absolute, links resolved
   const std::string& level() const;  ///< "v2", "v3", "v4", or "" when it was built once for all machines
   const std::string& hash() const;   ///< FNV-1a of the file's bytes, 16 hexadecimal digits
+  /// 16 hexadecimal digits over what can change a result: code and constants of all its builds, and the versions of the libraries it needs.
+  const std::string& code_hash() const;
   const std::vector<const Descriptor*>& descriptors() const;
 
  private:

@@ -180,7 +180,7 @@ std::vector<PluginRecord> Registry::records() const {
   for (const Loaded& p : loaded_) {
     const std::string& level = p.library->level();
     records.push_back({text(p.kind()), std::string(p.name()), p.descriptor->version, p.descriptor->compiler, p.library->path(),
-                       level.empty() ? "any" : "x86-64-" + level, p.library->hash()});
+                       level.empty() ? "any" : "x86-64-" + level, p.library->hash(), p.library->code_hash()});
   }
   return records;
 }

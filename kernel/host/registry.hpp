@@ -55,6 +55,7 @@ struct PluginRecord {
   std::string path;
   std::string instruction_set;  ///< "x86-64-v3", or "any"
   std::string file_hash;        ///< FNV-1a of the library's bytes, hexadecimal
+  std::string code_hash;        ///< Library::code_hash
 };
 
 class Registry {

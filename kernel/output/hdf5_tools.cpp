@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/program.hpp"
 #include "kernel/output/file.hpp"
 
 namespace millscope::output::hdf5 {
@@ -109,7 +110,7 @@ std::string get_text_attribute(hid_t object, const char* name) {
 void stamp_schema(hid_t file, const std::string& format, std::uint32_t schema_version) {
   set_attribute(file, "format", format);
   set_attribute(file, "schema_version", schema_version);
-  set_attribute(file, "created_by", std::string("millscope " MILLSCOPE_VERSION));
+  set_attribute(file, "created_by", "millscope " + base::version_and_commit());
 }
 
 void require_schema(hid_t file, const std::filesystem::path& path, const std::string& format, std::uint32_t schema_version) {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <thread>
 
+#include "kernel/base/program.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/output/file.hpp"
 #include "millscope/abi.hpp"
@@ -36,7 +37,9 @@ std::string host_name() {
 
 nlohmann::ordered_json provenance(std::span<const std::string> command_line, std::span<const PluginRecord> plugins) {
   nlohmann::ordered_json json;
-  json["version"] = MILLSCOPE_VERSION;
+  json["version"] = base::version();
+  json["commit"] = *base::commit() != '\0' ? nlohmann::ordered_json(base::commit()) : nlohmann::ordered_json();
+  json["program"] = base::program_parts(base::kernel_folders());
   json["compiler"] = kCompiler;
   json["host"] = host_name();
   json["processor"] = processor_name();
@@ -45,7 +48,11 @@ nlohmann::ordered_json provenance(std::span<const std::string> command_line, std
   json["command_line"] = std::vector<std::string>(command_line.begin(), command_line.end());
   json["plugins"] = nlohmann::ordered_json::array();
   for (const PluginRecord& plugin : plugins) {
-    json["plugins"].push_back({{"name", plugin.name}, {"version", plugin.version}, {"file", plugin.file}, {"hash", plugin.hash}});
+    json["plugins"].push_back({{"name", plugin.name},
+                               {"version", plugin.version},
+                               {"file", plugin.file},
+                               {"hash", plugin.hash},
+                               {"code_hash", plugin.code_hash}});
   }
   return json;
 }

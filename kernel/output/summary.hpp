@@ -12,10 +12,11 @@ namespace millscope::output {
 
 /// A loaded plugin library, as the host knows it.
 struct PluginRecord {
-  std::string name, version, file, hash;
+  std::string name, version, file, hash, code_hash;
 };
 
-/// Where, when and with what: version, compiler, host, processor, cores, date (UTC), command line, plugins.
+/// Where, when and with what: version, commit, what of the program can change a number, compiler, host, processor, cores, date (UTC),
+/// command line, plugins.
 nlohmann::ordered_json provenance(std::span<const std::string> command_line, std::span<const PluginRecord> plugins);
 
 /// What a file holds as JSON; `is_discarded()` where it cannot be read or holds none.

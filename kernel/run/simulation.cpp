@@ -161,7 +161,7 @@ Json summary_of(Session& s) {
 void write_summary(Session& s, const host::Registry& registry) {
   Json j = summary_of(s);
   std::vector<output::PluginRecord> plugins;
-  for (const host::PluginRecord& r : registry.records()) plugins.push_back({r.name, r.version, r.path, r.file_hash});
+  for (const host::PluginRecord& r : registry.records()) plugins.push_back({r.name, r.version, r.path, r.file_hash, r.code_hash});
   j["provenance"] = output::provenance(s.options.command_line, plugins);
   output::write_json(s.directory / kSummary, j);
 }

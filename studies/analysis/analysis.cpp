@@ -102,7 +102,7 @@ std::vector<output::PluginRecord> used_plugins(const host::Registry& registry, c
   for (const host::PluginRecord& r : registry.records()) {
     const bool runs = r.kind == host::text(Kind::analyzer) &&
                       std::any_of(instances.begin(), instances.end(), [&](const AnalyzerInstance& i) { return i.object.name() == r.name; });
-    if (runs) used.push_back({r.name, r.version, r.path, r.file_hash});
+    if (runs) used.push_back({r.name, r.version, r.path, r.file_hash, r.code_hash});
   }
   return used;
 }

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "kernel/base/program.hpp"
 #include "kernel/output/file.hpp"
 #include "studies/report/packed.hpp"
 
@@ -47,8 +48,12 @@ std::string_view before(std::string_view page, std::string_view mark, std::strin
 }  // namespace
 
 nlohmann::ordered_json document_of(const std::string& title, const std::vector<nlohmann::ordered_json>& sections, bool live) {
-  return {{"schema_version", 1},          {"title", title}, {"made_utc", fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(std::time(nullptr)))},
-          {"version", MILLSCOPE_VERSION}, {"live", live},   {"sections", sections}};
+  return {{"schema_version", 1},
+          {"title", title},
+          {"made_utc", fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(std::time(nullptr)))},
+          {"version", base::version_and_commit()},
+          {"live", live},
+          {"sections", sections}};
 }
 
 std::string page_of(const nlohmann::ordered_json& document) {

@@ -41,7 +41,7 @@ class Help(CliTest):
             self.succeed(*example.split())
 
     def test_version(self):
-        self.assertRegex(self.succeed("--version").stdout, r"^millscope \d+\.\d+\.\d+\n$")
+        self.assertRegex(self.succeed("--version").stdout, r"^millscope \d+\.\d+\.\d+ \(commit ([0-9a-f]{7,}(-dirty)?|not known: built outside a git checkout)\)\n$")
 
     def test_no_command_prints_the_overview_and_fails(self):
         result = self.millscope()

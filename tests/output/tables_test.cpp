@@ -92,7 +92,7 @@ TEST_CASE("JSON keeps its order and is written whole") {
   json["z"] = 0.1;
   json["a"] = std::numeric_limits<double>::quiet_NaN();
   const std::vector<std::string> command{"millscope", "run", "case\xff.yaml"};
-  const std::vector<PluginRecord> plugins{{"hertz_mindlin", "1.0", "laws.so", "ab12"}};
+  const std::vector<PluginRecord> plugins{{"hertz_mindlin", "1.0", "laws.so", "ab12", "cd34"}};
   json["provenance"] = provenance(command, plugins);
   write_json(scratch / "summary.json", json);
   const std::string text = text_of(scratch / "summary.json");

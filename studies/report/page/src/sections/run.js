@@ -62,7 +62,7 @@ function provenance(summary, key) {
   if (!from) return null;
   const seed = /--seed[= ](\S+)/.exec((from.command_line ?? []).join(" "));
   return [
-    facts([["millscope", from.version, from.compiler], ["Made", moment(from.date_utc), null], ["Machine", from.host, `${from.processor ?? ""}, ${number(from.cores)} cores`],
+    facts([["millscope", from.commit ? `${from.version}, commit ${from.commit}` : from.version, from.compiler], ["Made", moment(from.date_utc), null], ["Machine", from.host, `${from.processor ?? ""}, ${number(from.cores)} cores`],
       ["State hash", element("code", null, summary.state_hash), "equal where two runs are equal to the bit"], seed && ["Seed", seed[1], null],
       ["Time step", quantity(summary.dt_s, "s"), `${percent(summary.dt_rayleigh_fraction)} of the Rayleigh time`],
       ["Stiffness", `× ${number(summary.stiffness_factor)}`, "of the real materials"],
@@ -70,7 +70,8 @@ function provenance(summary, key) {
     element("p", null, "Command: ", element("code", null, (from.command_line ?? []).join(" "))),
     disclosure(`${key}-plugins`, `Plugins (${(from.plugins ?? []).length}) with their hashes`, () => table({ caption: "Plugins that were loaded", rows: from.plugins ?? [],
       columns: [{ label: "name", value: (row) => row.name }, { label: "version", value: (row) => row.version },
-        { label: "hash of the file", value: (row) => element("code", null, row.hash) }] })),
+        { label: "hash of the file", value: (row) => element("code", null, row.hash) },
+        { label: "hash of the code", value: (row) => element("code", null, row.code_hash ?? "") }] })),
   ];
 }
 
