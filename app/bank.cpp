@@ -96,6 +96,7 @@ int extend(const Arguments& arguments) {
   c.runner = options.has("runner") ? options.text("runner") : question.study.runner;
   c.slurm_options = words_of(options.list("slurm"));
   c.quiet = options.has("quiet");
+  if (!c.quiet) c.say = print_line;
   c.retry_failed = options.has("retry-failed");
   std::vector<campaign::Simulation> simulations;
   for (const diagnose::PlannedRun& run : diagnose::planned_runs(question)) simulations.push_back(run.simulation);

@@ -37,6 +37,7 @@ campaign::Options campaign_options(const Options& options, const fs::path& outpu
     if (!(c.poll_s > 0)) throw UserError(fmt::format("--poll {}: give seconds, more than 0", c.poll_s));
   }
   c.quiet = options.has("quiet");
+  if (!c.quiet) c.say = print_line;
   c.retry_failed = options.has("retry-failed");
   return c;
 }

@@ -45,13 +45,13 @@ calibrate::SessionOptions study_session(const Options& options, const fs::path& 
   s.slurm_options = words_of(options.list("slurm"));
   s.quiet = options.has("quiet");
   s.retry_failed = options.has("retry-failed");
-  if (!s.quiet) {
-    s.say = [](const std::string& line) {
-      fmt::print("{}\n", line);
-      std::fflush(stdout);
-    };
-  }
+  if (!s.quiet) s.say = print_line;
   return s;
+}
+
+void print_line(const std::string& line) {
+  fmt::print("{}\n", line);
+  std::fflush(stdout);
 }
 
 }  // namespace millscope::app

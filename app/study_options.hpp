@@ -9,6 +9,8 @@
 namespace millscope::app {
 
 void add_study_options(Options& options);
+/// A line on standard output, at once.
+void print_line(const std::string& line);
 /// "--partition=long --time=60" → words.
 std::vector<std::string> words_of(const std::vector<std::string>& texts);
 calibrate::SessionOptions study_session(const Options& options, const std::filesystem::path& output);

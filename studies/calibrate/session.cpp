@@ -14,6 +14,7 @@ campaign::Options campaign_options(const Study& study, const SessionOptions& o) 
   c.plugin_directories = o.plugin_directories;
   c.quiet = o.quiet;
   c.slurm_options = o.slurm_options;
+  c.say = o.say;
   return c;
 }
 

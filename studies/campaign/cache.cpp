@@ -77,6 +77,7 @@ void Entry::prepare(const Identity& identity, const std::string& label) const {
   if (fs::exists(folder_ / "task.json")) return;
   TaskRecord record;
   record.label = label;
+  record.program = identity.program;
   write(record);
 }
 
@@ -90,6 +91,7 @@ TaskRecord Entry::read() const {
     record.attempts = json.value("attempts", 0);
     record.wall_s = json.value("wall_s", 0.0);
     record.host = json.value("host", "");
+    record.program = json.value("program", base::ProgramParts{});
   }
   const Json summary = output::read_json(run() / "summary.json");
   if (summary.is_object()) {
@@ -112,6 +114,7 @@ void Entry::write(const TaskRecord& record) const {
   json["attempts"] = record.attempts;
   if (record.stage == Stage::done) json["wall_s"] = record.wall_s;
   if (!record.host.empty()) json["host"] = record.host;
+  json["program"] = record.program;
   output::write_json(folder_ / "task.json", json);
 }
 

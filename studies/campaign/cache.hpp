@@ -17,10 +17,11 @@ enum class Stage { waiting, running, interrupted, done, failed };
 struct TaskRecord {
   Stage stage = Stage::waiting;
   std::string label;
-  std::string message;  ///< why it failed
-  int attempts = 0;     ///< sessions that were begun
-  double wall_s = 0;    ///< of all sessions, s; known when it is done
-  std::string host;     ///< where the last session ran
+  std::string message;              ///< why it failed
+  int attempts = 0;                 ///< sessions that were begun
+  double wall_s = 0;                ///< of all sessions, s; known when it is done
+  std::string host;                 ///< where the last session ran
+  base::ProgramParts program = {};  ///< Identity::program
 };
 
 /// CACHE/<key>.

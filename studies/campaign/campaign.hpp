@@ -50,6 +50,7 @@ struct Options {
   std::vector<std::filesystem::path> plugin_directories;  ///< as --plugin-dir
   bool quiet = false;
   std::function<void(std::size_t index, const Outcome&)> finished;  ///< called once for each simulation, as it ends
+  std::function<void(const std::string&)> say = {};                 ///< one line on what is used again, and why something is not
   bool retry_failed = false;                                        ///< compute failed ones again
   std::uint64_t memory_bytes = 0;          ///< that simulations may use together (local); 0: what the machine has free
   std::filesystem::path program;           ///< the millscope command to run; empty: this very program
@@ -67,9 +68,9 @@ class Interrupted : public base::UserError {
 /// fails is an outcome. Throws Interrupted; UserError when the cache cannot be written or the runner does not work.
 std::vector<Outcome> run(std::span<const Simulation> simulations, const Options& options);
 
-/// 32 hexadecimal digits over what the result depends on: the resolved case with what it writes (not its name, threads or
-/// checkpoint interval), the contents of the files it names, every build of the libraries of its plugins, the program's version.
-/// Throws UserError when the case cannot be read.
+/// 32 hexadecimal digits over the case, a hyphen, and 16 over the program. The case: resolved, with what it writes (not its name, threads
+/// or checkpoint interval) and the contents of the files it names. The program: the code of the kernel, compiler, flags and libraries, and
+/// the code of every build of the libraries of the case's plugins. Throws UserError when the case cannot be read.
 std::string key(const Simulation& simulation, const Options& options);
 
 }  // namespace millscope::campaign

@@ -12,7 +12,6 @@
 #include "kernel/base/text.hpp"
 #include "kernel/config/values.hpp"
 #include "kernel/config/writer.hpp"
-#include "kernel/output/summary.hpp"
 #include "kernel/run/assembly.hpp"
 
 namespace millscope::campaign {
@@ -21,7 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 using base::UserError;
 
-constexpr int kCacheVersion = 1;                  // of what a key is made of
+constexpr int kCacheVersion = 2;                  // of what a key is made of
+constexpr std::size_t kProgramDigits = 16;        // of a key: which program
 constexpr std::uint64_t kBaseMemory = 40U << 20;  // bytes: the program, its libraries and buffers, as `millscope check` has it
 constexpr std::uint64_t kMemoryPerBead = 1000;    // bytes
 constexpr std::uint64_t kMemoryPerMeshByte = 10;  // triangles, their trees and their topology
@@ -82,27 +82,12 @@ std::vector<NamedFile> files_of(const config::Case& c, const host::Registry& reg
   return files;
 }
 
-/// Of a library and of its builds for other instruction sets: which of them a machine takes makes no difference to the result.
-std::string library_hash(const host::Library& library) {
-  const fs::path path = library.path();
-  const fs::path base = library.level().empty() ? path.parent_path() : path.parent_path().parent_path();
-  std::string hashes;
-  for (const char* level : {"", "v2", "v3", "v4"}) {
-    const fs::path build = base / level / path.filename();
-    if (fs::is_regular_file(build)) hashes += fmt::format("{} {}\n", level, content_hash(read_file(build.string())));
-  }
-  return content_hash(hashes);
-}
-
-std::string plugins_text(const config::Case& c, const host::Registry& registry) {
-  std::map<std::string, std::string> lines;
+base::ProgramParts program_of(const config::Case& c, const host::Registry& registry) {
+  base::ProgramParts parts = base::program_parts(base::kernel_folders());
   each_plugin(c, [&](Kind kind, const std::string& name, const config::Node&, Scope) {
-    std::string& hash = lines[host::text(kind) + " " + name];
-    if (hash.empty()) hash = library_hash(*registry.find(kind, name).library);
+    parts[host::text(kind) + " " + name] = registry.find(kind, name).library->code_hash();
   });
-  std::string text;
-  for (const auto& [name, hash] : lines) text += fmt::format("{} {}\n", name, hash);
-  return text;
+  return parts;
 }
 
 /// The case without what has no influence on what the run writes, and with contents in the place of paths.
@@ -159,6 +144,8 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
+std::string case_of(const std::string& key) { return key.substr(0, key.find('-')); }
+
 Identifier::Identifier(const Options& options) : registry_(registry_options(options)) {}
 
 Identity Identifier::identify(const Simulation& simulation) const {
@@ -166,9 +153,11 @@ Identity Identifier::identify(const Simulation& simulation) const {
   config::finish(c, registry_.descriptors());
   Identity id;
   id.files = files_of(c, registry_);
-  const std::string version = output::provenance({}, {})["version"].get<std::string>();
-  id.key = content_hash(
-      fmt::format("cache {}\nmillscope {}\n{}{}", kCacheVersion, version, plugins_text(c, registry_), essence(c, registry_, id.files)));
+  id.program = program_of(c, registry_);
+  std::string program;
+  for (const auto& [part, text] : id.program) program += part + "\n" + text + "\n";
+  id.key = content_hash(fmt::format("cache {}\n{}", kCacheVersion, essence(c, registry_, id.files))) + "-" +
+           content_hash(program).substr(0, kProgramDigits);
   id.case_yaml = config::resolved_yaml(c, registry_.descriptors());
   const double beads = beads_of(simulation, c, registry_);
   id.work = std::max(1.0, beads) * (c.time.end + c.fill.settle);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "kernel/base/program.hpp"
 #include "kernel/host/registry.hpp"
 #include "studies/campaign/campaign.hpp"
 
@@ -19,6 +20,7 @@ struct NamedFile {
 /// A simulation that has been read.
 struct Identity {
   std::string key;
+  base::ProgramParts program;    ///< what of program and plugins the key stands for
   std::string case_yaml;         ///< the resolved case; files by the paths of `files`
   std::vector<NamedFile> files;  ///< each once
   double work = 1;               ///< beads × simulated seconds: what its cost grows with
@@ -39,6 +41,10 @@ class Identifier {
 
 /// SHA-1 of bytes as 32 hexadecimal digits (a version 5 UUID).
 std::string content_hash(const std::string& bytes);
+
+/// The part of a key that stands for the case and the files that it names: the same whatever program computes it. All of a text that is no
+/// key.
+std::string case_of(const std::string& key);
 
 /// Every `from` in `text` replaced by `to`.
 std::string replaced(std::string text, const std::string& from, const std::string& to);

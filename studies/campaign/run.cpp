@@ -3,6 +3,7 @@
 #include <map>
 
 #include "studies/campaign/board.hpp"
+#include "studies/campaign/reuse.hpp"
 
 namespace millscope::campaign {
 namespace {
@@ -27,6 +28,8 @@ Board::Board(std::span<const Simulation> simulations, const Options& options)
   make_directory(options.cache);
   const Identifier identifier(options);
   std::map<std::string, std::size_t> places;  // key → place in open_
+  std::vector<Identity> missing;
+  std::size_t found = 0;
   for (std::size_t i = 0; i < simulations.size(); ++i) {
     Identity id;
     try {
@@ -49,12 +52,17 @@ Board::Board(std::span<const Simulation> simulations, const Options& options)
     if (record.stage == Stage::done || (failed && !options.retry_failed)) {
       Outcome outcome = outcome_of(entry, record);
       outcome.cached = true;
+      ++found;
       settle(i, outcome, id.work);
       continue;
     }
     places.emplace(id.key, open_.size());
     open_.push_back({entry, {i}, id.work, id.end_s, id.memory, record.attempts, failed, 0});
+    missing.push_back(std::move(id));
   }
+  if (!options.say) return;
+  if (found > 0) options.say(fmt::format("simulations found in the cache: {} of {}", found, simulations.size()));
+  if (const std::string others = other_programs_sentence(options.cache, missing); !others.empty()) options.say(others);
 }
 
 std::optional<TaskRecord> Board::settled(const Job& job) const {

@@ -1,4 +1,5 @@
 // A key stands for what a result depends on, and for nothing else.
+#include "studies/campaign/identity.hpp"
 #include "tests/campaign/helpers.hpp"
 
 namespace millscope::campaign::test {
@@ -16,11 +17,12 @@ std::string triangle(const std::string& z) {
 
 }  // namespace
 
-TEST_CASE("the key is 32 hexadecimal digits and the same each time") {
+TEST_CASE("the key is 32 hexadecimal digits for the case, 16 for the program, and the same each time") {
   const Folder folder;
   const std::string first = key_of(folder, {});
-  CHECK(first.size() == 32);
-  CHECK(first.find_first_not_of("0123456789abcdef") == std::string::npos);
+  CHECK(first.size() == 32 + 1 + 16);
+  CHECK(first.find_first_not_of("0123456789abcdef-") == std::string::npos);
+  CHECK(case_of(first) == first.substr(0, 32));
   CHECK(key_of(folder, {}) == first);
 }
 

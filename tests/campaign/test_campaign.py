@@ -89,18 +89,23 @@ class Campaign(CampaignTest):
             self.succeed("campaign", "tasks.yaml", "-o", "out", "-q", executable=str(self.folder / "install/bin/millscope"))
             return self.table()["one"]["key"]
 
-        def touch(name):
-            with open(plugins / name, "ab") as file:  # the loader does not mind bytes after the library's end
-                file.write(b"x")
+        def touch(name, old, new):
+            data = (plugins / name).read_bytes()
+            self.assertIn(old, data)
+            (plugins / name).write_bytes(data.replace(old, new))
 
         first = key()
         self.assertEqual(key(), first)
-        touch("libmesh.so")  # not used by the case
+        touch("libmesh.so", b"Factor on top", b"Factor on tOp")  # not used by the case
         self.assertEqual(key(), first)
-        touch("libgravity.so")
+        with open(plugins / "libgravity.so", "ab") as file:  # behind the library's end
+            file.write(b"x")
+        self.assertEqual(key(), first)
+        touch("libgravity.so", b"acceleration", b"accElEration")
         second = key()
         self.assertNotEqual(second, first)
-        touch("v2/libhertz_mindlin.so")  # a build that this machine may not even take
+        self.assertEqual(second[:32], first[:32])
+        touch("v2/libhertz_mindlin.so", b"Mindlin", b"MindlIn")  # a build that this machine may not even take
         self.assertNotEqual(key(), second)
 
     def test_the_instruction_set_leaves_the_key(self):

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "studies/campaign/cache.hpp"
+#include "studies/campaign/reuse.hpp"
 #include "studies/diagnose/bank/bank.hpp"
 
 namespace millscope::diagnose {
@@ -61,6 +62,7 @@ BankStatus bank_status(const Question& q, const campaign::Options& options) {
   const campaign::Identifier identifier(options);
   BankStatus status;
   std::vector<Work> work;
+  std::vector<campaign::Identity> missing;
   for (const PlannedRun& run : planned_runs(q)) {
     const auto same = [&](const BankCell& c) { return c.group == run.group && c.condition == run.condition; };
     auto cell = std::find_if(status.cells.begin(), status.cells.end(), same);
@@ -72,6 +74,7 @@ BankStatus bank_status(const Question& q, const campaign::Options& options) {
     const campaign::Identity identity = identifier.identify(run.simulation);
     const campaign::TaskRecord record = campaign::Entry(options.cache, identity.key).read();
     count(record, identity.work, *cell, work[cell - status.cells.begin()]);
+    if (record.stage != campaign::Stage::done) missing.push_back(identity);
     if (record.stage == campaign::Stage::failed) status.failures.push_back(fmt::format("{}: {}", run.simulation.label, record.message));
   }
   for (const BankCell& c : status.cells) {
@@ -79,6 +82,7 @@ BankStatus bank_status(const Question& q, const campaign::Options& options) {
     status.total.running += c.running, status.total.wall_s += c.wall_s;
   }
   estimate(work, status);
+  status.other_programs = campaign::other_programs_sentence(options.cache, missing);
   return status;
 }
 
@@ -104,6 +108,7 @@ std::string status_text(const Question& q, const BankStatus& s, int slots) {
   for (const BankCell& c : s.cells) row(c.group, q.study.conditions[c.condition].name, c);
   row("all", "", s.total);
   for (const std::string& line : s.failures) fmt::format_to(std::back_inserter(out), "failed: {}\n", line);
+  if (!s.other_programs.empty()) out += s.other_programs + "\n";
   if (s.total.waiting() + s.total.running == 0)
     out += "the bank is whole\n";
   else if (s.estimated)

@@ -34,6 +34,7 @@ struct BankCell {
 struct BankStatus {
   std::vector<BankCell> cells;
   std::vector<std::string> failures;  ///< "base_3_speed75: …"
+  std::string other_programs = {};    ///< campaign::other_programs_sentence
   BankCell total;
   bool estimated = false;  ///< some run is done, so that there is a time to go by
 };
