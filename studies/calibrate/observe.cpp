@@ -12,6 +12,7 @@
 #include "studies/calibrate/velocity_profile.hpp"
 #include "studies/camera/camera.hpp"
 #include "studies/camera/ctrack_writer.hpp"
+#include "studies/campaign/identity.hpp"
 
 namespace millscope::calibrate {
 namespace {
@@ -46,8 +47,9 @@ studies::Condition condition_of(const BeadPaths& paths) {
   return condition;
 }
 
-/// Every run is filmed with chance of its own: what all runs shared would be in no scatter between them and pass for missing physics.
-std::uint64_t camera_seed(const std::string& key) { return std::stoull(hash_of({"camera", key}), nullptr, 16); }
+/// Every run is filmed with chance of its own: what all runs shared would be in no scatter between them and pass for missing physics. The
+/// chance is the case's, whatever program computed it, so that what two programs differ by is not the camera's.
+std::uint64_t camera_seed(const std::string& key) { return std::stoull(hash_of({"camera", campaign::case_of(key)}), nullptr, 16); }
 
 /// What the camera makes of the beads, as it would be read from files.
 studies::Recording film(const BeadPaths& paths, const studies::Camera& camera, std::uint64_t seed, int threads) {
