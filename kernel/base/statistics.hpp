@@ -1,4 +1,4 @@
-// The 90 % interval, and quantiles, each by the rule that its users need.
+// 90 % intervals, and quantiles, each by the rule that its users need.
 //
 //   quantile               rank round(f (n − 1)), a half upwards: always one of the values; of two middle values the upper
 //   quantile_below         rank ⌊f (n − 1)⌋: for a scale that no more than the rest may reach beyond
@@ -18,7 +18,19 @@
 
 namespace millscope::base {
 
-inline constexpr double kNormal90 = 1.645;  ///< standard errors to either side that hold 90 %
+inline constexpr double kNormal90 = 1.6448536269514722;  ///< standard errors to either side that hold 90 % of a normal law
+
+/// A value and its 90 % interval, in the unit that the holder states.
+struct Interval90 {
+  double value = 0, low = 0, high = 0;
+
+  static Interval90 about(double value, double standard_error) {
+    return {value, value - kNormal90 * standard_error, value + kNormal90 * standard_error};
+  }
+  bool known() const { return std::isfinite(low) && std::isfinite(high); }
+  bool holds(double truth) const { return truth >= low && truth <= high; }
+  double standard_error() const { return (high - low) / (2 * kNormal90); }  ///< of a normal law with this interval
+};
 
 /// The value of a rank; `values` is left in another order.
 template <class Number>

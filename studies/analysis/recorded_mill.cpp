@@ -55,7 +55,7 @@ void weigh_charge(const Condition& c, AnalyzerContext& context) {
 }
 
 std::string interval_text(const Finding& finding, double factor) {
-  const Estimate& e = *finding.estimate;
+  const base::Interval90& e = *finding.estimate;
   if (finding.bound == Bound::at_least) return fmt::format("{:.4g} (at least {:.4g})", factor * e.value, factor * e.low);
   return fmt::format("{:.4g} [{:.4g}, {:.4g}]", factor * e.value, factor * e.low, factor * e.high);
 }

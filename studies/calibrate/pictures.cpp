@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/calibrate/outputs.hpp"
-#include "studies/inspect/estimate.hpp"
 #include "studies/picture/picture.hpp"
 
 namespace millscope::calibrate {

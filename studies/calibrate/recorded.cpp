@@ -72,7 +72,7 @@ void add_axis_error(const studies::Recording& recording, RecordedCondition& r) {
   if (recording.frame) return;
   const auto axis = studies::estimate_motion(recording).axis[0].estimate;
   if (!axis) return;
-  const double error = studies::standard_error(*axis);
+  const double error = axis->standard_error();
   Observation& o = r.observation;
   const double watts = r.mass * 9.81 * std::fabs(r.omega) * error;
   for (Eigen::Index i = 0; i < o.value.size(); ++i) {

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <iterator>
 
+#include "kernel/base/statistics.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
 #include "studies/calibrate/outputs.hpp"
-#include "studies/inspect/estimate.hpp"
 
 namespace millscope::calibrate {
 namespace {

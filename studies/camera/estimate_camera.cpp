@@ -29,7 +29,7 @@ std::optional<std::array<Estimated, 2>> axis_of(const Recording& recording, cons
   if (frame) return std::array<Estimated, 2>{Estimated{frame->axis[0], 0}, Estimated{frame->axis[1], 0}};
   const MillMotion motion = estimate_motion(recording);
   if (motion.sense == 0 || !motion.axis[0].estimate || !motion.axis[1].estimate) return std::nullopt;
-  const auto with_error = [](const Estimate& x) { return Estimated{x.value, standard_error(x)}; };
+  const auto with_error = [](const base::Interval90& x) { return Estimated{x.value, x.standard_error()}; };
   return std::array<Estimated, 2>{with_error(*motion.axis[0].estimate), with_error(*motion.axis[1].estimate)};
 }
 

@@ -15,10 +15,10 @@ using Json = nlohmann::ordered_json;
 /// A number that was not finite is null in the file.
 double number(const Json& j) { return j.is_number() ? j.get<double>() : std::numeric_limits<double>::quiet_NaN(); }
 
-Interval interval_from(const Json& j) { return {number(j.at("value")), number(j.at("low90")), number(j.at("high90"))}; }
+base::Interval90 interval_from(const Json& j) { return {number(j.at("value")), number(j.at("low90")), number(j.at("high90"))}; }
 
-std::map<std::string, Interval> parameters(const Json& contact, const char* which) {
-  std::map<std::string, Interval> out;
+std::map<std::string, base::Interval90> parameters(const Json& contact, const char* which) {
+  std::map<std::string, base::Interval90> out;
   if (!contact.contains(which)) return out;
   for (const auto& [name, value] : contact.at(which).items()) out[name] = interval_from(value);
   return out;

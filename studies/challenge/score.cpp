@@ -76,7 +76,7 @@ void add_estimate(const Marked& m, Score& s) {
 }
 
 /// The model that is right for the set: the base where nothing is hidden, the best candidate where that is the truth.
-const std::map<std::string, Interval>* right_parameters(const Marked& m) {
+const std::map<std::string, base::Interval90>* right_parameters(const Marked& m) {
   if (m.answer.kind == Kind::none) return &m.found->retuned;
   if (m.answer.kind == Kind::effect && best_is(*m.found, m.answer.effects.front().hypothesis)) return &m.found->unmasked;
   return nullptr;
@@ -132,7 +132,7 @@ void add_at_zero(const std::vector<Marked>& sets, Score& s) {
 
 /// Held-out gain of the sets with effects in which something right was best.
 void add_gains(const std::vector<Marked>& sets, Score& s) {
-  std::map<std::string, std::vector<Interval>> by_model;
+  std::map<std::string, std::vector<base::Interval90>> by_model;
   for (const Marked& m : sets) {
     if (!m.found || m.answer.effects.empty()) continue;
     const bool right =
@@ -142,8 +142,8 @@ void add_gains(const std::vector<Marked>& sets, Score& s) {
   }
   for (auto& [model, all] : by_model) {
     GainCount count{model, {}, 0};
-    for (const Interval& i : all) count.surely.add(i.low90 > 0);
-    std::sort(all.begin(), all.end(), [](const Interval& a, const Interval& b) { return a.value < b.value; });
+    for (const base::Interval90& i : all) count.surely.add(i.low > 0);
+    std::sort(all.begin(), all.end(), [](const base::Interval90& a, const base::Interval90& b) { return a.value < b.value; });
     count.median = 0.5 * (all[(all.size() - 1) / 2].value + all[all.size() / 2].value);
     s.gains.push_back(count);
   }

@@ -14,13 +14,11 @@
 
 namespace millscope::challenge {
 
-using naming::Interval;
-
 /// One hypothesis of a diagnosis.
 struct Tested {
   std::string name, class_of;                           ///< "best", "not rejected", …
   std::vector<std::pair<double, double>> lambda_curve;  ///< (strength, λ), strengths rising
-  std::optional<Interval> strength;
+  std::optional<base::Interval90> strength;
 
   /// λ at a strength, by its root between those of the curve.
   double lambda(double strength) const;
@@ -28,7 +26,7 @@ struct Tested {
 
 struct Gain {
   std::string condition, model;  ///< held out; against this model
-  Interval improvement;
+  base::Interval90 improvement;
 };
 
 /// What a diagnosis says.
@@ -37,7 +35,7 @@ struct Found {
   std::string verdict;
   std::vector<std::string> named;
   std::vector<Tested> hypotheses;
-  std::map<std::string, Interval> retuned, unmasked;  ///< contact parameters and nuisances
+  std::map<std::string, base::Interval90> retuned, unmasked;  ///< contact parameters and nuisances
   std::vector<Gain> gains;
 
   const Tested* find(const std::string& name) const;

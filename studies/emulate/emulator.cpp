@@ -31,8 +31,6 @@ struct Emulator::State {
 
 namespace {
 
-constexpr double kTwoSided90 = 1.6448536269514722;
-
 Sample sample_of(const Emulator::State& s, Index observable) {
   MatrixXd input(s.box.size(), s.training.input.rows());
   for (Index i = 0; i < input.cols(); ++i) input.col(i) = s.box.coded(s.training.input.row(i).transpose());
@@ -174,7 +172,7 @@ Diagnostics Emulator::leave_one_out() const {
     d.predicted.col(j) = state_->training.output.col(j) - unit * left.residual;
     d.deviation.col(j) = unit * left.variance.cwiseSqrt();
     d.standardised.col(j) = left.residual.cwiseQuotient(left.variance.cwiseSqrt());
-    d.coverage90[j] = (d.standardised.col(j).array().abs() < kTwoSided90).cast<double>().mean();
+    d.coverage90[j] = (d.standardised.col(j).array().abs() < base::kNormal90).cast<double>().mean();
     d.mean_square[j] = d.standardised.col(j).squaredNorm() / static_cast<double>(n);
     d.predictivity[j] = 1 - left.residual.squaredNorm() / static_cast<double>(n);  // of the output in units of its spread
   }

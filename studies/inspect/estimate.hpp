@@ -8,16 +8,6 @@
 
 namespace millscope::studies {
 
-/// A value and its 90 % interval, in the unit that the holder states.
-struct Estimate {
-  double value = 0;
-  double low = 0;
-  double high = 0;
-};
-
-/// Of which the interval would be if it were normal.
-inline double standard_error(const Estimate& e) { return (e.high - e.low) / (2 * base::kNormal90); }
-
 /// How a bound is to be read.
 enum class Bound {
   both,      ///< the interval holds on both sides
@@ -26,7 +16,7 @@ enum class Bound {
 
 /// Either an estimate with what it rests on, or none and why not.
 struct Finding {
-  std::optional<Estimate> estimate;
+  std::optional<base::Interval90> estimate;
   std::string note;
   Bound bound = Bound::both;
 };

@@ -13,8 +13,8 @@ namespace millscope::studies {
 struct SpeedRange {
   double low = 0, high = 0;  ///< m/s
   double time = 0;           ///< s
-  Estimate rate;             ///< locations per second, 1/s
-  Estimate lost;             ///< part of the locations, against the slow range with the highest rate
+  base::Interval90 rate;     ///< locations per second, 1/s
+  base::Interval90 lost;     ///< part of the locations, against the slow range with the highest rate
 };
 
 struct Losses {

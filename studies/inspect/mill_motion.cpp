@@ -184,7 +184,7 @@ void report_enclosing(const Work& work, MillMotion& motion) {
   const double floor = 0.01 * work.circle.radius;
   motion.axis[0] = {interval(work.circle.x, deviation[0], 30, floor), basis};
   motion.axis[1] = {interval(work.circle.y, deviation[1], 30, floor), basis};
-  Estimate radius = interval(work.circle.radius, deviation[2], 30, floor);
+  base::Interval90 radius = interval(work.circle.radius, deviation[2], 30, floor);
   radius.high = std::numeric_limits<double>::infinity();
   motion.path_radius = {radius, basis + "; the tracer may never have touched the shell", Bound::at_least};
 }
@@ -205,7 +205,7 @@ void report_least_speed(const Work& work, MillMotion& motion) {
     return;
   }
   const double typical = base::quantile(speeds, 0.9), low = base::quantile(speeds, 0.5);
-  motion.speed = {Estimate{typical, low, std::numeric_limits<double>::infinity()},
+  motion.speed = {base::Interval90{typical, low, std::numeric_limits<double>::infinity()},
                   why_no_wall(work) + ": the outer charge turns so fast, the shell at least", Bound::at_least};
 }
 
@@ -216,7 +216,7 @@ Agreement compare_speed(const Condition& stated, const MillMotion& motion) {
   if (!stated.speed || motion.sense == 0) return Agreement::unknown;
   if (stated.angular_velocity.value_or(0) * motion.sense < 0) return Agreement::opposite;
   if (!motion.speed.estimate) return Agreement::unknown;
-  const Estimate& found = *motion.speed.estimate;
+  const base::Interval90& found = *motion.speed.estimate;
   const double least = found.low / (motion.rides > 0 ? kFar : 2 * kFar);  // without rides the charge may fall past the shell
   const double high = motion.speed.bound == Bound::at_least ? kFarBeyondBound / kFar * found.value : found.high;
   if (*stated.speed < least || *stated.speed > kFar * high) return Agreement::far;

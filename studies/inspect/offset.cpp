@@ -73,7 +73,7 @@ Finding mean_offset(const Recording& recording, const MillMotion& motion, double
     result.note = "too short to cut into six blocks of a circulation";
     return result;
   }
-  const Estimate& x = *motion.axis[0].estimate;
+  const base::Interval90& x = *motion.axis[0].estimate;
   return {interval(worst.mean, worst.deviation, worst.freedom, 0.5 * (x.high - x.low)),
           "weighted by time; blocks of one to eight circulations and their likeness; the largest error"};
 }

@@ -22,7 +22,7 @@ constexpr Unit kMillimetre{1e3, "mm", 2}, kRevolutions{kRpm, "rpm", 2}, kDegree{
 
 std::string line(const std::string& name, const std::string& value) { return fmt::format("  {:<26}{}\n", name, value); }
 
-std::string text(const Estimate& e, const Unit& u) {
+std::string text(const base::Interval90& e, const Unit& u) {
   const auto number = [&](double v) { return fmt::format("{:.{}f}", v * u.factor, u.digits); };
   if (!std::isfinite(e.high)) return fmt::format("{} {}, and at least {}", number(e.value), u.name, number(e.low));
   return fmt::format("{} {}  [{}, {}]", number(e.value), u.name, number(e.low), number(e.high));

@@ -10,7 +10,7 @@ using Json = nlohmann::ordered_json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json json(const Estimate& e) { return {{"value", number(e.value)}, {"low", number(e.low)}, {"high", number(e.high)}}; }
+Json json(const base::Interval90& e) { return {{"value", number(e.value)}, {"low", number(e.low)}, {"high", number(e.high)}}; }
 
 Json json(const Finding& f) {
   Json j = f.estimate ? json(*f.estimate) : Json{{"value", nullptr}, {"low", nullptr}, {"high", nullptr}};

@@ -31,14 +31,14 @@ std::vector<double> bootstrap_deviation(std::size_t groups, std::size_t draws,
   return squares;
 }
 
-Estimate interval(double value, double deviation, double freedom, double floor) {
+base::Interval90 interval(double value, double deviation, double freedom, double floor) {
   const boost::math::students_t distribution(std::max(1.0, freedom));
   const double half = std::hypot(boost::math::quantile(distribution, 0.95) * deviation, floor);
   return {value, value - half, value + half};
 }
 
-Estimate proportion(double successes, double trials) {
-  constexpr double z = 1.6448536269514722;
+base::Interval90 proportion(double successes, double trials) {
+  constexpr double z = base::kNormal90;
   const double p = successes / trials, denominator = 1 + z * z / trials;
   const double centre = (p + z * z / (2 * trials)) / denominator;
   const double half = z * std::sqrt(p * (1 - p) / trials + z * z / (4 * trials * trials)) / denominator;

@@ -16,9 +16,9 @@ std::vector<double> bootstrap_deviation(std::size_t groups, std::size_t draws,
 
 /// Value ± t(0.95, freedom) · deviation, with `floor` (half the width of a 90 % interval of what resampling cannot see) added in
 /// quadrature.
-Estimate interval(double value, double deviation, double freedom, double floor = 0);
+base::Interval90 interval(double value, double deviation, double freedom, double floor = 0);
 
 /// 90 % interval (Wilson 1927) of a proportion.
-Estimate proportion(double successes, double trials);
+base::Interval90 proportion(double successes, double trials);
 
 }  // namespace millscope::studies

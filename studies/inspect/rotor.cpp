@@ -181,7 +181,7 @@ std::vector<Plateau> merge(std::vector<Plateau> plateaus) {
 }
 
 // Ten blocks of points, in order of time.
-Estimate radius_interval(const PlanePoints& flat, const Circle& circle, double scale) {
+base::Interval90 radius_interval(const PlanePoints& flat, const Circle& circle, double scale) {
   constexpr std::size_t kBlocks = 10;
   double sum = 0, squares = 0;
   for (std::size_t b = 0; b < kBlocks; ++b) {

@@ -14,11 +14,11 @@ namespace millscope::studies {
 struct Plateau {
   std::size_t run = 0;
   double start = 0, end = 0;  ///< s
-  Estimate speed;             ///< rad/s, its magnitude
+  base::Interval90 speed;     ///< rad/s, its magnitude
 };
 
 struct Rotor {
-  Estimate radius;                 ///< m
+  base::Interval90 radius;         ///< m
   std::array<double, 3> centre{};  ///< m
   std::array<double, 3> axis{};    ///< unit normal of the plane of rotation, of the sign about which most of the motion is positive
   double scatter = 0;              ///< standard deviation of the points about the circle, m

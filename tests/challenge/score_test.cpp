@@ -24,7 +24,7 @@ Found found(const std::string& verdict, std::vector<std::string> named) {
 }
 
 /// A value whose interval was not worked out.
-Interval open(double value) { return {value, std::nan(""), std::nan("")}; }
+millscope::base::Interval90 open(double value) { return {value, std::nan(""), std::nan("")}; }
 
 /// λ of an effect that is linear in its strength.
 std::vector<std::pair<double, double>> square_law(double full) { return {{0, 0}, {0.25, full / 16}, {1, full}}; }
@@ -39,12 +39,14 @@ std::vector<Marked> ten_sets() {
   Found rejected = found("outside_library", {});
   rejected.retuned = {{"friction", {0.1, 0.1, 0.1}}};
   Found named = found("named", {"rolling"});
-  named.hypotheses = {{"rolling", "best", square_law(80), Interval{0.11, 0.09, 0.13}}, {"bridge", "rejected", square_law(10), open(1)}};
+  named.hypotheses = {{"rolling", "best", square_law(80), millscope::base::Interval90{0.11, 0.09, 0.13}},
+                      {"bridge", "rejected", square_law(10), open(1)}};
   named.retuned = {{"friction", {0.4, 0.38, 0.42}}};
   named.unmasked = {{"friction", {0.32, 0.31, 0.35}}};
   named.gains = {{"slow", "retuned to power", {1.5, 0.5, 2.5}}};
   Found ambiguous = found("ambiguous", {"bridge", "rolling"});
-  ambiguous.hypotheses = {{"rolling", "not rejected", square_law(80), open(0.17)}, {"bridge", "best", square_law(10), Interval{9, 8, 10}}};
+  ambiguous.hypotheses = {{"rolling", "not rejected", square_law(80), open(0.17)},
+                          {"bridge", "best", square_law(10), millscope::base::Interval90{9, 8, 10}}};
   Found missed = found("no_mismatch", {});
   missed.hypotheses = {{"bridge", "not needed", square_law(10), open(1)}};
   Found half = found("named", {"rolling"});

@@ -93,7 +93,7 @@ TEST_CASE("diagnoses are read as they were written, failures with their reason")
   const std::vector<Marked> sets = read_sets(folder.path);
   CHECK(sets[0].found->failure == "the disk was on fire");
   const Found& f = *sets[1].found;
-  CHECK(f.best()->strength->low90 == 0.0039);
+  CHECK(f.best()->strength->low == 0.0039);
   CHECK_FALSE(f.unmasked.at("friction").known());  // its end is not a number
   CHECK(f.gains.size() == 1);
   CHECK(f.best()->lambda(0.5) == Approx(12.25));

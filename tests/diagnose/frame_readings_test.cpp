@@ -160,8 +160,8 @@ TEST_CASE("a reading names a tilt that the charge alone leaves open") {
   const Diagnosis d = diagnosed(true);
   INFO(d.sentence);
   REQUIRE(d.named == std::vector<std::string>{"tilt"});
-  const Interval& tilt = d.naming.judged.at(1).theta.at(2);
+  const base::Interval90& tilt = d.naming.judged.at(1).theta.at(2);
   CHECK(tilt.known());
   CHECK(tilt.holds(0.06));
-  CHECK(tilt.low90 > 0.03);
+  CHECK(tilt.low > 0.03);
 }

@@ -51,8 +51,8 @@ TEST_CASE("a drag that is missing is offered, with its coefficient") {
     REQUIRE_FALSE(offer.terms.empty());
     CHECK(offer.terms[0].name == "linear drag");
     CHECK(offer.explained > 0.5);
-    const Interval& c = offer.terms[0].coefficient;
-    if (offer.terms.size() == 1 && c.low90 <= 2 && 2 <= c.high90) ++held;
+    const millscope::base::Interval90& c = offer.terms[0].coefficient;
+    if (offer.terms.size() == 1 && c.low <= 2 && 2 <= c.high) ++held;
     CHECK_THAT(c.value, WithinAbs(2, 0.3));
   }
   CHECK(held >= 14);  // 18 of 20 expected

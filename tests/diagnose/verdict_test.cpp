@@ -95,10 +95,10 @@ TEST_CASE("what is missing is named, with its strength, the friction behind it a
   const Judged& found = judged(d, "rolling_resistance");
   CHECK(found.p_family < 0.05);
   CHECK_THAT(found.strength.value, WithinAbs(0.6, 0.15));  // naming_test.cpp counts how often intervals hold the truth
-  CHECK(found.strength.low90 < found.strength.value);
-  CHECK(found.strength.high90 > found.strength.value);
-  CHECK(found.theta[0].low90 < 0.3);
-  CHECK(found.theta[0].high90 > 0.3);
+  CHECK(found.strength.low < found.strength.value);
+  CHECK(found.strength.high > found.strength.value);
+  CHECK(found.theta[0].low < 0.3);
+  CHECK(found.theta[0].high > 0.3);
   REQUIRE(d.held_out.size() == 1);
   const HeldOut& held = d.held_out[0];
   CHECK(held.improves);
@@ -107,8 +107,8 @@ TEST_CASE("what is missing is named, with its strength, the friction behind it a
   for (std::size_t k = 1; k < held.scores.size(); ++k) {
     rival_models.push_back(held.scores[k].prediction.name);
     CHECK(held.scores[k].misfit > held.scores[0].misfit);
-    CHECK(held.scores[k].low90 > 0);
-    CHECK(held.scores[k].low90 < held.scores[k].improvement);
+    CHECK(held.scores[k].improvement.low > 0);
+    CHECK(held.scores[k].improvement.low < held.scores[k].improvement.value);
   }
   CHECK(rival_models == std::vector<std::string>{"effect removed", "retuned to power", "retuned to all observables", "placebo",
                                                  "Gaussian-process discrepancy"});
@@ -132,8 +132,8 @@ TEST_CASE("a strength is right where the effect grows with what is varied apart"
   const Judged& found = judged(d, "rolling_resistance");
   CHECK(found.p_family < 0.05);
   CHECK_THAT(found.strength.value, WithinAbs(0.6, 0.15));
-  CHECK(found.strength.low90 < 0.6);
-  CHECK(found.strength.high90 > 0.6);
+  CHECK(found.strength.low < 0.6);
+  CHECK(found.strength.high > 0.6);
 }
 
 TEST_CASE("two candidates with one effect are a class, and the condition that would separate them is said") {
@@ -321,9 +321,9 @@ TEST_CASE("a camera that stands aside is named, and no physics") {
   INFO(aside.sentence);
   REQUIRE(aside.named == std::vector<std::string>{"axis_x"});
   CHECK(aside.verdict == Verdict::named);
-  const Interval& found = judged(aside, "axis_x").theta.at(2);
-  CHECK(found.low90 < 0.0045);
-  CHECK(found.high90 > 0.0045);
+  const base::Interval90& found = judged(aside, "axis_x").theta.at(2);
+  CHECK(found.low < 0.0045);
+  CHECK(found.high > 0.0045);
 }
 
 TEST_CASE("a mill that is stiffer than the fitted one is no missing physics where that is a nuisance, and its friction is covered") {
@@ -350,8 +350,8 @@ TEST_CASE("a mill that is stiffer than the fitted one is no missing physics wher
   const std::vector<double> truth{0.3, 0.4, 0.008};
   for (std::size_t i = 0; i < truth.size(); ++i) {
     INFO(doubted.problem.data.theta[i].name);
-    CHECK(doubted.naming.base_theta[i].low90 < truth[i]);
-    CHECK(doubted.naming.base_theta[i].high90 > truth[i]);
+    CHECK(doubted.naming.base_theta[i].low < truth[i]);
+    CHECK(doubted.naming.base_theta[i].high > truth[i]);
   }
   // The practice retunes friction alone: its mill is as soft as it was.
   for (const Score& s : doubted.held_out.front().scores) CHECK(s.prediction.failure.empty());

@@ -99,9 +99,9 @@ TEST_CASE("circulations are counted, and their time follows the motion") {
 TEST_CASE("the interval of the mean beside the axis shrinks with the recording's length") {
   SyntheticMill mill;
   mill.seconds = 30;
-  const Estimate brief = *inspect(make_recording(mill)).mean_offset.estimate;
+  const millscope::base::Interval90 brief = *inspect(make_recording(mill)).mean_offset.estimate;
   mill.seconds = 270;
-  const Estimate lasting = *inspect(make_recording(mill)).mean_offset.estimate;
+  const millscope::base::Interval90 lasting = *inspect(make_recording(mill)).mean_offset.estimate;
   CHECK(lasting.high - lasting.low < 0.6 * (brief.high - brief.low));
   CHECK(lasting.value > brief.low);
   CHECK(lasting.value < brief.high);

@@ -61,13 +61,13 @@ TEST_CASE("resampling finds the standard error of a mean") {
   });
   CHECK_THAT(deviation[0], WithinRel(0.05, 0.1));
   CHECK(deviation[1] == 0);
-  const Estimate e = interval(1, 0.05, 1e6);
+  const millscope::base::Interval90 e = interval(1, 0.05, 1e6);
   CHECK_THAT(e.high - e.value, WithinRel(0.05 * 1.6449, 1e-3));
   CHECK_THAT(interval(1, 0, 5, 0.3).high, WithinRel(1.3, 1e-12));
 }
 
 TEST_CASE("a proportion has an interval even when nothing was missed") {
-  const Estimate none = proportion(0, 50);
+  const millscope::base::Interval90 none = proportion(0, 50);
   CHECK(none.value == 0);
   CHECK(none.low == 0);
   CHECK(none.high > 0.02);

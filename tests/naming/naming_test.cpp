@@ -35,10 +35,10 @@ TEST_CASE("an effect that is there is named, with its strength and the friction 
   CHECK(n.judged[0].p_family < 0.01);
   CHECK(n.base_p < 0.01);
   CHECK(n.judged[0].goodness_p > 0.05);
-  CHECK(n.judged[0].strength.low90 < 0.6);
-  CHECK(n.judged[0].strength.high90 > 0.6);
-  CHECK(n.judged[0].theta[0].low90 < -0.3);
-  CHECK(n.judged[0].theta[0].high90 > -0.3);
+  CHECK(n.judged[0].strength.low < 0.6);
+  CHECK(n.judged[0].strength.high > 0.6);
+  CHECK(n.judged[0].theta[0].low < -0.3);
+  CHECK(n.judged[0].theta[0].high > -0.3);
   CHECK(std::fabs(n.base_theta[0].value + 0.3) > std::fabs(n.judged[0].theta[0].value + 0.3));
   CHECK(std::fabs(n.mismatch.front().z) > 3);
 }
@@ -138,9 +138,9 @@ TEST_CASE("intervals hold a parameter that does less and less towards the end of
   for (std::uint64_t seed = 1; seed <= kMills; ++seed) {
     const Problem p = made_up_problem(mill, truth, {0, 0, 0}, seed);
     const PseudoData pseudo(p, o);
-    const Interval found = pseudo.intervals({}, pseudo.fit({}), o.comparison_draws, 1).front();
+    const base::Interval90 found = pseudo.intervals({}, pseudo.fit({}), o.comparison_draws, 1).front();
     inside += found.holds(truth[0]) ? 1 : 0;
-    sure += found.high90 - found.low90 < 1.5 ? 1 : 0;
+    sure += found.high - found.low < 1.5 ? 1 : 0;
   }
   CAPTURE(sure);
   CHECK(inside >= 49);  // of 54 expected: five fewer in one case of sixty
@@ -201,8 +201,8 @@ TEST_CASE("a filling beyond its prior is a nuisance, not physics") {
   const Result n = name_candidates(p, quick());
   REQUIRE(n.best == 3);
   CHECK_THAT(n.judged[3].theta[2].value, WithinAbs(0.95, 0.25));
-  CHECK(n.judged[3].theta[2].low90 > 0.3);  // it does not go back to its prior
-  CHECK(n.judged[3].theta[2].high90 >= n.judged[3].theta[2].value);
+  CHECK(n.judged[3].theta[2].low > 0.3);  // it does not go back to its prior
+  CHECK(n.judged[3].theta[2].high >= n.judged[3].theta[2].value);
 }
 
 /// Sixty recordings in which nothing is missing, each with a bank of its own.
@@ -221,9 +221,9 @@ Nothing nothing_missing(const MadeUp& mill, std::uint64_t seed) {
     out.alarms += n.best ? 1 : 0;
     out.below_half += n.base_p < 0.5 ? 1 : 0;
     for (std::size_t i = 0; i < out.inside.size(); ++i) {
-      const Interval& found = n.base_theta[i];
-      CHECK(found.low90 <= found.value);
-      CHECK(found.value <= found.high90);
+      const base::Interval90& found = n.base_theta[i];
+      CHECK(found.low <= found.value);
+      CHECK(found.value <= found.high);
       out.inside.at(i) += found.holds(truth[static_cast<Index>(i)]) ? 1 : 0;
     }
   }

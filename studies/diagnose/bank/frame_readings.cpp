@@ -25,7 +25,7 @@ FrameReading reading(const studies::Finding& finding) {
   FrameReading r;
   if (!finding.estimate || finding.bound != studies::Bound::both) return r;
   r.value = finding.estimate->value;
-  r.sem = studies::standard_error(*finding.estimate);
+  r.sem = finding.estimate->standard_error();
   return r;
 }
 
@@ -149,9 +149,9 @@ void add_readings(const Question& question, const std::vector<FrameReading>& rea
 std::string text_of(const std::vector<FrameReading>& readings) {
   std::string text;
   for (const FrameReading& r : readings) {
-    const naming::Interval i = naming::interval_about(r.per_unit * r.value, r.per_unit * r.sem);
+    const base::Interval90 i = base::Interval90::about(r.per_unit * r.value, r.per_unit * r.sem);
     fmt::format_to(std::back_inserter(text), "{}{} {:.3g} {} ({:.3g} … {:.3g})", text.empty() ? "" : ", ", r.observable.name, i.value,
-                   r.observable.unit, i.low90, i.high90);
+                   r.observable.unit, i.low, i.high);
   }
   return text;
 }

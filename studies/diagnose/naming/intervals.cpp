@@ -59,11 +59,11 @@ double PseudoData::allowed(const std::vector<Drawn>& drawn, const Model& fitted,
   return out;
 }
 
-std::vector<Interval> PseudoData::intervals(const Choice& choice, const FitResult& fit, int draws, std::uint64_t stream) const {
+std::vector<base::Interval90> PseudoData::intervals(const Choice& choice, const FitResult& fit, int draws, std::uint64_t stream) const {
   const auto drawn = draw(truth(choice, fit), {choice}, {draws, stream, true});
   const Model fitted = model(*surrogate_, choice);
   const VectorXd found = coordinates_of(fit.coded, fit.strengths);
-  std::vector<Interval> out(found.size());
+  std::vector<base::Interval90> out(found.size());
   base::for_each_item(out.size(), base::worker_count(options_.threads, out.size()), [&](std::size_t k, std::size_t) {
     const Index i = k;
     const double most = fit.q + allowed(drawn, fitted, i);

@@ -34,11 +34,11 @@ std::vector<double> collect(const std::vector<PseudoData::Drawn>& drawn, Of of) 
 }
 
 /// The intervals of θ among those of all coordinates, in natural units.
-std::vector<Interval> of_theta(const BankData& data, const std::vector<Interval>& coded) {
-  std::vector<Interval> out;
+std::vector<base::Interval90> of_theta(const BankData& data, const std::vector<base::Interval90>& coded) {
+  std::vector<base::Interval90> out;
   for (std::size_t i = 0; i < data.theta.size(); ++i) {
     const Coordinate& c = data.theta[i];
-    out.push_back({c.natural(coded[i].value), c.natural(coded[i].low90), c.natural(coded[i].high90)});
+    out.push_back({c.natural(coded[i].value), c.natural(coded[i].low), c.natural(coded[i].high)});
   }
   return out;
 }
@@ -173,7 +173,7 @@ class Namer {
     const auto stream = static_cast<std::uint64_t>(j);
     const auto strict = pseudo_.draw(truth, {{j}}, {o_.comparison_draws, 100 + stream});
     judged.goodness_p = p_of(collect(strict, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
-    const std::vector<Interval> found = pseudo_.intervals({j}, judged.fit, o_.comparison_draws, 200 + stream);
+    const std::vector<base::Interval90> found = pseudo_.intervals({j}, judged.fit, o_.comparison_draws, 200 + stream);
     judged.theta = of_theta(p_.data, found);
     if (!judged.fit.strengths.empty()) judged.strength = found[p_.data.theta.size()];
   }

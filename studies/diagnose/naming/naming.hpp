@@ -9,7 +9,6 @@
 // what makes a model wrong in a recording is not all in the bank (docs/challenge.md has the coverage).
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -57,19 +56,10 @@ struct Options {
   std::function<void(const std::string&)> say;
 };
 
-struct Interval {
-  double value = 0, low90 = 0, high90 = 0;
-  bool known() const { return std::isfinite(low90) && std::isfinite(high90); }  ///< it was worked out; diagnosis.json has null ends else
-  bool holds(double truth) const { return truth >= low90 && truth <= high90; }
-};
-
 inline constexpr double kNotWorkedOut = std::numeric_limits<double>::quiet_NaN();
 
-inline Interval without_interval(double value) { return {value, kNotWorkedOut, kNotWorkedOut}; }
-
-using base::kNormal90;
-
-inline Interval interval_about(double value, double sem) { return {value, value - kNormal90 * sem, value + kNormal90 * sem}; }
+/// Not known(): diagnosis.json has null ends.
+inline base::Interval90 without_interval(double value) { return {value, kNotWorkedOut, kNotWorkedOut}; }
 
 /// One candidate against the base.
 struct Judged {
@@ -80,12 +70,12 @@ struct Judged {
   double lambda_found = 0;  ///< at the fitted strength
   std::vector<std::pair<double, double>> lambda_curve;  ///< (strength, λ), strengths rising; of candidates
   bool undetectable = false;
-  int runs = 0;                       ///< of the bank with this candidate
-  bool tested = true;                 ///< else it has no runs, or its first ones showed that it cannot matter; its p are 1
-  Interval strength;                  ///< its interval is worked out when some candidate is significant
-  std::vector<Interval> theta;        ///< natural units; the same
-  double goodness_p = kNotWorkedOut;  ///< whether the data look like a draw of this model; the same
-  double against_best_p = 1;          ///< under this candidate: how often the best would be better by so much
+  int runs = 0;                         ///< of the bank with this candidate
+  bool tested = true;                   ///< else it has no runs, or its first ones showed that it cannot matter; its p are 1
+  base::Interval90 strength;            ///< its interval is worked out when some candidate is significant
+  std::vector<base::Interval90> theta;  ///< natural units; the same
+  double goodness_p = kNotWorkedOut;    ///< whether the data look like a draw of this model; the same
+  double against_best_p = 1;            ///< under this candidate: how often the best would be better by so much
 };
 
 /// One observable beside what the retuned base makes of it.
@@ -106,16 +96,16 @@ struct Pair {
 
 struct Result {
   FitResult base;
-  double base_p = 1;                  ///< whether the data look like a draw of the base
-  std::vector<Interval> base_theta;   ///< the retuned parameters
-  std::vector<Judged> judged;         ///< one for each alternative
-  std::vector<std::string> at_limit;  ///< parameters whose retuned value lies at an end of the bank's range
-  std::optional<Index> best;          ///< of the alternatives; nothing: none is significant
-  std::vector<Index> kept;            ///< the best and all that are not rejected against it
-  std::vector<Pair> pairs;            ///< at most one: two together
-  std::vector<Mismatch> mismatch;     ///< the largest |z| first
-  MatrixXd covariance;                ///< Σ: recording and surrogate
-  double chance = 0;                  ///< ρ, Surrogate::chance()
+  double base_p = 1;                         ///< whether the data look like a draw of the base
+  std::vector<base::Interval90> base_theta;  ///< the retuned parameters
+  std::vector<Judged> judged;                ///< one for each alternative
+  std::vector<std::string> at_limit;         ///< parameters whose retuned value lies at an end of the bank's range
+  std::optional<Index> best;                 ///< of the alternatives; nothing: none is significant
+  std::vector<Index> kept;                   ///< the best and all that are not rejected against it
+  std::vector<Pair> pairs;                   ///< at most one: two together
+  std::vector<Mismatch> mismatch;            ///< the largest |z| first
+  MatrixXd covariance;                       ///< Σ: recording and surrogate
+  double chance = 0;                         ///< ρ, Surrogate::chance()
 };
 
 Result name_candidates(const Problem& problem, const Options& options);

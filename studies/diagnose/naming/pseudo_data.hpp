@@ -61,7 +61,7 @@ class PseudoData {
   std::vector<Drawn> draw(const Truth& truth, const std::vector<Choice>& choices, const Draws& how) const;
 
   /// 90 % intervals of θ and the strengths of a fit to the observations, in coded units (intervals.cpp).
-  std::vector<Interval> intervals(const Choice& choice, const FitResult& fit, int draws, std::uint64_t stream) const;
+  std::vector<base::Interval90> intervals(const Choice& choice, const FitResult& fit, int draws, std::uint64_t stream) const;
 
  private:
   struct LeftOut {

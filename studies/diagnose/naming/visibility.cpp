@@ -83,8 +83,8 @@ double Visibility::high(double strength) const {
   const Rest left = rest(strength);
   const double along = left.white.squaredNorm(), seen = std::max(0.0, left.square - noise(strength));
   const double a = 2 * h * h * run_covariance_.squaredNorm() * (1 + 1 / std::max(1.0, degrees));
-  const double b = along > 0 ? 4 * h * left.white.dot(run_covariance_ * left.white) / along : 0, bend = 0.5 * kNormal90 * b;
-  return seen + kNormal90 * (bend + std::sqrt(a + b * seen + bend * bend));
+  const double b = along > 0 ? 4 * h * left.white.dot(run_covariance_ * left.white) / along : 0, bend = 0.5 * base::kNormal90 * b;
+  return seen + base::kNormal90 * (bend + std::sqrt(a + b * seen + bend * bend));
 }
 
 double Visibility::at(double strength) const { return std::max(0.0, rest(strength).square - noise(strength)); }

@@ -9,9 +9,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json interval(const naming::Interval& i) { return {{"value", i.value}, {"low90", i.low90}, {"high90", i.high90}}; }
+Json interval(const base::Interval90& i) { return {{"value", i.value}, {"low90", i.low}, {"high90", i.high}}; }
 
-Json parameters(const Told& t, const std::vector<naming::Interval>& theta) {
+Json parameters(const Told& t, const std::vector<base::Interval90>& theta) {
   Json out = Json::object();
   for (std::size_t i = 0; i < theta.size(); ++i) out[t.diagnosis.problem.data.theta[i].name] = interval(theta[i]);
   return out;
@@ -92,8 +92,7 @@ Json held_out(const Told& t) {
     for (const Score& s : h.scores) {
       Json one = {{"model", s.prediction.name}, {"is", s.prediction.sentence},   {"simulated", s.prediction.simulated},
                   {"misfit", s.misfit},         {"power_W", s.prediction.power}, {"power_percent", s.power_percent}};
-      if (t.diagnosis.naming.best && s.prediction.name != "corrected")
-        one["improvement_of_corrected"] = {{"value", s.improvement}, {"low90", s.low90}, {"high90", s.high90}};
+      if (t.diagnosis.naming.best && s.prediction.name != "corrected") one["improvement_of_corrected"] = interval(s.improvement);
       scores.push_back(std::move(one));
     }
     Json names = Json::array();

@@ -27,7 +27,7 @@ std::vector<std::filesystem::path> draw(const Told& told, const std::filesystem:
 void write_corrected(const Told& told, const std::filesystem::path& folder);
 
 /// The candidate's own parameter over the interval of its strength, low end first.
-naming::Interval parameter_at(const Candidate& candidate, const naming::Interval& strength);
+base::Interval90 parameter_at(const Candidate& candidate, const base::Interval90& strength);
 /// An observable's name with its condition: "speed75: speed in region 3 (m/s)".
 std::string observable_name(const Told& told, Index observable);
 /// "recording 0.30, retuned base 0.27 (z = 3.1 …)" of one row of the mismatch.

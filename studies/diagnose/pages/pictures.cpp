@@ -56,8 +56,8 @@ void drift(const Told& t, Drawer& drawer) {
     p.x_label = "speed of the mill", p.x_unit = "rad/s", p.value_label = t.question.study.parameters[i].name;
     p.points = true;
     Curve before{"base", {}, {}, {}, {}}, after{"with what is named", {}, {}, {}, {}};
-    const auto add = [](Curve& c, double x, const naming::Interval& v) {
-      c.x.push_back(x), c.value.push_back(v.value), c.low.push_back(v.low90), c.high.push_back(v.high90);
+    const auto add = [](Curve& c, double x, const base::Interval90& v) {
+      c.x.push_back(x), c.value.push_back(v.value), c.low.push_back(v.low), c.high.push_back(v.high);
     };
     for (const Alone& a : t.diagnosis.alone) {
       add(before, t.question.speed[a.condition], a.before[i]);
@@ -104,7 +104,7 @@ void missing(const Told& t, Drawer& drawer) {
     Curve c{t.question.study.conditions[m.condition].name, {}, {}, {}, {}};
     for (const ForceBySpeed& s : m.by_speed) {
       c.x.push_back(0.5 * (s.low + s.high)), c.value.push_back(s.along.value);
-      c.low.push_back(s.along.low90), c.high.push_back(s.along.high90);
+      c.low.push_back(s.along.low), c.high.push_back(s.along.high);
     }
     if (c.x.size() > 1) p.curves.push_back(std::move(c));
   }

@@ -20,8 +20,8 @@ void add(std::string& out, fmt::format_string<Values...> text, Values&&... value
   fmt::format_to(std::back_inserter(out), text, std::forward<Values>(values)...);
 }
 
-std::string text(const naming::Interval& i) {
-  return i.known() ? fmt::format("{:.3g} ({:.3g} … {:.3g})", i.value, i.low90, i.high90) : fmt::format("{:.3g}", i.value);
+std::string text(const base::Interval90& i) {
+  return i.known() ? fmt::format("{:.3g} ({:.3g} … {:.3g})", i.value, i.low, i.high) : fmt::format("{:.3g}", i.value);
 }
 
 std::string fitted(const Told& t, Index j) {
@@ -108,7 +108,7 @@ void held_out(const Told& t, std::string& out) {
       const bool compared = t.diagnosis.naming.best && s.prediction.name != "corrected";
       add(out, "| {}: {} | {:.2f} | {:.4g} W{} | {} |\n", s.prediction.name, s.prediction.sentence, s.misfit, s.prediction.power,
           recorded.known() ? fmt::format(" ({:+.1f} %)", s.power_percent) : "",
-          compared ? fmt::format("{:.2f} ({:.2f} … {:.2f})", s.improvement, s.low90, s.high90) : "");
+          compared ? fmt::format("{:.2f} ({:.2f} … {:.2f})", s.improvement.value, s.improvement.low, s.improvement.high) : "");
     }
     if (!h.scores.empty()) add(out, "\nA recording of the refitted base would look as bad with p = {:.2g}.\n", h.base_p);
     out += "\n";
@@ -129,8 +129,8 @@ void missing(const Told& t, std::string& out) {
 
 }  // namespace
 
-naming::Interval parameter_at(const Candidate& c, const naming::Interval& strength) {
-  const auto [low, high] = std::minmax({c.value(strength.low90), c.value(strength.high90)});
+base::Interval90 parameter_at(const Candidate& c, const base::Interval90& strength) {
+  const auto [low, high] = std::minmax({c.value(strength.low), c.value(strength.high)});
   return {c.value(strength.value), low, high};
 }
 

@@ -67,9 +67,10 @@ struct Judge {
   void compare(const Score& corrected, Score& rival, std::uint64_t seed) const {
     const Prediction one = part(corrected.prediction), other = part(rival.prediction);
     const Eigen::LLT<MatrixXd> c(recording + 0.5 * (one.covariance + other.covariance));
-    rival.improvement = misfit(observed - other.value, c) - misfit(observed - one.value, c);
+    base::Interval90& found = rival.improvement;
+    found.value = misfit(observed - other.value, c) - misfit(observed - one.value, c);
     const MatrixXd first = naming::factor(one.covariance), second = naming::factor(other.covariance);
-    rival.low90 = std::numeric_limits<double>::infinity(), rival.high90 = -rival.low90;
+    found.low = std::numeric_limits<double>::infinity(), found.high = -found.low;
     base::RandomStream random(seed, 9);
     for (const MatrixXd& law : noise) {
       std::vector<double> draws;
@@ -79,7 +80,7 @@ struct Judge {
                         misfit(y - one.value - first * random.normals(y.size()), c));
       }
       std::sort(draws.begin(), draws.end());
-      rival.low90 = std::min(rival.low90, draws[kDraws / 20]), rival.high90 = std::max(rival.high90, draws[kDraws - 1 - kDraws / 20]);
+      found.low = std::min(found.low, draws[kDraws / 20]), found.high = std::max(found.high, draws[kDraws - 1 - kDraws / 20]);
     }
   }
 
@@ -143,8 +144,8 @@ HeldOut judged(const HeldOutRequest& r, std::size_t condition, std::vector<Predi
   out.improves = out.failures.empty();
   for (std::size_t k = 1; k < out.scores.size(); ++k) {
     judge.compare(out.scores[0], out.scores[k], r.seed + k);
-    out.improves = out.improves && out.scores[k].low90 > 0;
-    out.contradicts = out.contradicts || out.scores[k].high90 < 0;
+    out.improves = out.improves && out.scores[k].improvement.low > 0;
+    out.contradicts = out.contradicts || out.scores[k].improvement.high < 0;
   }
   return out;
 }
@@ -209,12 +210,11 @@ std::vector<Alone> fit_alone(const HeldOutRequest& r) {
       }
       information += tangent.transpose() * tangent;
       const VectorXd sd = information.ldlt().solve(MatrixXd::Identity(d, d)).diagonal().cwiseMax(0).cwiseSqrt();
-      std::vector<naming::Interval> theta;
+      std::vector<base::Interval90> theta;
       for (Index i = 0; i < d; ++i) {
         const naming::Coordinate& c = one.data.theta[i];
         const auto at = [&](double u) { return c.natural(std::clamp(u, -1.0, 1.0)); };
-        theta.push_back(
-            {at(found.coded[i]), at(found.coded[i] - naming::kNormal90 * sd[i]), at(found.coded[i] + naming::kNormal90 * sd[i])});
+        theta.push_back({at(found.coded[i]), at(found.coded[i] - base::kNormal90 * sd[i]), at(found.coded[i] + base::kNormal90 * sd[i])});
       }
       return theta;
     };

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/diagnose/bank/bank.hpp"
 #include "studies/diagnose/verdict/recorded_problem.hpp"
 
@@ -23,10 +24,9 @@ struct Prediction {
 
 struct Score {
   Prediction prediction;
-  double misfit = 0;         ///< mean over the observables of rᵀ C⁻¹ r: about 1 when only chance differs
-  double power_percent = 0;  ///< (predicted − recorded)/recorded
-  double improvement = 0;    ///< its misfit − that of the corrected model
-  double low90 = 0, high90 = 0;
+  double misfit = 0;             ///< mean over the observables of rᵀ C⁻¹ r: about 1 when only chance differs
+  double power_percent = 0;      ///< (predicted − recorded)/recorded
+  base::Interval90 improvement;  ///< its misfit − that of the corrected model
 };
 
 struct HeldOut {
@@ -60,7 +60,7 @@ HeldOut hold_against(const HeldOutRequest& request, std::size_t condition);
 /// Parameters fitted to one condition alone.
 struct Alone {
   std::size_t condition = 0;
-  std::vector<naming::Interval> before, after;  ///< θ of the base, and with what is named held at its value; natural units
+  std::vector<base::Interval90> before, after;  ///< θ of the base, and with what is named held at its value; natural units
 };
 std::vector<Alone> fit_alone(const HeldOutRequest& request);
 

@@ -25,7 +25,7 @@ struct Side {
 /// Value of the recording less the mean of the simulations, with its error; NaN where one of them lacks it.
 struct Difference {
   double value = 0, sem = 0;
-  naming::Interval interval() const { return naming::interval_about(value, sem); }
+  base::Interval90 interval() const { return base::Interval90::about(value, sem); }
   bool known() const { return std::isfinite(value) && std::isfinite(sem) && sem > 0; }
 };
 
@@ -105,7 +105,7 @@ std::string force_sentence(const Question& question, std::size_t condition, cons
       "{}, {:.0f} to {:.0f} mm from the axis, {:.0f}° {} 6 o'clock: {:+.2g} ({:+.2g} … {:+.2g}) m/s² along x, {:+.2g} ({:+.2g} … {:+.2g}) "
       "m/s² upwards; p = {:.2g} for all cells together.",
       question.study.conditions[condition].name, 1e3 * c.r_low, 1e3 * c.r_high, std::fabs(middle), middle < 0 ? "before" : "past",
-      c.x.value, c.x.low90, c.x.high90, c.y.value, c.y.low90, c.y.high90, c.p);
+      c.x.value, c.x.low, c.x.high, c.y.value, c.y.low, c.y.high, c.p);
 }
 
 }  // namespace millscope::diagnose

@@ -14,13 +14,13 @@ struct ForceCell {
   double angle_low = 0, angle_high = 0;  ///< deg from 6 o'clock in the turning sense
   double place[2] = {0, 0};              ///< m, middle in the recording's frame, from the axis
   double velocity[2] = {0, 0};           ///< m/s, of the recorded beads
-  naming::Interval x, y;                 ///< m/s²
+  base::Interval90 x, y;                 ///< m/s²
   double p = 1;                          ///< that chance makes it as large, for all cells of the condition together (Bonferroni)
 };
 
 struct ForceBySpeed {
   double low = 0, high = 0;  ///< speed over the shell's
-  naming::Interval along;    ///< m/s² along the motion
+  base::Interval90 along;    ///< m/s² along the motion
 };
 
 struct MissingForce {

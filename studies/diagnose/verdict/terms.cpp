@@ -63,7 +63,7 @@ struct Rows {
   std::size_t cells() const { return static_cast<std::size_t>(missing.size()) / 2; }
 };
 
-double sem_of(const naming::Interval& i) { return (i.high90 - i.low90) / (2 * naming::kNormal90); }
+double sem_of(const base::Interval90& i) { return i.standard_error(); }
 
 Rows rows_of(const std::vector<MissingForce>& missing) {
   std::size_t cells = 0;
@@ -177,7 +177,7 @@ TermOffer offer_terms(const std::vector<MissingForce>& missing) {
     double mean = 0, square = 0;
     for (const double c : coefficients[k]) mean += c / kHalves;
     for (const double c : coefficients[k]) square += (c - mean) * (c - mean) / (kHalves - 1);
-    offer.terms[k].coefficient = naming::interval_about(mean, std::sqrt(square));
+    offer.terms[k].coefficient = base::Interval90::about(mean, std::sqrt(square));
   }
   return offer;
 }
@@ -190,7 +190,7 @@ std::string sentence_of(const TermOffer& offer) {
   for (std::size_t k = 0; k < offer.terms.size(); ++k) {
     const OfferedTerm& t = offer.terms[k];
     text += fmt::format("{}{} ({}), c = {:.3g} ({:.3g} … {:.3g}) {}", k == 0 ? "" : " and ", t.name, t.equation, t.coefficient.value,
-                        t.coefficient.low90, t.coefficient.high90, t.unit);
+                        t.coefficient.low, t.coefficient.high, t.unit);
   }
   return text +
          fmt::format(

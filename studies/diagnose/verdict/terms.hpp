@@ -18,7 +18,7 @@ struct OfferedTerm {
   std::string name;              ///< "linear drag"
   std::string equation;          ///< "-c v"
   std::string unit;              ///< of the coefficient
-  naming::Interval coefficient;  ///< from halves of the cells
+  base::Interval90 coefficient;  ///< from halves of the cells
   double share = 0;              ///< of the halves that chose it
 };
 
