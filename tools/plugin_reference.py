@@ -115,7 +115,8 @@ def section(plugin, says):
     if plugin["history"]:
         lines += ["", "Kept per contact: " + ", ".join(code(h["name"]) for h in plugin["history"]) + "."]
     if plugin["channels"]:
-        lines += ["", "Energy is lost to: " + ", ".join(code(c) for c in plugin["channels"]) + "."]
+        roles = zip(plugin["channels"], plugin["channel_roles"])
+        lines += ["", "Energy goes to: " + ", ".join(f"{code(name)} ({role['part']}, {role['nature']})" for name, role in roles) + "."]
     for h in plugin["hypotheses"]:
         lines += ["", hypothesis_of(h)]
     return lines
@@ -129,8 +130,8 @@ def page_of(command):
     lines = ["# Plugins", "", "    millscope plugins                    # what is loaded, and from where", "    millscope describe hertz_mindlin     # one of them", "",
              f"All physics, shapes, cameras and measurements that come with millscope, as they describe themselves. Written by",
              f"`{COMMAND}`; do not edit it. Values are SI; a case may give other units ([cases](cases.md#numbers-and-files)). A hypothesis is what",
-             "[`diagnose`](diagnose.md) can name. One of your own: [a contact law](adding_a_contact_law.md), [an analyzer](adding_an_analyzer.md),",
-             "[a hypothesis](adding_a_hypothesis.md)."]
+             "[`diagnose`](diagnose.md) can name. One of your own: [a plugin of any kind](adding_a_plugin.md), [a contact law](adding_a_contact_law.md),",
+             "[an analyzer](adding_an_analyzer.md), [a hypothesis](adding_a_hypothesis.md)."]
     for kind, (heading, where) in KINDS.items():
         lines += ["", f"## {heading}", "", where]
         for name in [n for k, n in listed if k == kind]:
