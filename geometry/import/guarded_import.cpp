@@ -16,6 +16,7 @@
 #include <cstring>
 
 #include "geometry/import/preflight.hpp"
+#include "millscope/element.hpp"
 #include "millscope/parameters.hpp"
 
 namespace millscope::geometry {
@@ -49,7 +50,7 @@ std::size_t check_file(const std::string& path, const ImportLimits& limits) {
                   "): check the path; it counts from the folder of the YAML file");
   }
   if (!S_ISREG(info.st_mode)) throw Refusal("is not a file: name a mesh file");
-  const auto size = static_cast<std::size_t>(info.st_size);
+  const auto size = as_size(info.st_size);
   if (size == 0) throw Refusal("is empty: export it again");
   const std::size_t most = (std::size_t{1} << 20) + 400 * limits.max_triangles;  // a text STL has about 270 bytes a triangle
   if (size > most) {
@@ -65,7 +66,7 @@ std::size_t own_address_space() {
     if (std::fscanf(file, "%zu", &pages) != 1) pages = 0;
     std::fclose(file);
   }
-  return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  return pages * as_size(::sysconf(_SC_PAGESIZE));
 }
 
 /// The child between fork and the import: limits, no core file, no output, dies with the host.
@@ -125,7 +126,7 @@ std::vector<char> read_answer(int pipe, double seconds) {
     const std::size_t chunk = std::size_t{1} << 16, used = answer.size();
     answer.resize(used + chunk);
     const ssize_t got = ::read(pipe, answer.data() + used, chunk);
-    answer.resize(used + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+    answer.resize(used + as_size(std::max<ssize_t>(got, 0)));
     if (got == 0) return answer;
     if (got < 0 && errno != EINTR) return answer;
   }

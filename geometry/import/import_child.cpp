@@ -13,6 +13,7 @@
 
 #include "geometry/import/guarded_import.hpp"
 #include "geometry/import/preflight.hpp"
+#include "millscope/element.hpp"
 #include "millscope/parameters.hpp"
 
 namespace millscope::geometry {
@@ -26,7 +27,7 @@ void write_all(int pipe, const void* data, std::size_t size) {
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) _exit(1);  // the host is gone
     at += written;
-    size -= static_cast<std::size_t>(written);
+    size -= as_size(written);
   }
 }
 
@@ -46,7 +47,7 @@ class MappedFile {
     struct stat info {};
     if (file < 0 || ::fstat(file, &info) != 0)
       throw Refusal(std::string("cannot be read (") + std::strerror(errno) + "): check its permissions");
-    size_ = static_cast<std::size_t>(info.st_size);
+    size_ = as_size(info.st_size);
     data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file, 0);
     ::close(file);
     if (data_ == MAP_FAILED) throw Refusal("does not fit into the memory allowed for it: export a coarser mesh or raise max_triangles");

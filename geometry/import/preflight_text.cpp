@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/import/preflight.hpp"
+#include "millscope/element.hpp"
 
 namespace millscope::geometry::detail {
 
@@ -87,7 +88,7 @@ std::size_t ply_size(std::string_view type) {
                                    {"float32", 4},
                                    {"double", 8},
                                    {"float64", 8}}) {
-    if (type == name) return static_cast<std::size_t>(size);
+    if (type == name) return as_size(size);
   }
   refuse("PLY property of unknown type '" + std::string(type.substr(0, 40)) + "': export as STL or with float properties");
 }
@@ -208,7 +209,7 @@ void check_ply(std::string_view data, std::size_t max_triangles) {
   for (const PlyElement& e : elements) {
     check_size(e.count / 3, max_triangles);
     if (e.name == "face") faces = e.count;
-    least += static_cast<std::size_t>(e.count) * e.bytes;
+    least += as_size(e.count) * e.bytes;
   }
   check_size(faces, max_triangles);
   if (faces == 0) refuse("holds no faces: export the body as a mesh, not as points");

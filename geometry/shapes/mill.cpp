@@ -1,4 +1,5 @@
 #include "geometry/shapes/mill.hpp"
+#include "millscope/element.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -20,7 +21,7 @@ std::string details(const MillProfile& profile) {
   int used = std::snprintf(text, sizeof text, "shell: radius %.6g m, length %.6g m, bare volume %.6g m^3\nends: %s\n", s.radius, s.length,
                            bare * s.length, s.end_faces ? "closed" : "open (the wall goes on along z)");
   if (s.lifters > 0) {
-    std::snprintf(text + used, sizeof text - static_cast<std::size_t>(used),
+    std::snprintf(text + used, sizeof text - as_size(used),
                   "lifters: %d, height %.6g m, width %.6g m at the base and %.6g m at the top, face angle %.6g rad\n"
                   "lifter volume: %.6g m^3 (%.3g %% of the bare shell; J is counted on the bare shell)\n",
                   s.lifters, s.lifter_height, s.lifter_width, 2 * profile.top_half_width(), s.face_angle, profile.lifter_area() * s.length,

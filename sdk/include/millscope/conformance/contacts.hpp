@@ -6,6 +6,7 @@
 
 #include "millscope/conformance/values.hpp"
 #include "millscope/contact_law.hpp"
+#include "millscope/element.hpp"
 #include "millscope/pack.hpp"
 
 namespace millscope::conformance {
@@ -21,7 +22,7 @@ struct Contacts {
     mass.assign(slots, 1.0);
     for (Column* c : {&restitution, &friction, &added_cap, &normal_force, &normal_stiffness, &elastic_energy}) c->assign(slots, 0.0);
     for (int axis = 0; axis < 3; ++axis) {
-      for (Columns* c : {&normal, &velocity, &force}) (*c)[static_cast<std::size_t>(axis)].assign(slots, 0.0);
+      for (Columns* c : {&normal, &velocity, &force}) element(*c, axis).assign(slots, 0.0);
     }
     for (Column& c : history) c.assign(slots, 0.0);
     for (Column& c : power) c.assign(slots, 0.0);

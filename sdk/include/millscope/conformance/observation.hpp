@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "millscope/conformance/values.hpp"
+#include "millscope/element.hpp"
 #include "millscope/observation.hpp"
 
 namespace millscope::conformance {
@@ -78,7 +79,7 @@ inline Observed observed(const Observation& observation, const TrackData& track,
         const Host& to = *static_cast<Host*>(self);
         if (!to.room || count < 0) return 1;
         TrackData& t = *to.track;
-        t.resize(static_cast<std::size_t>(count));
+        t.resize(as_size(count));
         *out = {
             count, t.time.data(), {t.position[0].data(), t.position[1].data(), t.position[2].data()}, t.weight.data(), t.visible.data()};
         return 0;

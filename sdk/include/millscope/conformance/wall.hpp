@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "millscope/conformance/values.hpp"
+#include "millscope/element.hpp"
 #include "millscope/geometry.hpp"
 #include "millscope/pack.hpp"
 
@@ -55,10 +56,9 @@ class WallProbe {
     }
     const GeometryBeads view{static_cast<std::int64_t>(beads.size()), {x[0].data(), x[1].data(), x[2].data()}, radius.data()};
     std::vector<std::vector<std::uint32_t>> found(beads.size());
-    const CandidateSink sink{
-        &found, [](void* host, std::int64_t bead, std::uint32_t feature) {
-          (*static_cast<std::vector<std::vector<std::uint32_t>>*>(host))[static_cast<std::size_t>(bead)].push_back(feature);
-        }};
+    const CandidateSink sink{&found, [](void* host, std::int64_t bead, std::uint32_t feature) {
+                               element(*static_cast<std::vector<std::vector<std::uint32_t>>*>(host), bead).push_back(feature);
+                             }};
     Failure failure{};
     if (held_.table().candidates(held_.get(), &view, margin, &sink, &failure) != 0) throw Refusal(failure.message);
     std::vector<std::int64_t> first{0};
@@ -87,7 +87,7 @@ class WallProbe {
     held_.table().contacts(held_.get(), &query, &out);
     if (out.count < 0 || out.count > out.capacity) throw Refusal("contacts: more are counted than there was room for");
     std::vector<Touch> touches;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(out.count); ++i) {
+    for (std::size_t i = 0; i < as_size(out.count); ++i) {
       touches.push_back({bead[i], overlap[i], {normal[0][i], normal[1][i], normal[2][i]}, feature[i], triangle[i], material[i]});
     }
     return touches;
