@@ -249,14 +249,16 @@ TEST_CASE("what the camera is doubted of costs no simulation") {
   CHECK(data.theta[2].products == Products::all);
 }
 
+// The stiffness is varied apart. Named first, it stands behind the filling and before the camera.
+const std::string kStiffnessApart =
+    "nuisances: {camera.frame_error.scale: {range: [-2 %, 2 %], sigma: 0.5 %}, "
+    "stiffness_factor: {range: [0.001, 0.01], mean: 0.004, sigma: 0.003, name: stiffness, apart: true}, "
+    "fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %}}\n"
+    "hypotheses: {lifter_face_angle: {}, rolling_resistance: {}, end_faces_at_rest: {}}\n";
+
 TEST_CASE("a nuisance that is varied apart has a group of its own, and costs the other groups nothing") {
   const Scratch folder;
-  const std::string hypotheses = "hypotheses: {lifter_face_angle: {}, rolling_resistance: {}, end_faces_at_rest: {}}\n";
-  const std::string stiffness = "stiffness_factor: {range: [0.001, 0.01], mean: 0.004, sigma: 0.003, name: stiffness, apart: true}";
-  const Question plain = question_of(folder, kSections);
-  // Named first; it stands behind the filling and before the camera.
-  const Question q = question_of(folder, "nuisances: {camera.frame_error.scale: {range: [-2 %, 2 %], sigma: 0.5 %}, " + stiffness +
-                                             ", fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %}}\n" + hypotheses);
+  const Question plain = question_of(folder, kSections), q = question_of(folder, kStiffnessApart);
   REQUIRE(q.dimensions() == 5);
   CHECK(q.case_dimensions() == 3);
   for (const Group& group : {Group{}, Group{0}, Group{1}, Group{2}}) {
@@ -286,6 +288,11 @@ TEST_CASE("a nuisance that is varied apart has a group of its own, and costs the
   // Every candidate with it, half as many as alone; screening does without them.
   CHECK(plan_bank(q).size() == plan_bank(plain).size() + static_cast<std::size_t>(q.bank.base + 3 * q.bank.each / 2));
   CHECK(plan_screening(q).size() == plan_screening(plain).size() + static_cast<std::size_t>(q.bank.base));
+}
+
+TEST_CASE("a nuisance that is varied apart is varied with each candidate, too, half as often as that alone") {
+  const Scratch folder;
+  const Question q = question_of(folder, kStiffnessApart);
   const Index rolling = candidate(q, "rolling_resistance");
   const std::vector<BankPoint> alone = plan_group(q, {rolling}, q.bank.each), together = plan_together(q, rolling, 3);
   REQUIRE(together.size() == 5);
@@ -318,7 +325,12 @@ TEST_CASE("a nuisance that is varied apart has a group of its own, and costs the
   CHECK(more.size() == 20);
   for (std::size_t i = 0; i < together.size(); ++i) CHECK(settings(q, together[i]) == settings(q, more[i]));
   CHECK(plan_together(small, rolling, 3).empty());
-  // A candidate of which too few came to their end with it is known without its product.
+}
+
+TEST_CASE("a candidate of which too few runs with a nuisance apart came to their end is known without the product of the two") {
+  const Scratch folder;
+  const Question q = question_of(folder, kStiffnessApart);
+  const Index rolling = candidate(q, "rolling_resistance");
   MadeUpMill fragile(q, {}, {});
   fragile.fails = [](const auto& s) {
     return s.contains("stiffness_factor") && s.contains(kRolling) && s.at("stiffness_factor") != "0.01";

@@ -19,9 +19,7 @@ LONGEST = 400
 LONG_FILES = {  # path → why it may be longer
 }
 LONGEST_FUNCTION = 60
-LONG_FUNCTIONS = {  # (path, name): to be cut; a name whose function has become short is a violation, so that the list empties
-    ("tests/diagnose/bank_test.cpp", "TEST_CASE"),
-}
+LONG_FUNCTIONS = set()  # (path, name): to be cut; one whose function is short again is a violation, so that the list empties
 CODE = {".cpp", ".hpp", ".in", ".py", ".sh"}
 TEXT = CODE | {".md", ".yaml", ".yml", ".txt", ".cmake", ".json", ""}
 MACHINE_PATH = re.compile(r"(?<![\w.$}>)])/(home|root|work|Users|mnt)/\w")
