@@ -84,7 +84,7 @@ int run_sets(const Arguments& arguments) {
   const fs::path sets = options.text("SETS");
   const host::Registry registry = options.registry();
   const calibrate::SessionOptions session = study_session(options, "");
-  diagnose::NamingOptions naming;
+  naming::Options naming;
   naming.say = session.say;
   if (options.has("draws")) naming.draws = options.integer("draws");
   if (naming.draws < 100) throw UserError(fmt::format("--draws {}: give 100 or more", naming.draws));
