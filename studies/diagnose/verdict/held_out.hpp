@@ -39,7 +39,7 @@ struct HeldOut {
   bool contradicts = false;               ///< that against some rival model lies below 0
 };
 
-/// θ that matches the powers of the fit conditions, nuisances at their priors' means (those apart as they are in the case), as near the
+/// θ that matches the powers of the fit conditions, nuisances at their priors' means (those varied apart as they are in the case), as near the
 /// middle of the ranges as that allows: the practice.
 VectorXd retuned_to_power(const naming::BankData& data, const naming::Surrogate& surrogate, const VectorXd& observed,
                           const MatrixXd& covariance, const std::vector<Index>& powers);
