@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 #include <string_view>
 
 #include "kernel/base/hash.hpp"
+#include "kernel/base/program.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/output/summary.hpp"
 #include "studies/analysis/open_source.hpp"
@@ -27,8 +30,8 @@ constexpr double kEvenStep = 0.002;  // s between the even times: recordings hav
 /// Everything that the results of a recording depend on.
 std::string identity(const studies::Recording& recording, const Processing& how, std::size_t condition) {
   const Study& study = how.study;
-  std::vector<std::string> parts{kObservations, kAnalyzers, std::to_string(study.observing.draws), std::to_string(study.observing.beads),
-                                 study.observing.camera};
+  std::vector<std::string> parts{observing_program(), kAnalyzers, std::to_string(study.observing.draws),
+                                 std::to_string(study.observing.beads), study.observing.camera};
   if (std::filesystem::is_regular_file(study.observing.camera)) parts.push_back(base::text_of(study.observing.camera));
   if (study.observing.z_low) parts.push_back(fmt::format("{:.17g} {:.17g}", *study.observing.z_low, *study.observing.z_high));
   parts.push_back(studies::file_hash(study.base) + studies::file_hash(recording.file));
@@ -42,7 +45,7 @@ std::string identity(const studies::Recording& recording, const Processing& how,
   const bool own_analyzers = !study.objective.terms.empty() || (study.root.valid() && study.root.has("analyzers"));
   for (const host::PluginRecord& r : how.registry.records()) {
     const bool asked = own_analyzers || std::string_view(kAnalyzers).find(r.name + ":") != std::string_view::npos;
-    if (r.kind == "observation" || (r.kind == "analyzer" && asked)) parts.push_back(r.name + r.file_hash);
+    if (r.kind == "observation" || (r.kind == "analyzer" && asked)) parts.push_back(r.name + r.code_hash);
   }
   return hash_of(parts);
 }
@@ -199,6 +202,17 @@ RecordedCondition look(const studies::Recording& recording, std::size_t conditio
 }
 
 }  // namespace
+
+std::string observing_program() {
+  constexpr std::array<std::string_view, 6> kRooms{"studies/recording", "studies/trajectory", "studies/inspect",
+                                                   "studies/camera",    "studies/analysis",   "studies/calibrate"};
+  const std::span<const std::string_view> kernel = base::kernel_folders();
+  std::vector<std::string_view> rooms(kernel.begin(), kernel.end());
+  rooms.insert(rooms.end(), kRooms.begin(), kRooms.end());
+  std::string text;
+  for (const auto& [part, value] : base::program_parts(rooms)) text += part + "\n" + value + "\n";
+  return text;
+}
 
 std::string hash_of(const std::vector<std::string>& texts) {
   base::Hash hash;

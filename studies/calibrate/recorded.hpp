@@ -16,7 +16,9 @@
 
 namespace millscope::calibrate {
 
-inline constexpr const char* kObservations = "observations 6";  ///< grows when what is computed here changes
+/// What of this program decides what is seen of a recording and of a simulation: the code that runs and tracks pass, compiler, flags,
+/// libraries.
+std::string observing_program();
 
 /// What a recording fixes for every simulation of its condition.
 struct RecordedCondition {

@@ -24,7 +24,6 @@ namespace fs = std::filesystem;
 using base::UserError;
 using config::Node;
 
-constexpr const char* kVersion = "profile 1";  // grows when what is computed here changes
 constexpr std::size_t kMostValues = 12;
 constexpr std::size_t kFewestPoints = 4;
 constexpr std::size_t kNeighbours = 2;  // points on either side of a group that its slope is taken from, too
@@ -160,15 +159,11 @@ std::string range_text(const VelocityProfile& p, const Condition& c, const studi
 
 std::string identity(const VelocityProfile& profile, const Processing& how, std::size_t condition) {
   const Condition& c = how.study.conditions[condition];
-  std::vector<std::string> parts{kVersion,
-                                 kObservations,
-                                 std::to_string(how.study.observing.draws),
-                                 studies::file_hash(how.study.base),
-                                 studies::file_hash(c.recording),
-                                 studies::file_hash(profile.points)};
+  std::vector<std::string> parts{observing_program(), std::to_string(how.study.observing.draws), studies::file_hash(how.study.base),
+                                 studies::file_hash(c.recording), studies::file_hash(profile.points)};
   parts.insert(parts.end(), c.settings.begin(), c.settings.end());
   for (const host::PluginRecord& r : how.registry.records()) {
-    if (r.kind == "analyzer") parts.push_back(r.name + r.file_hash);
+    if (r.kind == "analyzer") parts.push_back(r.name + r.code_hash);
   }
   return hash_of(parts);
 }
