@@ -113,6 +113,7 @@ TEST_CASE("a folder without a manifest is none of sets") {
 
 TEST_CASE("folders of sets are counted together, each set by the name of its folder") {
   const testing::Scratch folder;
+  write(folder / "study.yaml", "conditions: {}\n");
   for (const char* name : {"first", "second"}) {
     seal(folder / name, two_answers(), folder / "study.yaml");
     write(folder / name / "set_002" / "diagnosis" / "diagnosis.json", kDiagnosis);

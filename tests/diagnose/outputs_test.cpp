@@ -57,7 +57,7 @@ bool is_interval(const nlohmann::json& j) {
 TEST_CASE("diagnosis.json has every figure that is promised") {
   const Scratch folder;
   const nlohmann::json j = written(folder, with_rolling());
-  CHECK(j["schema_version"] == 1);
+  CHECK(j["schema_version"] == 2);
   CHECK(j["verdict"] == "named");
   CHECK(j["named"] == nlohmann::json({"rolling_resistance"}));
   CHECK(j["next_experiment"] == "");

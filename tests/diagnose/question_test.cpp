@@ -232,7 +232,7 @@ TEST_CASE("hypotheses that cannot be are refused at their line") {
                                            Contains("rolling_resistance") && Contains("or give it a 'path'"));
   CHECK_THAT(hypothesis("rolling_resistance: {rang: [0, 1]}"), StartsWith("study.yaml:10: ") && Contains("did you mean 'range'?"));
   CHECK_THAT(hypothesis("rolling_resistance: {range: [0.05, 0.2]}"),
-             StartsWith("study.yaml:10: 'hypotheses.rolling_resistance.range' does not hold 0, where the effect vanishes"));
+             StartsWith("study.yaml:10: 'hypotheses.rolling_resistance.range' does not hold 0, where it vanishes"));
   CHECK_THAT(hypothesis("own: {path: a.b, without: 0, range: [0, 1]}"), StartsWith("study.yaml:10: ") && Contains("has no 'sentence'"));
   CHECK_THAT(hypothesis("own: {sentence: S., path: a.b, range: [0, 1]}"), StartsWith("study.yaml:10: ") && Contains("without"));
   CHECK_THAT(hypothesis("own: {sentence: S., path: a.b, without: 0}"), StartsWith("study.yaml:10: ") && Contains("no 'range'"));

@@ -70,7 +70,7 @@ class Diagnose(unittest.TestCase):
 
     def test_a_range_that_does_not_hold_the_null(self):
         said = self.refused("study.yaml", "-o", "out", "--set", "hypotheses.rolling_resistance.range=[0.05, 0.2]")
-        self.assertIn("does not hold 0, where the effect vanishes", said)
+        self.assertIn("does not hold 0, where it vanishes", said)
 
     def test_too_few_draws_and_slots(self):
         self.assertIn("--draws 10: give 100 or more", self.refused("study.yaml", "-o", "out", "--draws", "10"))

@@ -1,4 +1,5 @@
 // Diagnoses end to end on a mill that is a formula: every verdict, where it belongs.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <functional>
 #include <set>
@@ -194,29 +195,47 @@ TEST_CASE("what shows in the held-out condition alone is said, and how it could 
   CHECK_THAT(d.next_experiment, Contains("Give speed50 the role fit"));
 }
 
+// Chance alone names something in one recording of twenty: of six, two or more in 3 % of all choices of seeds.
 TEST_CASE("where nothing could be seen a held-out condition may still differ, and that is said") {
   const Scratch folder;
   const Question q = question_of(folder, kSections);
-  MadeUpMill mill(q, usual(), kTheta, 60);
-  Workshop workshop = mill.workshop();
-  workshop.recorded[2].value.array() += 480;
-  const Diagnosis d = diagnose::diagnose(q, workshop, quick());
-  INFO(d.sentence);
-  CHECK(d.verdict == Verdict::undetectable);
-  CHECK_THAT(d.sentence, Contains("these data cannot tell") && Contains("does not describe the held-out condition 'speed50'"));
-  CHECK_THAT(d.next_experiment, Contains("Give speed50 the role fit"));
+  int unseen = 0;
+  for (std::uint64_t k = 0; k < 6; ++k) {
+    MadeUpMill mill(q, usual(), kTheta, 60);
+    mill.seed = k;
+    Workshop workshop = mill.workshop();
+    workshop.recorded[2].value.array() += 480;
+    const Diagnosis d = diagnose::diagnose(q, workshop, quick());
+    INFO(d.sentence);
+    if (d.verdict != Verdict::undetectable) continue;
+    ++unseen;
+    CHECK_THAT(d.sentence, Contains("these data cannot tell") && Contains("does not describe the held-out condition 'speed50'"));
+    CHECK_THAT(d.next_experiment, Contains("Give speed50 the role fit"));
+  }
+  CHECK(unseen >= 5);
 }
 
+// At 2.8 standard deviations of its prior the filling is seen in most recordings, not in all: alone in 7 of the first 10 seeds.
 TEST_CASE("a filling beyond its prior is named as that, and as no physics") {
   std::vector<std::string> truth = kTheta;
-  truth[2] = "fill.filling=0.3218";  // 2.8 standard deviations
-  const Diagnosis d = diagnosed(usual(), truth, 0.3);
-  INFO(d.sentence);
-  REQUIRE_FALSE(d.named.empty());
-  CHECK(d.named == std::vector<std::string>{"filling"});
-  CHECK(d.verdict == Verdict::named);
-  CHECK_THAT(d.sentence, Contains("'filling' is 0.32"));
-  CHECK_THAT(judged(d, "filling").theta[2].value, WithinAbs(0.3218, 0.002));
+  truth[2] = "fill.filling=0.3218";
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  int among = 0, alone = 0;
+  for (std::uint64_t k = 0; k < 6; ++k) {
+    MadeUpMill mill(q, usual(), truth, 0.3);
+    mill.seed = k;
+    const Diagnosis d = found(q, mill);
+    INFO(d.sentence);
+    among += std::count(d.named.begin(), d.named.end(), "filling") > 0 ? 1 : 0;
+    if (d.named != std::vector<std::string>{"filling"}) continue;
+    ++alone;
+    CHECK(d.verdict == Verdict::named);
+    CHECK_THAT(d.sentence, Contains("'filling' is 0.32"));
+    CHECK_THAT(judged(d, "filling").theta[2].value, WithinAbs(0.3218, 0.002));
+  }
+  CHECK(among >= 5);
+  CHECK(alone >= 4);
 }
 
 TEST_CASE("two effects at once are found by forward selection") {
