@@ -59,7 +59,7 @@ class Completion(CliTest):
         self.assertEqual(self.bash("new", "x", "--bead-material", "gl"), ["glass"])
 
     def test_plugins(self):
-        self.assertEqual(self.bash("describe", "hertz"), ["hertz_mindlin"])
+        self.assertEqual(self.bash("describe", "hertz"), ["hertz_mindlin", "hertz_mindlin_deresiewicz"])
         self.assertIn("gravity", self.bash("describe", ""))
 
     def test_files(self):
