@@ -38,6 +38,7 @@ SourceRequest source_request(const AnalysisRequest& request, const config::Node&
   while (!source.path.has_filename() && source.path.has_parent_path() && source.path != source.path.parent_path())
     source.path = source.path.parent_path();
   source.tracers = request.tracers;
+  source.threads = request.threads;
   source.from = request.from ? request.from : seconds(settings, "from");
   source.to = request.to ? request.to : seconds(settings, "to");
   source.trajectory.gap_limit = 0;

@@ -55,7 +55,7 @@ void add_covariance(ResultSet& results) {
   if (size == 0) return;
   Eigen::MatrixXd deviations(static_cast<Eigen::Index>(draws), size);
   for (Eigen::Index j = 0; j < size; ++j) {
-    deviations.col(j) = Eigen::Map<const Eigen::VectorXd>(columns[static_cast<std::size_t>(j)].data(), static_cast<Eigen::Index>(draws));
+    deviations.col(j) = Eigen::Map<const Eigen::VectorXd>(columns[j].data(), static_cast<Eigen::Index>(draws));
   }
   const Eigen::MatrixXd covariance = deviations.transpose() * deviations / static_cast<double>(draws - 1);
   results.covariance.assign(covariance.data(), covariance.data() + covariance.size());  // symmetric: the order does not matter

@@ -86,22 +86,33 @@ std::vector<Request> pick(std::vector<Request> all, const std::vector<std::strin
   return kept;
 }
 
-AnalyzerInstance create(const Request& request, const host::Registry& registry, const AnalyzerContext& context) {
-  const base::Location where = request.node ? request.node->where() : base::Location{"", 0};
-  const host::Loaded& plugin = registry.find(Kind::analyzer, request.kind, where);
-  const config::Node empty = config::parse_document("{}", "the defaults of analyzer '" + request.name + "'");
-  const config::ResolvedValues values = config::resolve(*plugin.descriptor, request.node ? *request.node : empty, Scope::instance);
-  const std::uint64_t needs = plugin.table<AnalyzerTable>().needs;
-  const std::uint64_t lacking = needs & ~context.has;
-  if (lacking != 0) {
-    const std::string message = fmt::format("analyzer '{}' needs {}, which {} lacks", request.name, field_names(lacking),
-                                            context.is_recording != 0 ? "a recording" : "this output");
-    const std::string remedy =
-        fmt::format("{}; leave it out{}", message, (lacking & kHasImpacts) != 0 ? ", or run the case again with this version" : "");
-    if (where.file.empty()) throw UserError(remedy);
-    throw UserError(where, remedy);
+AskedAnalyzer read(const Request& request, const host::Registry& registry) {
+  AskedAnalyzer asked;
+  asked.name = request.name;
+  asked.by_name = request.by_name;
+  if (request.node) asked.where = request.node->where();
+  try {
+    const host::Loaded& plugin = registry.find(Kind::analyzer, request.kind, asked.where);
+    const config::Node empty = config::parse_document("{}", "the defaults of analyzer '" + request.name + "'");
+    asked.plugin = &plugin;
+    asked.values = config::resolve(*plugin.descriptor, request.node ? *request.node : empty, Scope::instance);
+  } catch (const UserError& e) {
+    if (request.by_name) throw;
+    asked.refused = e.what();
   }
-  return {request.name, host::AnalyzerObject::create(plugin, values.view(), where, context), values};
+  return asked;
+}
+
+AnalyzerInstance create(const AskedAnalyzer& asked, const AnalyzerContext& context) {
+  const std::uint64_t lacking = asked.plugin->table<AnalyzerTable>().needs & ~context.has;
+  if (lacking != 0) {
+    const std::string remedy = fmt::format("analyzer '{}' needs {}, which {} lacks; leave it out{}", asked.name, field_names(lacking),
+                                           context.is_recording != 0 ? "a recording" : "this output",
+                                           (lacking & kHasImpacts) != 0 ? ", or run the case again with this version" : "");
+    if (asked.where.file.empty()) throw UserError(remedy);
+    throw UserError(asked.where, remedy);
+  }
+  return {asked.name, host::AnalyzerObject::create(*asked.plugin, asked.values.view(), asked.where, context), asked.values};
 }
 
 }  // namespace
@@ -114,23 +125,35 @@ std::string field_names(std::uint64_t fields) {
   return text;
 }
 
-AnalyzerChoice choose_analyzers(const config::Node& settings, bool chosen_in_settings, const std::vector<std::string>& only,
-                                const host::Registry& registry, const AnalyzerContext& context) {
-  AnalyzerChoice choice;
+std::vector<AskedAnalyzer> read_analyzers(const config::Node& settings, bool chosen_in_settings, const std::vector<std::string>& only,
+                                          const host::Registry& registry) {
   std::vector<Request> wanted = pick(requests(settings, chosen_in_settings, registry), only);
   std::sort(wanted.begin(), wanted.end(), [](const Request& a, const Request& b) { return a.name < b.name; });
-  for (const Request& request : wanted) {
+  std::vector<AskedAnalyzer> asked;
+  for (const Request& request : wanted) asked.push_back(read(request, registry));
+  return asked;
+}
+
+AnalyzerChoice create_analyzers(const std::vector<AskedAnalyzer>& asked, const AnalyzerContext& context) {
+  AnalyzerChoice choice;
+  for (const AskedAnalyzer& one : asked) {
     try {
-      choice.instances.push_back(create(request, registry, context));
+      if (!one.refused.empty()) throw UserError(one.refused);
+      choice.instances.push_back(create(one, context));
     } catch (const UserError& e) {
-      if (request.by_name) throw;
-      choice.left_out.push_back(fmt::format("{}: {}", request.name, e.what()));
+      if (one.by_name) throw;
+      choice.left_out.push_back(fmt::format("{}: {}", one.name, e.what()));
     }
   }
   if (!choice.instances.empty()) return choice;
   std::string reasons;
   for (const std::string& reason : choice.left_out) reasons += " (" + reason + ")";
   throw UserError(fmt::format("no analyzer is left to run{}; 'millscope plugins' lists the analyzers, --plugin-dir adds some", reasons));
+}
+
+AnalyzerChoice choose_analyzers(const config::Node& settings, bool chosen_in_settings, const std::vector<std::string>& only,
+                                const host::Registry& registry, const AnalyzerContext& context) {
+  return create_analyzers(read_analyzers(settings, chosen_in_settings, only, registry), context);
 }
 
 }  // namespace millscope::studies

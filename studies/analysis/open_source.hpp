@@ -20,6 +20,7 @@ struct SourceRequest {
   std::optional<double> from, to;    ///< s
   TrajectoryOptions trajectory;      ///< `axis`, and for simulated beads noise and kind, are set by the source
   bool trajectory_given = false;     ///< the user has chosen them: also simulated beads go through them
+  int threads = 0;                   ///< 0: all cores; no influence on results
 };
 
 struct OpenedSource {

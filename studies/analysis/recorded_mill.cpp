@@ -128,8 +128,11 @@ RecordedMill stated_mill(const Recording& recording, const std::optional<MillOfC
 }
 
 RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCase>& mill) {
+  return know_mill(recording, mill, estimate_motion(recording));
+}
+
+RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCase>& mill, const MillMotion& motion) {
   RecordedMill known = stated_mill(recording, mill);
-  const MillMotion motion = estimate_motion(recording);
   if (!recording.frame) find_axis(recording, motion, known);
   check_speed(recording, motion, known);
   if (known.context.omega == 0) find_speed(recording, motion, known);

@@ -10,6 +10,8 @@
 
 namespace millscope::studies {
 
+struct MillMotion;  // studies/inspect/mill_motion.hpp
+
 struct RecordedMill {
   std::array<double, 2> axis{0, 0};  ///< x, y in the frame of the file, m
   AnalyzerContext context{};
@@ -19,6 +21,8 @@ struct RecordedMill {
 /// `mill`: of the geometry that the condition names. Throws base::UserError where the axis is neither given nor to be found, and where
 /// the tracer contradicts the speed or the sense that are stated.
 RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCase>& mill);
+/// The same where the recording's motion is known already.
+RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCase>& mill, const MillMotion& motion);
 
 /// What is stated, taken as it stands and held against nothing: for the film of a simulation, whose mill is known.
 RecordedMill stated_mill(const Recording& recording, const std::optional<MillOfCase>& mill);

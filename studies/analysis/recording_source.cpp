@@ -4,30 +4,25 @@
 
 #include <algorithm>
 
+#include "studies/analysis/follow.hpp"
 #include "studies/analysis/recorded_mill.hpp"
-#include "studies/analysis/trajectory_source.hpp"
 
 namespace millscope::studies {
 namespace {
 
 namespace fs = std::filesystem;
-using base::UserError;
-
-Run cut_to(const Run& run, const SourceRequest& request) {
-  if (!request.from && !request.to) return run;
-  Run part = run;
-  const auto first = request.from ? std::lower_bound(run.time.begin(), run.time.end(), *request.from) : run.time.begin();
-  const auto last = request.to ? std::upper_bound(run.time.begin(), run.time.end(), *request.to) : run.time.end();
-  const auto cut = [&](auto& values) {
-    if (values.empty()) return;
-    const auto begin = values.begin();
-    values = {begin + (first - run.time.begin()), begin + std::max(last - run.time.begin(), first - run.time.begin())};
+void cut(Run& run, const SourceRequest& request) {
+  if (!request.from && !request.to) return;
+  const auto begin = run.time.begin();
+  const auto first = request.from ? std::lower_bound(begin, run.time.end(), *request.from) - begin : 0;
+  const auto last = request.to ? std::upper_bound(begin, run.time.end(), *request.to) - begin : std::ssize(run.time);
+  const auto keep = [&](auto& values) {
+    if (!values.empty()) values = {values.begin() + first, values.begin() + std::max(last, first)};
   };
-  for (auto& axis : part.position) cut(axis);
-  cut(part.spread);
-  cut(part.events);
-  cut(part.time);
-  return part;
+  for (auto& axis : run.position) keep(axis);
+  keep(run.spread);
+  keep(run.events);
+  keep(run.time);
 }
 
 using Json = nlohmann::ordered_json;
@@ -82,13 +77,12 @@ std::vector<std::string> row_notes(const Recording& recording) {
 }  // namespace
 
 OpenedSource open_recording(const SourceRequest& request, const host::Registry& registry) {
-  const Recording recording = read_recording(request.path);
-  const Condition& condition = recording.condition;
+  Recording recording = read_recording(request.path);
   OpenedSource opened;
   std::optional<MillOfCase> mill;
-  if (!condition.geometry.empty()) {
-    mill = read_mill_of_case(condition.geometry, registry);
-    opened.meta.case_file = fs::absolute(condition.geometry).lexically_normal().string();
+  if (const fs::path& geometry = recording.condition.geometry; !geometry.empty()) {
+    mill = read_mill_of_case(geometry, registry);
+    opened.meta.case_file = fs::absolute(geometry).lexically_normal().string();
   }
   const RecordedMill known = know_mill(recording, mill);
   opened.meta.notes = known.notes;
@@ -97,36 +91,20 @@ OpenedSource open_recording(const SourceRequest& request, const host::Registry& 
   TrajectoryOptions options = request.trajectory;
   options.axis = known.axis;
   if (!(options.gap_limit > 0)) options.gap_limit = recording.gap_limit;
-  std::vector<Trajectory> trajectories;
-  double seconds = 0;
-  std::uint64_t points = 0, left_out = 0;
-  for (const Run& whole : recording.runs) {
-    const Run run = cut_to(whole, request);
-    if (run.size() < static_cast<std::size_t>(options.least_points)) {
-      opened.meta.notes.push_back(fmt::format("{}: {} points in the span asked for are too few; it is left out", whole.source, run.size()));
-      continue;
-    }
-    Trajectory t = fit_trajectory(run, options);
-    t.id = static_cast<std::int64_t>(trajectories.size());
-    t.diameter = condition.tracer.diameter.value_or(condition.bead_diameter.value_or(0));
-    t.density = condition.tracer.density.value_or(condition.bead_density.value_or(0));
-    seconds += t.covered;
-    points += run.size();
-    left_out += t.points_left_out;
-    opened.meta.inputs.push_back({run.source, file_hash(run.source)});
-    trajectories.push_back(std::move(t));
+  for (Run& run : recording.runs) cut(run, request);
+  Followed followed =
+      follow(tracer_runs(recording, options),
+             {.of = request.path.string(), .mill = known.context, .motion = even_motion(known.context.omega), .threads = request.threads});
+  for (std::string& note : followed.notes) opened.meta.notes.push_back(std::move(note));
+  if (followed.points_left_out > 0) {
+    opened.meta.notes.push_back(fmt::format("{} of {} points stand in stretches of fewer than {} and are left out",
+                                            followed.points_left_out, followed.points, options.least_points));
   }
-  if (trajectories.empty())
-    throw UserError(fmt::format("{}: no run has enough points in the span asked for; widen --from and --to", request.path.string()));
-  if (left_out > 0) {
-    opened.meta.notes.push_back(
-        fmt::format("{} of {} points stand in stretches of fewer than {} and are left out", left_out, points, options.least_points));
+  for (const std::size_t i : followed.runs) {
+    const std::string& file = recording.runs[i].source;
+    opened.meta.inputs.push_back({file, file_hash(file)});
   }
-  ShellMotion motion;
-  if (known.context.omega != 0) motion.omega = [omega = known.context.omega](double) { return omega; };
-  const std::string description = fmt::format("{}: {} run{}, {} points, {:.6g} s covered", request.path.string(), trajectories.size(),
-                                              trajectories.size() == 1 ? "" : "s", points, seconds);
-  opened.source = std::make_unique<TrajectorySource>(std::move(trajectories), known.context, std::move(motion), false, description);
+  opened.source = std::move(followed.source);
   opened.meta.source = "recording";
   opened.meta.name = fs::path(request.path).stem().string();
   if (recording.runs.front().source != request.path.string())

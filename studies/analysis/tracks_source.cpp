@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <set>
 
 #include "kernel/output/track_reader.hpp"
-#include "studies/analysis/trajectory_source.hpp"
+#include "studies/analysis/follow.hpp"
 
 namespace millscope::studies {
 namespace {
@@ -38,10 +37,6 @@ std::vector<std::size_t> pick(const output::TrackReader& reader, const std::vect
                                 tracks.size() > 12 ? ", …" : ""));
   }
   return {picked.begin(), picked.end()};
-}
-
-void wrap(std::vector<double>& z, double low, double period) {
-  for (double& value : z) value -= period * std::floor((value - low) / period);
 }
 
 Run run_of(const output::TrackReader& reader, std::size_t track, const SourceRequest& request, double period) {
@@ -94,26 +89,24 @@ OpenedSource open_tracks(const SourceRequest& request, MillOfCase mill) {
         fmt::format("{}: the mill is periodic along z and has no end faces; leave trajectory.low and trajectory.high out", file.string()));
   }
   OpenedSource opened;
-  std::vector<Trajectory> trajectories;
-  double seconds = 0;
-  for (const std::size_t track : pick(reader, request.tracers)) {
-    const output::TrackInfo& info = reader.tracks()[track];
-    const Run run = run_of(reader, track, request, mill.period);
-    Trajectory t = fit_trajectory(run, options_for(run, request));
-    t.id = info.bead;
-    t.diameter = info.diameter;
-    t.density = info.density;
-    if (mill.period > 0) {
-      for (Piece& piece : t.pieces) wrap(piece.position[2], mill.context.mill_low, mill.period);
-      wrap(t.location_position[2], mill.context.mill_low, mill.period);
-    }
-    seconds += t.covered;
-    trajectories.push_back(std::move(t));
+  const std::vector<std::size_t> tracks = pick(reader, request.tracers);
+  std::vector<Run> runs;
+  for (const std::size_t track : tracks) runs.push_back(run_of(reader, track, request, mill.period));
+  std::vector<BeadRun> beads;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const output::TrackInfo& info = reader.tracks()[tracks[i]];
+    beads.push_back({&runs[i], options_for(runs[i], request), info.diameter, info.density, info.bead});
   }
-  const std::string description = fmt::format("{}: {} bead{} followed, {:.6g} s in all", file.string(), trajectories.size(),
-                                              trajectories.size() == 1 ? "" : "s", seconds);
-  opened.source = std::make_unique<TrajectorySource>(std::move(trajectories), mill.context, shell_motion(mill.motion),
-                                                     !request.trajectory_given, description);
+  Followed followed = follow(beads, {.of = file.string(),
+                                     .one = "bead followed",
+                                     .many = "beads followed",
+                                     .mill = mill.context,
+                                     .motion = shell_motion(mill.motion),
+                                     .period = mill.period,
+                                     .exact = !request.trajectory_given,
+                                     .threads = request.threads});
+  opened.source = std::move(followed.source);
+  opened.meta.notes = std::move(followed.notes);
   opened.meta.source = "tracks";
   opened.meta.inputs.push_back({file.string(), file_hash(file)});
   return opened;

@@ -25,9 +25,10 @@ double middle_of(const Recording& recording, std::size_t axis) {
 }
 
 /// As the user says, else from the beads that ride along the shell.
-std::optional<std::array<Estimated, 2>> axis_of(const Recording& recording, const std::optional<MillFrame>& frame) {
+std::optional<std::array<Estimated, 2>> axis_of(const Recording& recording, const EstimateOptions& options,
+                                                const std::optional<MillFrame>& frame) {
   if (frame) return std::array<Estimated, 2>{Estimated{frame->axis[0], 0}, Estimated{frame->axis[1], 0}};
-  const MillMotion motion = estimate_motion(recording);
+  const MillMotion motion = options.motion != nullptr ? *options.motion : estimate_motion(recording);
   if (motion.sense == 0 || !motion.axis[0].estimate || !motion.axis[1].estimate) return std::nullopt;
   const auto with_error = [](const base::Interval90& x) { return Estimated{x.value, x.standard_error()}; };
   return std::array<Estimated, 2>{with_error(*motion.axis[0].estimate), with_error(*motion.axis[1].estimate)};
@@ -65,7 +66,7 @@ CameraEstimate estimate_camera(const Recording& recording, const EstimateOptions
                                       recording.file.string(), e.locations, kFewest));
   }
   const std::optional<MillFrame> frame = options.frame ? options.frame : recording.frame;
-  e.axis = axis_of(recording, frame);
+  e.axis = axis_of(recording, options, frame);
   e.middle = middle_of(recording, e.axis, frame);
   const auto& slice = recording.condition.slice;
   if (slice) e.middle[2] = slice->middle();

@@ -68,9 +68,12 @@ struct CameraEstimate {
   std::size_t locations = 0;
 };
 
+struct MillMotion;  // studies/inspect/mill_motion.hpp
+
 struct EstimateOptions {
-  std::optional<MillFrame> frame;    ///< where the mill stands; default: the recording's, else what its rides along the shell say
-  std::size_t most_stretches = 300;  ///< for the noise: more cost more time
+  std::optional<MillFrame> frame;      ///< where the mill stands; default: the recording's, else what its rides along the shell say
+  std::size_t most_stretches = 300;    ///< for the noise: more cost more time
+  const MillMotion* motion = nullptr;  ///< of this recording, where it is known already
 };
 
 /// Throws base::UserError when the recording is too short or sparse (fewer than 200 locations or 20 unbroken stretches of 24).

@@ -29,6 +29,7 @@ struct TrajectoryOptions {
   std::optional<double> noise_correlation = std::nullopt;
   std::array<double, 2> axis{0, 0};  ///< subtracted from x and y, m
   double low = 0, high = 0;          ///< only samples with low ≤ z ≤ high are kept (end-face trimming), pieces end there; equal: all
+  bool operator==(const TrajectoryOptions&) const = default;
 };
 
 /// One unbroken stretch at even times.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/support.hpp"
+#include "kernel/base/parallel.hpp"
 #include "studies/analysis/times.hpp"
 
 using namespace analysis_test;
@@ -330,4 +331,28 @@ TEST_CASE("a span shorter than two blocks has results without uncertainty, and s
   REQUIRE_FALSE(r.meta.notes.empty());
   CHECK_THAT(r.meta.notes.front(), Contains("blocks of at least three autocorrelation times"));
   CHECK((r.find("means", "mean_x")->flags[0] & kFewBlocks) != 0);
+}
+
+TEST_CASE("analyzers that were read once are created without their document, by several threads") {
+  const AnalyzerContext context = [] {
+    AnalyzerContext c{};
+    c.has = kHasVelocity | kHasOmega;
+    c.mill_radius = 0.1, c.gravity = 9.81, c.omega = -2;
+    return c;
+  }();
+  std::vector<AskedAnalyzer> asked;
+  {
+    const config::Node settings = config::parse_document("analyzers:\n  fine: {kind: pept_grid, cells_x: 30}\n  power: {}\n", "a.yaml");
+    asked = read_analyzers(settings, true, {}, build_registry());
+  }
+  REQUIRE(asked.size() == 2);
+  CHECK(asked[0].name == "fine");
+  CHECK(asked[0].where.line == 2);
+  std::vector<std::size_t> created(16);
+  base::for_each_item(created.size(), 4,
+                      [&](std::size_t i, std::size_t) { created[i] = create_analyzers(asked, context).instances.size(); });
+  CHECK(created == std::vector<std::size_t>(16, 2));
+  AnalyzerContext blind = context;
+  blind.has = 0;
+  CHECK_THAT(refusal([&] { create_analyzers(asked, blind); }), Catch::Contains("a.yaml:2: analyzer 'fine' needs"));
 }

@@ -1,0 +1,103 @@
+#include "studies/analysis/follow.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "kernel/base/error.hpp"
+#include "kernel/base/parallel.hpp"
+
+namespace millscope::studies {
+namespace {
+
+using base::UserError;
+
+constexpr std::size_t kNamed = 3;  // runs that are named with their reason; the others are counted
+
+/// A trajectory, or why there is none.
+struct Outcome {
+  std::optional<Trajectory> trajectory;
+  std::string reason;
+};
+
+void wrap(std::vector<double>& z, double low, double period) {
+  for (double& value : z) value -= period * std::floor((value - low) / period);
+}
+
+Outcome follow_one(const BeadRun& bead, const FollowRequest& request) {
+  const Run& run = *bead.run;
+  if (std::ssize(run.time) < bead.options.least_points)
+    return {{}, fmt::format("{}: its {} points in the span asked for are too few; widen the span", run.source, run.size())};
+  try {
+    Outcome outcome{fit_trajectory(run, bead.options), {}};
+    Trajectory& t = *outcome.trajectory;
+    t.diameter = bead.diameter;
+    t.density = bead.density;
+    if (request.period > 0) {
+      for (Piece& piece : t.pieces) wrap(piece.position[2], request.mill.mill_low, request.period);
+      wrap(t.location_position[2], request.mill.mill_low, request.period);
+    }
+    return outcome;
+  } catch (const UserError& e) {
+    return {{}, e.what()};
+  }
+}
+
+std::string left_out_note(const std::vector<Outcome>& outcomes, const FollowRequest& request) {
+  std::size_t count = 0;
+  std::string reasons;
+  for (const Outcome& outcome : outcomes) {
+    if (outcome.trajectory) continue;
+    if (++count <= kNamed) reasons += (count > 1 ? "; " : "") + outcome.reason;
+  }
+  if (count > kNamed) reasons += fmt::format("; and {} more", count - kNamed);
+  return fmt::format("{} of {} {} cannot be followed, and are left out: {}", count, outcomes.size(), request.many, reasons);
+}
+
+}  // namespace
+
+ShellMotion even_motion(double omega) {
+  if (omega == 0) return {};
+  return {[omega](double) { return omega; }, {}};
+}
+
+std::vector<BeadRun> tracer_runs(const Recording& recording, const TrajectoryOptions& options) {
+  const Condition& c = recording.condition;
+  const double diameter = c.tracer.diameter.value_or(c.bead_diameter.value_or(0));
+  const double density = c.tracer.density.value_or(c.bead_density.value_or(0));
+  std::vector<BeadRun> runs;
+  for (const Run& run : recording.runs) runs.push_back({&run, options, diameter, density});
+  return runs;
+}
+
+Followed follow(std::span<const BeadRun> runs, FollowRequest request) {
+  std::vector<Outcome> outcomes(runs.size());
+  base::for_each_item(runs.size(), base::worker_count(request.threads, runs.size()),
+                      [&](std::size_t i, std::size_t) { outcomes[i] = follow_one(runs[i], request); });
+  Followed followed;
+  std::vector<Trajectory> trajectories;
+  double seconds = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!outcomes[i].trajectory) continue;
+    Trajectory& t = *outcomes[i].trajectory;
+    t.id = runs[i].id.value_or(std::ssize(trajectories));
+    seconds += t.covered;
+    followed.points += runs[i].run->size();
+    followed.points_left_out += t.points_left_out;
+    followed.runs.push_back(i);
+    trajectories.push_back(std::move(t));
+  }
+  if (trajectories.empty()) {
+    throw UserError(runs.size() == 1 ? outcomes.front().reason
+                                     : fmt::format("{}: none of its {} {} can be followed{}", request.of, runs.size(), request.many,
+                                                   runs.empty() ? "" : "; the first: " + outcomes.front().reason));
+  }
+  if (trajectories.size() < runs.size()) followed.notes.push_back(left_out_note(outcomes, request));
+  std::string description = fmt::format("{}: {} {}, {} points, {:.6g} s covered", request.of, trajectories.size(),
+                                        trajectories.size() == 1 ? request.one : request.many, followed.points, seconds);
+  followed.source = std::make_unique<TrajectorySource>(std::move(trajectories), request.mill, std::move(request.motion), request.exact,
+                                                       std::move(description));
+  return followed;
+}
+
+}  // namespace millscope::studies
