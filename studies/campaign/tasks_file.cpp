@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "kernel/config/document.hpp"
+#include "kernel/config/existing_file.hpp"
 #include "kernel/config/units.hpp"
 #include "kernel/output/csv.hpp"
 #include "kernel/output/file.hpp"
@@ -40,7 +40,7 @@ std::vector<Simulation> read_tasks(const std::string& file) {
     node.expect({"case", "set"});
     const auto own_case = node.find("case");
     if (!own_case && !common_case) node.fail("names no case; give it one (case: FILE.yaml), or one for all at the top of the file");
-    Simulation s{config::resolve_file(own_case ? *own_case : *common_case), common, label};
+    Simulation s{config::existing_file(own_case ? *own_case : *common_case), common, label};
     for (std::string& setting : settings_of(node)) s.settings.push_back(std::move(setting));
     simulations.push_back(std::move(s));
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "kernel/config/existing_file.hpp"
 #include "kernel/config/units.hpp"
 
 namespace millscope::challenge {
@@ -64,12 +65,6 @@ SetsOf read_sets(const Node& node) {
   }
   if (const auto strength = node.find("strength")) read_strength(*strength, s);
   return s;
-}
-
-fs::path existing_file(const Node& node) {
-  const fs::path file = config::resolve_file(node);
-  if (!fs::is_regular_file(file)) node.fail(fmt::format("is '{}': no such file; check the path", node.text()));
-  return file;
 }
 
 void check_hypothesis(const SetsOf& sets, const std::string& name, const diagnose::Question& question) {
@@ -146,8 +141,8 @@ Challenge read_challenge(const fs::path& file, const std::vector<std::string>& o
   }
   Challenge c;
   c.file = file;
-  c.study = existing_file(root.at("study", "the study that is put to the test, as for 'millscope diagnose'"));
-  c.camera = existing_file(root.at("camera", "a camera file, e.g. configs/cameras/study.yaml"));
+  c.study = config::existing_file(root.at("study", "the study that is put to the test, as for 'millscope diagnose'"));
+  c.camera = config::existing_file(root.at("camera", "a camera file, e.g. configs/cameras/study.yaml"));
   c.seed =
       static_cast<std::uint64_t>(config::read_integer(root.at("seed", "any number that those who diagnose do not know"), between(0, 9e15)));
   const Node truth = root.at("truth", "how the mill that makes the sets differs from the fitted one, e.g. {set: {stiffness_factor: 0.01}}");

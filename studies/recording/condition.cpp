@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernel/config/case.hpp"
+#include "kernel/config/existing_file.hpp"
 #include "kernel/config/units.hpp"
 #include "studies/recording/description.hpp"
 
@@ -40,7 +41,7 @@ std::optional<double> diameter_of_case(const std::string& file) {
 void read_geometry(const Node& section, Condition& condition) {
   const auto node = section.find("geometry");
   if (!node) return;
-  condition.geometry = config::resolve_file(*node);
+  condition.geometry = config::existing_file(*node);
   const auto diameter = diameter_of_case(condition.geometry.string());
   if (!diameter) return;
   if (condition.mill_diameter && std::fabs(*diameter - *condition.mill_diameter) > 1e-9 * *diameter) {

@@ -10,6 +10,9 @@ TEST_CASE("tasks are read in their order, common settings first") {
   write(file,
         "schema_version: 1\ncase: case.yaml\nset: [time.end_s=1]\nsimulations:\n  slow: {set: [mill.speed=50 %critical, seed=2]}\n"
         "  other: {case: other.yaml}\n");
+  CHECK_THAT(testing::refusal([&] { read_tasks(file.string()); }),
+             Catch::Contains("tasks.yaml:6: 'simulations.other.case' is 'other.yaml': no such file"));
+  write(folder.path() / "other.yaml", "seed: 1\n");
   const std::vector<Simulation> s = read_tasks(file.string());
   REQUIRE(s.size() == 2);
   CHECK(s[0].label == "slow");

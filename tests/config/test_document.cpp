@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "kernel/config/existing_file.hpp"
 #include "tests/config/helpers.hpp"
 
 using namespace millscope::config;
@@ -165,4 +166,14 @@ TEST_CASE("a file with paths for keys reads as the maps that they stand for") {
   CHECK(message_of([&] { read("a.b: 1\na.b: 2\n"); }) == file + ":2: key 'a.b' is given twice; first at line 1; remove one");
   CHECK(message_of([&] { read("a: 1\na.b: 2\n"); }) == file + ":2: 'a.b' lies below 'a', which is a single value at line 1; remove one");
   CHECK(message_of([&] { read("a..b: 1\n"); }) == file + ":1: a key is empty; write a name before the colon");
+}
+
+TEST_CASE("a file that is read later has to be there when it is named") {
+  const Folder folder;
+  folder.write("points.csv", "1\n");
+  const Node root = load_document(folder.write("s.yaml", "good: points.csv\ngone: gone.csv\nfolder: sub\n"));
+  CHECK(existing_file(root.at("good")) == (folder.path / "points.csv").string());
+  const auto refused = [&](const char* key) { return message_of([&] { existing_file(root.at(key), "make it first"); }); };
+  CHECK(refused("gone") == (folder.path / "s.yaml:2: 'gone' is 'gone.csv': no such file; make it first").string());
+  CHECK(refused("folder") == (folder.path / "s.yaml:3: 'folder' is 'sub': it is a folder; make it first").string());
 }
