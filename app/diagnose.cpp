@@ -49,9 +49,9 @@ int diagnose_study(const Arguments& arguments) {
   const calibrate::SessionOptions session_of = study_session(options, output);
   calibrate::Session session(question.study, registry, session_of);
   naming.say = session_of.say;
-  diagnose::Workshop workshop = diagnose::workshop_of(question, registry, session, session_of.say);
-  const diagnose::Diagnosis found = diagnose::diagnose(question, workshop, naming);
-  diagnose::write_outputs({question, workshop, found}, output);
+  const diagnose::Diagnosis found =
+      diagnose::diagnose(question, session.machinery(), diagnose::evidence_of(question, registry, session), naming);
+  diagnose::write_outputs({question, found}, output);
   if (!options.has("quiet")) print_found(found, output);
   return kDone;
 }

@@ -21,6 +21,7 @@ inline constexpr double kPathStep = 0.0005;  ///< s, between the points of a pat
 /// Where a recorded bead was along the axis, and the rig's middle, m.
 struct AxialPlace {
   double low = 0, high = 0, middle = 0;
+  bool operator==(const AxialPlace&) const = default;
 };
 
 class BeadPaths {

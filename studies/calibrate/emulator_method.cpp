@@ -24,7 +24,7 @@ constexpr Eigen::Index kParts = 4;
 Eigen::VectorXd parts_of(const Evaluator& evaluator, const Trial& trial) {
   Eigen::VectorXd parts(kParts * static_cast<Eigen::Index>(trial.conditions.size()));
   for (std::size_t k = 0; k < trial.conditions.size(); ++k) {
-    const Observation& recorded = evaluator.machinery().recorded[trial.conditions[k]];
+    const Observation& recorded = evaluator.recorded(trial.conditions[k]);
     const ChagasObjective o = chagas2015(recorded, trial.observed[k], evaluator.study().objective.terms);
     parts.segment(kParts * static_cast<Eigen::Index>(k), kParts) << trial.observed[k].power.value - recorded.power.value, o.x, o.speed,
         o.terms;
@@ -46,8 +46,8 @@ Guide chagas_guide(const Evaluator& evaluator, const emulate::Box& box) {
   emulate::Training training;
   training.input.resize(runs, box.size());
   for (Eigen::Index r = 0; r < runs; ++r) {
-    training.input.row(r) = done[static_cast<std::size_t>(r)]->point.transpose();
-    output.row(r) = parts_of(evaluator, *done[static_cast<std::size_t>(r)]).transpose();
+    training.input.row(r) = done[r]->point.transpose();
+    output.row(r) = parts_of(evaluator, *done[r]).transpose();
   }
   std::vector<Eigen::Index> kept;  // without terms their part is always zero
   for (Eigen::Index i = 0; i < all; ++i) {
@@ -78,14 +78,13 @@ std::vector<Eigen::VectorXd> spread(const Study& study, int runs) {
   for (const Parameter& p : study.parameters) factors.push_back({p.name, 0.5 * (p.low + p.high), 0.5 * (p.high - p.low), ""});
   std::vector<Eigen::VectorXd> points;
   const auto take = [&](const doe::Design& design) {
-    for (Eigen::Index r = 0; r < design.coded.rows() && points.size() < static_cast<std::size_t>(runs); ++r) {
+    for (Eigen::Index r = 0; r < design.coded.rows() && std::ssize(points) < runs; ++r) {
       const Eigen::VectorXd point = doe::natural(factors, design.coded.row(r).transpose());
       if (study.allowed(point) && std::find(points.begin(), points.end(), point) == points.end()) points.push_back(point);
     }
   };
   if (study.design.start == "latin_hypercube") take(doe::latin_hypercube(factors, runs, study.design.seed));
-  for (int more = 4 * runs; points.size() < static_cast<std::size_t>(runs) && more <= 1024 * runs; more *= 4)
-    take(doe::sobol(factors, more));
+  for (int more = 4 * runs; std::ssize(points) < runs && more <= 1024 * runs; more *= 4) take(doe::sobol(factors, more));
   return points;
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "studies/calibrate/observe.hpp"
+#include "studies/calibrate/power.hpp"
 
 namespace millscope::calibrate {
 namespace {
@@ -56,12 +57,9 @@ void score(const Study& study, const std::vector<Observation>& recorded, Trial& 
 
 }  // namespace
 
-Evaluator::Evaluator(const Study& study, Machinery machinery) : study_(study), machinery_(std::move(machinery)) {
-  for (Observation& recorded : machinery_.recorded) add_power_error(recorded, study_.power_error);
-}
-
-void Evaluator::say(const std::string& line) const {
-  if (machinery_.say) machinery_.say(line);
+Evaluator::Evaluator(const Study& study, Machinery machinery, std::vector<Observation> recorded)
+    : study_(study), machinery_(std::move(machinery)), recorded_(std::move(recorded)) {
+  for (Observation& of : recorded_) add_power_error(of, study_.power_error);
 }
 
 double Evaluator::objective(const Trial& trial) const {
@@ -96,13 +94,15 @@ Trial Evaluator::look(const Job& job, std::span<const campaign::Outcome> outcome
     if (trial.failed) continue;
     try {
       if (outcomes[k].state == campaign::State::failed) throw UserError(outcomes[k].message);
-      trial.observed.push_back(machinery_.observe(job.conditions[k], outcomes[k]));
+      Observation seen = machinery_.observe(job.conditions[k], outcomes[k], {});
+      require_defined(seen);
+      trial.observed.push_back(std::move(seen));
     } catch (const UserError& e) {
       trial.failed = true;
       trial.message = fmt::format("condition '{}': {}", study_.conditions[job.conditions[k]].name, e.what());
     }
   }
-  if (!trial.failed) score(study_, machinery_.recorded, trial);
+  if (!trial.failed) score(study_, recorded_, trial);
   if (trial.failed) say(fmt::format("left out: {} ({})", point_text(study_, trial.point), trial.message));
   return trial;
 }

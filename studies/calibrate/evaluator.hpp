@@ -5,7 +5,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <span>
 #include <string>
 #include <utility>
@@ -13,20 +12,11 @@
 
 #include <Eigen/Core>
 
+#include "studies/calibrate/machinery.hpp"
 #include "studies/calibrate/objective.hpp"
 #include "studies/calibrate/study.hpp"
-#include "studies/campaign/campaign.hpp"
 
 namespace millscope::calibrate {
-
-/// What the drivers work with; tests put their own in place.
-struct Machinery {
-  std::function<std::vector<campaign::Outcome>(std::span<const campaign::Simulation>)> run;
-  std::function<Observation(std::size_t condition, const campaign::Outcome&)> observe;  ///< throws UserError: counts as failed
-  std::vector<Observation> recorded;            ///< of every condition of the study, as the data say
-  int slots = 1;                                ///< simulations at once, for the wall budget
-  std::function<void(const std::string&)> say;  ///< one line of progress; may be empty
-};
 
 /// A parameter set with what it gave.
 struct Trial {
@@ -45,8 +35,8 @@ struct Trial {
 
 class Evaluator {
  public:
-  /// To the recordings' uncertainty it adds the study's power error.
-  Evaluator(const Study& study, Machinery machinery);
+  /// `recorded`: of every condition of the study, as the data say; to their uncertainty the study's power error is added.
+  Evaluator(const Study& study, Machinery machinery, std::vector<Observation> recorded);
 
   struct Wanted {
     Eigen::VectorXd point;
@@ -65,8 +55,8 @@ class Evaluator {
   int left() const;
   double objective(const Trial& trial) const;  ///< as the study chose; +infinity for a failed one
   const Study& study() const { return study_; }
-  const Machinery& machinery() const { return machinery_; }
-  void say(const std::string& line) const;
+  const Observation& recorded(std::size_t condition) const { return recorded_[condition]; }  ///< with the power error
+  void say(const std::string& line) const { machinery_.say(line); }
 
  private:
   struct Job {
@@ -79,6 +69,7 @@ class Evaluator {
 
   const Study& study_;
   Machinery machinery_;
+  std::vector<Observation> recorded_;
   std::vector<Trial> trials_;
   int simulations_ = 0;
   double wall_ = 0;  ///< s, of all simulations

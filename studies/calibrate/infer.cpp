@@ -48,19 +48,19 @@ Fitting fitting_of(const Evaluator& evaluator) {
   Eigen::Index column = 0;
   for (std::size_t k = 0; k < done.front()->conditions.size(); ++k) {
     const std::size_t condition = done.front()->conditions[k];
-    const Observation& recorded = evaluator.machinery().recorded[condition];
+    const Observation& recorded = evaluator.recorded(condition);
     const Eigen::Index size = recorded.value.size();
     value.segment(column, size) = recorded.value;
     covariance.block(column, column, size, size) = recorded.covariance;
     for (const Observable& o : recorded.observables) names.push_back(study.conditions[condition].name + ": " + o.name);
     for (Eigen::Index r = 0; r < runs; ++r) {
-      const Observation& seen = done[static_cast<std::size_t>(r)]->observed[k];
+      const Observation& seen = done[r]->observed[k];
       output.row(r).segment(column, size) = seen.value.transpose();
       noise.row(r).segment(column, size) = seen.covariance.diagonal().transpose();
     }
     column += size;
   }
-  for (Eigen::Index r = 0; r < runs; ++r) f.training.input.row(r) = done[static_cast<std::size_t>(r)]->point.transpose();
+  for (Eigen::Index r = 0; r < runs; ++r) f.training.input.row(r) = done[r]->point.transpose();
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < n; ++i) {
     const double spread = output.col(i).maxCoeff() - output.col(i).minCoeff();
@@ -69,7 +69,7 @@ Fitting fitting_of(const Evaluator& evaluator) {
   f.training.output = output(Eigen::all, kept);
   f.training.noise_variance = noise(Eigen::all, kept);
   f.observed = {value(kept), covariance(kept, kept)};
-  for (const Eigen::Index i : kept) f.training.observable.push_back(names[static_cast<std::size_t>(i)]);
+  for (const Eigen::Index i : kept) f.training.observable.push_back(names[i]);
   return f;
 }
 

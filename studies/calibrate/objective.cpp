@@ -27,7 +27,7 @@ ChagasObjective chagas2015(const Observation& recorded, const Observation& simul
   o.speed = rms_difference(recorded.speed, simulated.speed);
   for (const Term& term : terms) {
     for (Eigen::Index i = 0; i < recorded.value.size(); ++i) {
-      if (recorded.observables[static_cast<std::size_t>(i)].name != term.name()) continue;
+      if (recorded.observables[i].name != term.name()) continue;
       o.terms += term.weight * 100 * std::fabs((simulated.value[i] - recorded.value[i]) / recorded.value[i]);
     }
   }

@@ -2,31 +2,52 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
 
 namespace millscope::calibrate {
 
+enum class ObservableKind {
+  power,
+  centre,        ///< of mass
+  x,             ///< share of the time in bins of a coordinate or of the speed
+  y,             ///< likewise
+  speed,         ///< likewise
+  occupancy,     ///< of a region of the mill
+  region_speed,  ///< mean speed in a region
+  term,          ///< a number of an analyzer that the study asks for
+  profile,       ///< velocity at a place of a measured profile
+  frame          ///< how the recording's camera stands, by its own beads
+};
+/// As `objective: {without: […]}` has it.
+const char* name_of(ObservableKind kind);
+/// Throws std::invalid_argument where no kind has that name.
+ObservableKind kind_named(const std::string& name);
+
 struct Observable {
-  std::string name;   ///< "speed 0.3–0.45 of the shell's"
-  std::string unit;   ///< SI or %
-  std::string group;  ///< power, centre, x, y, speed, occupancy, region_speed, term, frame NAME
+  std::string name;  ///< "speed 0.3–0.45 of the shell's"
+  std::string unit;  ///< SI or %
+  ObservableKind kind = ObservableKind::power;
+  bool operator==(const Observable&) const = default;
 };
 
 /// A distribution, percent per bin.
 struct Histogram {
   std::vector<double> edges;         ///< one more than bins
   std::vector<double> percent, sem;  ///< %
+  bool operator==(const Histogram&) const = default;
 };
 
+/// Power of the recorded mill, of all conditions, also where it is not compared.
 struct PowerFigure {
-  double value = 0, sem = 0;                           ///< W of the recorded mill
+  double value = 0, sem = 0;                           ///< W
   std::string how;                                     ///< "measured", "whole charge, scaled by mass 11.3", …
   bool known() const { return std::isfinite(value); }  ///< a velocity profile tells none
+  bool operator==(const PowerFigure&) const = default;
 };
 
 struct Observation {
@@ -39,8 +60,11 @@ struct Observation {
   double bead_seconds = 0;  ///< behind it
   double blocks = 0;        ///< independent blocks, median over the observables
   std::vector<std::string> notes;
+  bool operator==(const Observation&) const = default;
   /// Something of single beads lies behind it, not only a profile.
   bool of_tracks() const { return bead_seconds > 0; }
+  /// Number of the first observable of a kind; nothing where none is compared.
+  std::optional<Eigen::Index> find(ObservableKind kind) const;
 };
 
 /// Throws base::UserError where a value is NaN: a speed where no bead was seen.
@@ -48,12 +72,5 @@ void require_defined(const Observation& observation);
 
 /// Takes observables out, with their part of the covariance. Names that it does not have are passed over.
 void leave_out(Observation& observation, const std::set<std::string>& names);
-
-nlohmann::ordered_json to_json(const Observation& observation);
-Observation observation_from(const nlohmann::ordered_json& json);
-
-/// Adds what speed and power meter together may be wrong by, relative to the power, to the uncertainty of a recording's power: two devices,
-/// or two codes, that agree better than that agree by chance.
-void add_power_error(Observation& recorded, double relative);
 
 }  // namespace millscope::calibrate

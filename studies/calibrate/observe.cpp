@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <map>
 
 #include "kernel/base/parallel.hpp"
-#include "kernel/output/summary.hpp"
 #include "studies/analysis/mirror.hpp"
-#include "studies/calibrate/recorded.hpp"
-#include "studies/calibrate/velocity_profile.hpp"
+#include "studies/calibrate/json.hpp"
+#include "studies/calibrate/power.hpp"
+#include "studies/calibrate/recorded_identity.hpp"
 #include "studies/camera/camera.hpp"
 #include "studies/camera/ctrack_writer.hpp"
 #include "studies/campaign/identity.hpp"
@@ -19,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using base::UserError;
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLeastPoints = 30;  // of a bead that the camera saw too little of
 
@@ -51,11 +49,18 @@ studies::Condition condition_of(const BeadPaths& paths) {
 /// chance is the case's, whatever program computed it, so that what two programs differ by is not the camera's.
 std::uint64_t camera_seed(const std::string& key) { return std::stoull(hash_of({"camera", campaign::case_of(key)}), nullptr, 16); }
 
-/// What the camera makes of the beads, as it would be read from files.
-studies::Recording film(const BeadPaths& paths, const studies::Camera& camera, std::uint64_t seed, int threads) {
+/// How one run is filmed.
+struct Film {
+  studies::Camera camera;
+  std::uint64_t seed = 0;
+  double gap_limit = 0;  ///< s, by which it is cleaned
+};
+
+/// What the camera makes of the beads, as it would be read from files and cleaned by the recording's own gap limit.
+studies::Recording film(const BeadPaths& paths, const Film& how, int threads) {
   std::vector<studies::Run> seen(paths.size());
   base::for_each_item(paths.size(), base::worker_count(threads, paths.size()), [&](std::size_t i, std::size_t) {
-    const studies::Run run = studies::observe(paths.path(i), camera, paths.context(i, seed));
+    const studies::Run run = studies::observe(paths.path(i), how.camera, paths.context(i, how.seed));
     if (run.size() >= kLeastPoints) seen[i] = studies::as_written(run);
   });
   studies::Recording recording;
@@ -70,51 +75,25 @@ studies::Recording film(const BeadPaths& paths, const studies::Camera& camera, s
     throw UserError(fmt::format("{}: the camera saw none of the beads for long enough; loosen it", paths.case_file().string()));
   recording.condition = condition_of(paths);
   recording.frame = studies::MillFrame{};
+  recording.gap_limit = how.gap_limit;
   return studies::clean_recording(std::move(recording));
 }
 
-/// Power of the whole simulated charge over the analysed time, from the run's own summary, times `factor`.
-PowerFigure whole_charge_power(const fs::path& run, double factor) {
-  const Json j = output::read_json(run / "summary.json");
-  const auto power = j.is_object() && j.contains("power_W") ? j["power_W"] : Json{};
-  if (!power.is_object() || !power.contains("com") || !power["com"].is_number()) {
-    throw UserError(fmt::format("{}: its summary.json tells no power; the run has not come to its end", run.string()));
-  }
-  const double sem = power.contains("com_sem") && power["com_sem"].is_number() ? power["com_sem"].get<double>() : 0.0;
-  return {factor * power["com"].get<double>(), factor * sem,
-          fmt::format("whole simulated charge, times {:.4g} for the recorded mass", factor)};
-}
-
-void set_power(Observation& o, const PowerFigure& power) {
-  o.power = power;
-  for (Eigen::Index i = 0; i < o.value.size(); ++i) {
-    if (o.observables[static_cast<std::size_t>(i)].group != "power") continue;
-    o.value[i] = power.value;
-    o.covariance.row(i).setZero();
-    o.covariance.col(i).setZero();
-    o.covariance(i, i) = std::pow(std::max(power.sem, 1e-6 * std::fabs(power.value)), 2);
-  }
-}
-
-}  // namespace
-
-namespace {
-
-/// How one run is filmed.
+/// At a finished run. `camera`: text of links before those of the recording's camera; may be empty.
 struct Look {
-  std::string key;     ///< of the run in the cache
-  std::string camera;  ///< text of links before those of the recording's camera; may be empty
+  const campaign::Outcome& run;
+  const std::string& camera;
 };
 
 }  // namespace
 
 struct Observer::Impl {
-  const Study& study;
-  const host::Registry& registry;
+  Processing how;
   fs::path cache;
-  int threads;
-  std::vector<RecordedCondition> recorded;
-  std::vector<AnalyzerContext> mill = {};  ///< of the study's case in each condition
+  Recordings recordings;
+  std::vector<RecordedCondition> recorded = {};
+  std::vector<studies::Camera> camera = {};  ///< of each condition; of a profile: none
+  std::vector<AnalyzerContext> mill = {};    ///< of the study's case in each condition
 
   /// A slice is scaled to the recorded mill; a run whose filling is varied keeps what that does to the power, one of another length does
   /// not.
@@ -125,58 +104,53 @@ struct Observer::Impl {
   }
 
   /// The run's beads through the recording's camera and the same processing, turned to the recording's sense.
-  studies::ResultSet seen(std::size_t condition, const BeadPaths& paths, const Look& look, const Processing& how) const {
+  studies::ResultSet seen(std::size_t condition, const BeadPaths& paths, const Look& look, const Processing& processing) const {
     const RecordedCondition& r = recorded[condition];
-    const std::string name = "camera of condition '" + study.conditions[condition].name + "'";
-    const bool mirror = paths.mill().context.omega * r.omega < 0;
-    const studies::Camera first = look.camera.empty() ? studies::Camera() : studies::parse_camera(look.camera, name, registry);
-    const studies::Camera camera = first.before(without_frame(studies::parse_camera(r.camera, name, registry)));
-    const studies::Recording recording = film(paths, camera, camera_seed(look.key), threads);
-    studies::TrajectoryOptions options;
-    options.step = 0.002;
-    options.gap_limit = r.gap_limit;
-    if (study.observing.camera != "exact") {
-      options.noise = r.noise;
-      options.noise_correlation = r.noise_correlation;
-    }
-    const studies::ResultSet results = process_in(studies::stated_mill(recording, paths.mill()), recording, options, how);
+    const std::string name = "camera of condition '" + how.study.conditions[condition].name + "'";
+    const studies::Camera first = look.camera.empty() ? studies::Camera() : studies::parse_camera(look.camera, name, how.registry);
+    const studies::Recording recording =
+        film(paths, {first.before(camera[condition]), camera_seed(look.run.key), r.smoothing.gap_limit}, how.threads);
+    const studies::ResultSet results =
+        process({recording, studies::stated_mill(recording, paths.mill()), Side::simulated}, r.smoothing, processing);
     std::vector<std::string> done;
-    return mirror ? studies::mirrored(results, done) : results;
+    return paths.mill().context.omega * r.omega < 0 ? studies::mirrored(results, done) : results;
   }
 
   /// The charge as a whole, without a camera.
   Observation profile(const RecordedCondition& r, const fs::path& run) const {
-    Observation o = summarise(profile_of_run(run, r, {study, registry, threads}), r.summaries);
+    Observation o = summarise(profile_of_run(run, r, how), r.summaries);
     o.power = whole_charge_power(run, 1);
     return o;
   }
 
-  Observation simulated(std::size_t condition, const fs::path& run, const Look& look) const {
+  Observation simulated(std::size_t condition, const Look& look) const {
     const RecordedCondition& r = recorded[condition];
+    const fs::path& run = look.run.folder;
     if (!r.analyzers.empty()) return profile(r, run);
-    const BeadPaths paths(run, study.observing.beads, r.place, registry);
-    const studies::ResultSet results = seen(condition, paths, look, {study, registry, threads});
+    const BeadPaths paths(run, how.study.observing.beads, r.place, how.registry);
+    const studies::ResultSet results = seen(condition, paths, look, how);
     Observation o = summarise(results, r.summaries);
     o.bead_seconds = paths.seconds() * static_cast<double>(paths.size());
-    if (r.measured_power) {
-      set_power(o, whole_charge_power(run, power_factor(condition, paths)));
-    } else {
-      const studies::ResultArray* specific = results.find("power", "specific_power_gravity");
-      o.power = {r.mass * specific->value.at(0), r.mass * specific->sem.at(0),
-                 fmt::format("M g <x> Omega of the beads seen, M = {:.4g} kg as recorded", r.mass)};
-    }
+    if (r.measured_power)
+      set_metered_power(o, whole_charge_power(run, power_factor(condition, paths)));
+    else
+      o.power = beads_power(results, r.mass, fmt::format("M g <x> Omega of the beads seen, M = {:.4g} kg as recorded", r.mass));
     if (paths.mill().context.omega * r.omega < 0) o.notes.push_back("the simulation turns the other way and was mirrored");
     return o;
   }
 };
 
-Observer::Observer(const Study& study, const host::Registry& registry, fs::path cache, int threads,
-                   std::function<void(const std::string&)> say)
-    : impl_(new Impl{study, registry, std::move(cache), threads, {}, {}}) {
+Observer::Observer(const Study& study, const host::Registry& registry, Recordings recordings, ObserverOptions options)
+    : impl_(new Impl{{study, registry, options.threads, analyzers_of(study, registry)}, std::move(options.cache), std::move(recordings)}) {
   fs::create_directories(impl_->cache);
   for (std::size_t c = 0; c < study.conditions.size(); ++c) {
-    if (say) say(fmt::format("looking at the recording of condition '{}'", study.conditions[c].name));
-    impl_->recorded.push_back(look_at_recording(c, {study, registry, threads}, impl_->cache));
+    const std::string& name = study.conditions[c].name;
+    if (options.say) options.say(fmt::format("looking at the recording of condition '{}'", name));
+    const Recorded& recorded = *impl_->recordings[c];
+    impl_->recorded.push_back(look_at_recording(c, recorded, impl_->how, impl_->cache));
+    const std::string where = study.observing.camera_is_file() ? study.observing.camera : fmt::format("camera of condition '{}'", name);
+    impl_->camera.push_back(recorded.of_tracks() ? without_frame(studies::parse_camera(impl_->recorded[c].camera, where, registry))
+                                                 : studies::Camera());
     impl_->mill.push_back(studies::read_mill_of_case(study.base, registry, study.conditions[c].settings).context);
   }
 }
@@ -185,30 +159,30 @@ Observer::~Observer() = default;
 
 bool Observer::turns_other_way(std::size_t condition) const { return impl_->mill[condition].omega * impl_->recorded[condition].omega < 0; }
 
+const Recorded& Observer::recording(std::size_t condition) const { return *impl_->recordings[condition]; }
+
 const Observation& Observer::recorded(std::size_t condition) const { return impl_->recorded[condition].observation; }
 
-Observation Observer::simulated(std::size_t condition, const fs::path& run, const std::string& key, const std::string& camera) const {
+Observation Observer::simulated(std::size_t condition, const campaign::Outcome& run, const std::string& camera) const {
   std::vector<std::string> depends{impl_->recorded[condition].identity, fmt::format("{:.17g}", impl_->mill[condition].charge_mass),
                                    fmt::format("{:.17g}", impl_->mill[condition].mill_length)};
   if (!camera.empty()) depends.push_back(camera);
-  const std::string id = key + "-" + hash_of(depends);
+  const std::string id = run.key + "-" + hash_of(depends);
   const fs::path file = impl_->cache / ("simulation-" + id + ".json");
-  if (fs::exists(file)) {
-    const Json known = output::read_json(file);
-    if (!known.is_discarded()) return observation_from(known);
-  }
-  const Observation o = impl_->simulated(condition, run, {key, camera});
-  output::write_json(file, to_json(o));
+  if (auto known = read_cached<Observation>(file)) return *std::move(known);
+  const Observation o = impl_->simulated(condition, {run, camera});
+  write_cached(file, o);
   return o;
 }
 
-studies::ResultSet Observer::results(std::size_t condition, const fs::path& run, const std::string& key, const std::string& analyzers,
+studies::ResultSet Observer::results(std::size_t condition, const campaign::Outcome& run, const std::string& analyzers,
                                      const std::string& camera) const {
-  const Processing how{impl_->study, impl_->registry, impl_->threads, analyzers};
+  Processing how = impl_->how;
+  how.analyzers = analyzers_of(analyzers, how.registry);
   const RecordedCondition& r = impl_->recorded[condition];
-  if (run.empty()) return results_of_recording(condition, r, how);
-  const BeadPaths paths(run, impl_->study.observing.beads, r.place, impl_->registry);
-  return impl_->seen(condition, paths, {key, camera}, how);
+  if (run.folder.empty()) return results_of_recording(*impl_->recordings[condition], r, how);
+  const BeadPaths paths(run.folder, how.study.observing.beads, r.place, how.registry);
+  return impl_->seen(condition, paths, {run, camera}, how);
 }
 
 std::vector<std::string> observed_outputs() {

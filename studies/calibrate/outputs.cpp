@@ -152,7 +152,7 @@ Json calibration_json(const Evaluator& evaluator, const Calibration& c) {
   j["notes"] = c.notes;
   Json recordings = Json::object();
   for (std::size_t k = 0; k < study.conditions.size(); ++k) {
-    const Observation& o = evaluator.machinery().recorded[k];
+    const Observation& o = evaluator.recorded(k);
     recordings[study.conditions[k].name] = {{"recording", study.conditions[k].recording.string()},
                                             {"role", study.conditions[k].role == Role::fit ? "fit" : "held_out"},
                                             {"power_W", o.power.value},
@@ -183,9 +183,7 @@ std::string calibrated_yaml(const Study& study, const Eigen::VectorXd& best, con
 }
 
 /// The power where it is not among the numbers that are compared: a column of its own.
-bool power_apart(const Observation& o) {
-  return std::none_of(o.observables.begin(), o.observables.end(), [](const Observable& what) { return what.name == "power"; });
-}
+bool power_apart(const Observation& o) { return !o.find(ObservableKind::power); }
 
 std::string runs_csv(const Evaluator& evaluator) {
   const Study& study = evaluator.study();
@@ -194,8 +192,8 @@ std::string runs_csv(const Evaluator& evaluator) {
   out += ",objective,chagas2015,chagas_power_W,chagas_x_percent,chagas_speed_percent,misfit,wall_s";
   const std::vector<std::size_t> conditions = study.with_role(Role::fit);
   for (const std::size_t c : conditions) {
-    if (power_apart(evaluator.machinery().recorded[c])) out += "," + output::csv_cell(study.conditions[c].name + " power (W)");
-    for (const Observable& o : evaluator.machinery().recorded[c].observables)
+    if (power_apart(evaluator.recorded(c))) out += "," + output::csv_cell(study.conditions[c].name + " power (W)");
+    for (const Observable& o : evaluator.recorded(c).observables)
       out += "," + output::csv_cell(study.conditions[c].name + " " + o.name + " (" + o.unit + ")");
   }
   out += ",folders,message\n";
@@ -207,9 +205,8 @@ std::string runs_csv(const Evaluator& evaluator) {
     out += cell(evaluator.objective(t)) + cell(t.chagas.value()) + cell(t.chagas.power) + cell(t.chagas.x) + cell(t.chagas.speed) +
            cell(t.misfit) + "," + config::number_text(t.wall_s);
     for (std::size_t k = 0; k < conditions.size(); ++k) {
-      if (power_apart(evaluator.machinery().recorded[conditions[k]])) out += cell(t.failed ? 0 : t.observed[k].power.value);
-      for (Eigen::Index i = 0; i < evaluator.machinery().recorded[conditions[k]].value.size(); ++i)
-        out += cell(t.failed ? 0 : t.observed[k].value[i]);
+      if (power_apart(evaluator.recorded(conditions[k]))) out += cell(t.failed ? 0 : t.observed[k].power.value);
+      for (Eigen::Index i = 0; i < evaluator.recorded(conditions[k]).value.size(); ++i) out += cell(t.failed ? 0 : t.observed[k].value[i]);
     }
     std::string folders;
     for (const fs::path& folder : t.folders) folders += (folders.empty() ? "" : " ") + folder.string();

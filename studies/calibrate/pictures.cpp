@@ -168,7 +168,7 @@ std::vector<fs::path> draw(const Evaluator& evaluator, const Calibration& c, con
   if (c.at_best && !c.at_best->failed) best = &*c.at_best;
   for (std::size_t k = 0; best != nullptr && k < best->conditions.size(); ++k) {
     const std::size_t condition = best->conditions[k];
-    distributions(evaluator.study().conditions[condition].name, evaluator.machinery().recorded[condition], best->observed[k], drawer);
+    distributions(evaluator.study().conditions[condition].name, evaluator.recorded(condition), best->observed[k], drawer);
   }
   if (c.composite) surface(*c.composite, drawer);
   if (c.inference) {

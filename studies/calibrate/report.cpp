@@ -98,13 +98,13 @@ void conditions(const Evaluator& evaluator, std::string& out) {
   const Study& study = evaluator.study();
   out += "## Recordings\n\n| condition | role | power (W) | which power | seconds of beads |\n|---|---|---|---|---|\n";
   for (std::size_t c = 0; c < study.conditions.size(); ++c) {
-    const Observation& o = evaluator.machinery().recorded[c];
+    const Observation& o = evaluator.recorded(c);
     add(out, "| {} | {} | {} | {} | {:.4g} |\n", study.conditions[c].name, study.conditions[c].role == Role::fit ? "fit" : "held out",
         o.power.known() ? fmt::format("{:.4g} ± {:.2g}", o.power.value, o.power.sem) : "", o.power.how, o.bead_seconds);
   }
   out += "\n";
   for (std::size_t c = 0; c < study.conditions.size(); ++c) {
-    for (const std::string& note : evaluator.machinery().recorded[c].notes) add(out, "- {}: {}\n", study.conditions[c].name, note);
+    for (const std::string& note : evaluator.recorded(c).notes) add(out, "- {}: {}\n", study.conditions[c].name, note);
   }
   if (!evaluator.trials().empty()) {
     for (const Trial& t : evaluator.trials()) {

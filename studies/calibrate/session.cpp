@@ -23,24 +23,33 @@ campaign::Options campaign_options(const Study& study, const SessionOptions& o) 
 Session::Session(const Study& study, const host::Registry& registry, SessionOptions options) : study_(study), options_(std::move(options)) {
   if (options_.cache.empty()) options_.cache = options_.output / "cache";
   check_study(study_, registry);
+  Recordings recordings = read_recordings(study_);
+  check_recordings(study_, recordings, registry);
   std::filesystem::create_directories(options_.cache);
-  observer_ = std::make_unique<Observer>(study_, registry, options_.cache / "observations", 0, options_.say);
-  Machinery machinery;
-  machinery.run = [campaign_setup = campaign_options(study_, options_),
-                   retry = options_.retry_failed](std::span<const campaign::Simulation> simulations) {
+  observer_ = std::make_unique<Observer>(study_, registry, std::move(recordings),
+                                         ObserverOptions{options_.cache / "observations", 0, options_.say});
+  machinery_.run = [campaign_setup = campaign_options(study_, options_),
+                    retry = options_.retry_failed](std::span<const campaign::Simulation> simulations) {
     campaign::Options once = campaign_setup;
     once.retry_failed = retry;
     return campaign::run(simulations, once);
   };
-  machinery.observe = [observer = observer_.get()](std::size_t condition, const campaign::Outcome& outcome) {
-    Observation seen = observer->simulated(condition, outcome.folder, outcome.key);
-    require_defined(seen);
-    return seen;
+  machinery_.observe = [observer = observer_.get()](std::size_t condition, const campaign::Outcome& outcome, const std::string& camera) {
+    return observer->simulated(condition, outcome, camera);
   };
-  for (std::size_t c = 0; c < study_.conditions.size(); ++c) machinery.recorded.push_back(observer_->recorded(c));
-  machinery.slots = options_.slots > 0 ? options_.slots : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  machinery.say = options_.say;
-  evaluator_ = std::make_unique<Evaluator>(study_, std::move(machinery));
+  machinery_.results = [observer = observer_.get()](std::size_t condition, const campaign::Outcome& outcome, const std::string& analyzers,
+                                                    const std::string& camera) {
+    return observer->results(condition, outcome, analyzers, camera);
+  };
+  machinery_.progress = options_.say;
+  machinery_.slots = options_.slots > 0 ? options_.slots : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  evaluator_ = std::make_unique<Evaluator>(study_, machinery_, recorded());
+}
+
+std::vector<Observation> Session::recorded() const {
+  std::vector<Observation> all;
+  for (std::size_t c = 0; c < study_.conditions.size(); ++c) all.push_back(observer_->recorded(c));
+  return all;
 }
 
 }  // namespace millscope::calibrate

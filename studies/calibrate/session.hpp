@@ -31,11 +31,15 @@ class Session {
   Session(const Study& study, const host::Registry& registry, SessionOptions options);
   Evaluator& evaluator() { return *evaluator_; }
   const Observer& observer() const { return *observer_; }
+  const Machinery& machinery() const { return machinery_; }
+  /// What the recordings show, as the data say.
+  std::vector<Observation> recorded() const;
 
  private:
   const Study& study_;
   SessionOptions options_;
   std::unique_ptr<Observer> observer_;
+  Machinery machinery_;
   std::unique_ptr<Evaluator> evaluator_;
 };
 

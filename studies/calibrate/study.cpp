@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "kernel/config/existing_file.hpp"
 #include "kernel/config/units.hpp"
 #include "studies/calibrate/study_sections.hpp"
 
@@ -71,9 +72,8 @@ Study read_study(const std::filesystem::path& file, const std::vector<std::strin
   study.file = file;
   study.root = root;
   const Node base = root.at("base", "the case that is calibrated, e.g. slice_75.yaml");
-  study.base = config::resolve_file(base);
+  study.base = config::existing_file(base);
   study.base_place = base.where();
-  if (!std::filesystem::exists(study.base)) base.fail(fmt::format("is '{}': no such file; check the path", base.text()));
   const Node conditions = root.at("conditions", "recordings with their settings");
   study.conditions = read_conditions(conditions);
   require_fit(study, conditions);

@@ -25,6 +25,7 @@
 
 #include "kernel/config/document.hpp"
 #include "kernel/host/registry.hpp"
+#include "studies/calibrate/observation.hpp"
 
 namespace millscope::calibrate {
 
@@ -68,7 +69,7 @@ struct Term {
 struct ObjectiveChoice {
   ObjectiveKind kind = ObjectiveKind::likelihood;
   std::vector<Term> terms;
-  std::vector<std::string> without;  ///< groups of observables that are left out: power, centre, x, y, speed, occupancy, region_speed
+  std::vector<ObservableKind> without;  ///< kinds of observables that are left out
 };
 
 enum class Method { response_surface, emulator, cma_es };
@@ -99,6 +100,7 @@ struct Observing {
   int beads = 1000;                     ///< of the charge, that the virtual camera follows
   std::optional<double> z_low, z_high;  ///< m, part of the recording's mill along the axis that is used
   int draws = 200;                      ///< resamples behind every covariance
+  bool camera_is_file() const { return camera != "recording" && camera != "exact"; }
 };
 
 struct Study {
@@ -132,8 +134,8 @@ inline constexpr std::array<std::string_view, 3> kDiagnoseSections{"nuisances", 
 Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},
                  std::span<const std::string_view> also = {});
 
-/// Holds the study against the plugins, the base case and the recordings' conditions: unknown or idle parameters, values that a plugin
-/// refuses, recordings of another mill. Throws base::UserError.
+/// Holds the study against the plugins and the base case: unknown or idle parameters, values that a plugin refuses. Its recordings are not
+/// read for that: see check_recordings. Throws base::UserError.
 void check_study(const Study& study, const host::Registry& registry);
 
 /// Leaves of a map as "path=value", as `--set` takes them, paths below the map; a list is one value.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/config/existing_file.hpp"
 #include "kernel/config/units.hpp"
 
 namespace millscope::calibrate {
@@ -14,6 +15,7 @@ using config::between;
 using config::Node;
 
 constexpr double kMostRuns = 1e6;
+constexpr const char* kCameraRemedy = "check the path, or write 'recording' for the camera that the recording shows, or 'exact'";
 
 int whole(const Node& section, const char* key, int standard, double least, double most) {
   const auto node = section.find(key);
@@ -50,10 +52,7 @@ Condition read_condition(const Node& node) {
   condition.where = node.where();
   if (const auto set = node.find("set")) condition.settings = settings_below(*set);
   const Node recording = node.at("recording", "recording.yaml of this condition");
-  condition.recording = config::resolve_file(recording);
-  if (!std::filesystem::exists(condition.recording)) {
-    recording.fail(fmt::format("is '{}': no such file; check the path, or make the recording first", recording.text()));
-  }
+  condition.recording = config::existing_file(recording, "check the path, or make the recording first");
   condition.role = config::read_choice(node.at("role", "fit or held_out"), "fit|held_out") == "fit" ? Role::fit : Role::held_out;
   return condition;
 }
@@ -207,7 +206,7 @@ ObjectiveChoice read_objective(const Node& node) {
   }
   if (const auto without = node.find("without")) {
     for (const Node& item : without->items())
-      choice.without.push_back(config::read_choice(item, "power|centre|x|y|speed|occupancy|region_speed"));
+      choice.without.push_back(kind_named(config::read_choice(item, "power|centre|x|y|speed|occupancy|region_speed")));
   }
   return choice;
 }
@@ -243,7 +242,7 @@ Observing read_observing(const Node& section) {
   section.expect({"camera", "beads", "z_low", "z_high", "draws"});
   Observing o;
   if (const auto node = section.find("camera"))
-    o.camera = node->text() == "recording" || node->text() == "exact" ? node->text() : config::resolve_file(*node);
+    o.camera = node->text() == "recording" || node->text() == "exact" ? node->text() : config::existing_file(*node, kCameraRemedy);
   o.beads = whole(section, "beads", o.beads, 20, kMostRuns);
   o.draws = whole(section, "draws", o.draws, 100, 10000);
   const auto low = section.find("z_low"), high = section.find("z_high");
@@ -256,12 +255,11 @@ Observing read_observing(const Node& section) {
   return o;
 }
 
-int find_parameter(const std::vector<Parameter>& parameters, const std::string& name) {
+std::optional<Eigen::Index> find_parameter(const std::vector<Parameter>& parameters, const std::string& name) {
   const std::string path = normal_path(name);
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (parameters[i].name == name || normal_path(parameters[i].path) == path) return static_cast<int>(i);
-  }
-  return -1;
+  const auto found =
+      std::find_if(parameters.begin(), parameters.end(), [&](const Parameter& p) { return p.name == name || normal_path(p.path) == path; });
+  return found == parameters.end() ? std::nullopt : std::optional<Eigen::Index>(found - parameters.begin());
 }
 
 }  // namespace millscope::calibrate

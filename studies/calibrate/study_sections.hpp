@@ -18,7 +18,7 @@ Observing read_observing(const config::Node& section);
 /// "a < 0.5 * b", "a >= 0.1": names or paths of parameters. Throws base::UserError at the node.
 Constraint read_constraint(const config::Node& node, const std::vector<Parameter>& parameters);
 
-/// The index of the parameter of that name or path; −1: none.
-int find_parameter(const std::vector<Parameter>& parameters, const std::string& name);
+/// The index of the parameter of that name or path; nothing where there is none.
+std::optional<Eigen::Index> find_parameter(const std::vector<Parameter>& parameters, const std::string& name);
 
 }  // namespace millscope::calibrate

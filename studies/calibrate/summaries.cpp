@@ -30,24 +30,25 @@ const ResultArray& array_of(const ResultSet& results, const std::string& analyze
   return *found;
 }
 
-bool left_out(const Study& study, const char* group) {
+bool left_out(const Study& study, ObservableKind kind) {
   const auto& without = study.objective.without;
-  return std::find(without.begin(), without.end(), group) != without.end();
+  return std::find(without.begin(), without.end(), kind) != without.end();
 }
 
 /// Neighbouring bins together, up to an eighth of the time.
-void add_distribution(const ResultSet& recorded, const std::string& axis, const char* group, double shown, const std::string& unit,
+void add_distribution(const ResultSet& recorded, const std::string& axis, ObservableKind kind, double shown, const std::string& unit,
                       std::vector<Summary>& out) {
   const ResultArray& percent = array_of(recorded, "distributions", axis + "_percent");
   const std::vector<double>& edges = array_of(recorded, "distributions", axis + "_edges").value;
   std::vector<Summary> groups;
-  Summary open{{"", "%", group}, Summary::sum, "distributions", axis + "_percent", "", {}, 1};
+  Summary open{{"", "%", kind}, Summary::sum, "distributions", axis + "_percent", "", {}, 1};
   double share = 0;
   for (std::size_t b = 0; b < percent.size(); ++b) {
     open.cells.push_back(b);
     share += percent.value[b];
     if (share < kShare && b + 1 < percent.size()) continue;
-    open.observable.name = fmt::format("{} {:.3g} to {:.3g}{}", group, shown * edges[open.cells.front()], shown * edges[b + 1], unit);
+    open.observable.name =
+        fmt::format("{} {:.3g} to {:.3g}{}", name_of(kind), shown * edges[open.cells.front()], shown * edges[b + 1], unit);
     groups.push_back(open);
     open.cells.clear();
     share = 0;
@@ -67,10 +68,11 @@ void add_regions(const ResultSet& recorded, const Study& study, std::vector<Summ
   std::stable_sort(regions.begin(), regions.end(), [&](const auto& a, const auto& b) { return share(a) > share(b); });
   if (regions.size() > kRegions) regions.resize(kRegions);
   for (const base::Region& r : regions) {
-    if (!left_out(study, "occupancy"))
-      out.push_back({{"occupancy " + r.name, "%", "occupancy"}, Summary::sum, "pept_grid", "occupancy", "", r.cells, 100});
-    if (!left_out(study, "region_speed"))
-      out.push_back({{"speed " + r.name, "m/s", "region_speed"}, Summary::mean, "pept_grid", "speed", "occupancy", r.cells, 1});
+    if (!left_out(study, ObservableKind::occupancy))
+      out.push_back({{"occupancy " + r.name, "%", ObservableKind::occupancy}, Summary::sum, "pept_grid", "occupancy", "", r.cells, 100});
+    if (!left_out(study, ObservableKind::region_speed))
+      out.push_back(
+          {{"speed " + r.name, "m/s", ObservableKind::region_speed}, Summary::mean, "pept_grid", "speed", "occupancy", r.cells, 1});
   }
 }
 
@@ -140,7 +142,7 @@ Eigen::MatrixXd drawn(const ResultSet& results, const std::vector<Summary>& summ
   Eigen::MatrixXd all(draws, value.size());
   for (Eigen::Index d = 0; d < draws; ++d) {
     for (Eigen::Index i = 0; i < value.size(); ++i) {
-      const double v = evaluate(results, summaries[static_cast<std::size_t>(i)], static_cast<std::size_t>(d));
+      const double v = evaluate(results, summaries[i], static_cast<std::size_t>(d));
       all(d, i) = std::isfinite(v) ? v : std::isfinite(value[i]) ? value[i] : 0;
     }
   }
@@ -151,16 +153,19 @@ Eigen::MatrixXd drawn(const ResultSet& results, const std::vector<Summary>& summ
 
 std::vector<Summary> choose_summaries(const ResultSet& recorded, const Study& study, const SummaryChoice& choice) {
   std::vector<Summary> out;
-  if (!left_out(study, "power"))
-    out.push_back({{"power", "W", "power"}, Summary::number, "power", "specific_power_gravity", "", {}, choice.mass});
-  if (!left_out(study, "centre")) {
+  if (!left_out(study, ObservableKind::power))
+    out.push_back({{"power", "W", ObservableKind::power}, Summary::number, "power", "specific_power_gravity", "", {}, choice.mass});
+  if (!left_out(study, ObservableKind::centre)) {
     if (choice.measured_power)
-      out.push_back({{"centre of mass x", "mm", "centre"}, Summary::number, "power", "centre_of_mass_x", "", {}, 1e3});
-    out.push_back({{"centre of mass y", "mm", "centre"}, Summary::number, "power", "centre_of_mass_y", "", {}, 1e3});
+      out.push_back({{kCentreX, "mm", ObservableKind::centre}, Summary::number, "power", "centre_of_mass_x", "", {}, 1e3});
+    out.push_back({{"centre of mass y", "mm", ObservableKind::centre}, Summary::number, "power", "centre_of_mass_y", "", {}, 1e3});
   }
-  if (!left_out(study, "x")) add_distribution(recorded, "x", "x", 1e3, " mm", out);
-  if (!left_out(study, "y")) add_distribution(recorded, "y", "y", 1e3, " mm", out);
-  if (!left_out(study, "speed")) add_distribution(recorded, "speed_ratio", "speed", 1, " of the shell's", out);
+  const auto distribution = [&](ObservableKind kind, const char* axis, double shown, const char* unit) {
+    if (!left_out(study, kind)) add_distribution(recorded, axis, kind, shown, unit, out);
+  };
+  distribution(ObservableKind::x, "x", 1e3, " mm");
+  distribution(ObservableKind::y, "y", 1e3, " mm");
+  distribution(ObservableKind::speed, "speed_ratio", 1, " of the shell's");
   add_regions(recorded, study, out);
   for (const Term& term : study.objective.terms) {
     const ResultArray* array = recorded.find(term.analyzer, term.result);
@@ -170,7 +175,7 @@ std::vector<Summary> choose_summaries(const ResultSet& recorded, const Study& st
           fmt::format("term '{}': {}; name a single number of an analyzer that runs on recordings ('millscope analyze' lists them)",
                       term.name(), array == nullptr ? "the analyzers give no such result for the recording" : "is no single number"));
     }
-    out.push_back({{term.name(), array->unit, "term"}, Summary::number, term.analyzer, term.result, "", {}, 1});
+    out.push_back({{term.name(), array->unit, ObservableKind::term}, Summary::number, term.analyzer, term.result, "", {}, 1});
   }
   return out;
 }
@@ -201,36 +206,6 @@ Observation summarise(const ResultSet& results, const std::vector<Summary>& summ
   o.x = histogram(results, "x");
   o.speed = histogram(results, "speed_ratio");
   return o;
-}
-
-nlohmann::ordered_json to_json(const std::vector<Summary>& summaries) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const Summary& s : summaries) {
-    all.push_back({{"name", s.observable.name},
-                   {"unit", s.observable.unit},
-                   {"group", s.observable.group},
-                   {"kind", static_cast<int>(s.kind)},
-                   {"analyzer", s.analyzer},
-                   {"result", s.result},
-                   {"weight", s.weight},
-                   {"cells", s.cells},
-                   {"factor", s.factor}});
-  }
-  return all;
-}
-
-std::vector<Summary> summaries_from(const nlohmann::ordered_json& json) {
-  std::vector<Summary> all;
-  for (const auto& j : json) {
-    all.push_back({{j.at("name"), j.at("unit"), j.at("group")},
-                   static_cast<Summary::Kind>(j.at("kind").get<int>()),
-                   j.at("analyzer"),
-                   j.at("result"),
-                   j.at("weight"),
-                   j.at("cells").get<std::vector<std::size_t>>(),
-                   j.at("factor")});
-  }
-  return all;
 }
 
 }  // namespace millscope::calibrate

@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "studies/analysis/results.hpp"
 #include "studies/calibrate/observation.hpp"
 #include "studies/calibrate/study.hpp"
@@ -21,7 +19,10 @@ struct Summary {
   std::vector<std::size_t> cells;  ///< sum, mean: of these values
   double factor = 1;
   std::vector<double> places = {};  ///< along: mean over these places on the result's axis, between its values
+  bool operator==(const Summary&) const = default;
 };
+
+inline constexpr const char* kCentreX = "centre of mass x";  ///< an observable's name
 
 struct SummaryChoice {
   bool measured_power = false;  ///< the recording has it: it is compared for itself, and so is the centre's x
@@ -35,15 +36,5 @@ std::vector<Summary> choose_summaries(const studies::ResultSet& recorded, const 
 /// The same summaries of other results, with covariance. A mean over cells in which nothing was seen is NaN; throws base::UserError where
 /// the results lack a summary or another value is undefined.
 Observation summarise(const studies::ResultSet& results, const std::vector<Summary>& summaries);
-
-nlohmann::ordered_json to_json(const std::vector<Summary>& summaries);
-std::vector<Summary> summaries_from(const nlohmann::ordered_json& json);
-
-/// analysis.yaml of the analyzers behind them.
-inline constexpr const char* kAnalyzers = R"(analyzers:
-  distributions: {bins_x: 50, bins_y: 50, bins_speed: 60, largest_speed: 3}
-  power: {cells_x: 25, cells_y: 25}
-  pept_grid: {cells_x: 24, cells_y: 24}
-)";
 
 }  // namespace millscope::calibrate

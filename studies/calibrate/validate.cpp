@@ -35,13 +35,13 @@ ValidatedCondition judge_condition(const Evaluator& evaluator, const Trial& tria
   v.message = trial.message;
   if (!trial.folders.empty()) v.folder = trial.folders.front();
   if (trial.failed) return v;
-  const Observation &recorded = evaluator.machinery().recorded[condition], &simulated = trial.observed.front();
+  const Observation &recorded = evaluator.recorded(condition), &simulated = trial.observed.front();
   for (Eigen::Index i = 0; i < recorded.value.size(); ++i) {
-    v.observables.push_back(judge(recorded.observables[static_cast<std::size_t>(i)], recorded.value[i], simulated.value[i],
+    v.observables.push_back(judge(recorded.observables[i], recorded.value[i], simulated.value[i],
                                   std::sqrt(recorded.covariance(i, i) + simulated.covariance(i, i))));
   }
-  v.power =
-      judge({"power", "W", "power"}, recorded.power.value, simulated.power.value, std::hypot(recorded.power.sem, simulated.power.sem));
+  v.power = judge({"power", "W", ObservableKind::power}, recorded.power.value, simulated.power.value,
+                  std::hypot(recorded.power.sem, simulated.power.sem));
   v.chagas = trial.chagas;
   v.misfit = trial.misfit;
   v.simulated = simulated;
@@ -170,7 +170,7 @@ void write_validation(const Validation& v, const Evaluator& evaluator, const fs:
   for (const ValidatedCondition& c : v.conditions) {
     if (c.failed) continue;
     const std::string& name = evaluator.study().conditions[c.condition].name;
-    for (const fs::path& file : draw_distributions(name, evaluator.machinery().recorded[c.condition], c.simulated, folder / "pictures"))
+    for (const fs::path& file : draw_distributions(name, evaluator.recorded(c.condition), c.simulated, folder / "pictures"))
       text += fmt::format("![{}](pictures/{})\n\n", file.stem().string(), file.filename().string());
   }
   output::write_file(folder / "validation.md", text);

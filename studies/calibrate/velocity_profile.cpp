@@ -9,11 +9,13 @@
 #include <numeric>
 
 #include "kernel/config/case.hpp"
+#include "kernel/config/existing_file.hpp"
 #include "kernel/config/units.hpp"
 #include "kernel/output/frame_reader.hpp"
 #include "studies/analysis/engine.hpp"
 #include "studies/analysis/frames_source.hpp"
 #include "studies/analysis/open_source.hpp"
+#include "studies/calibrate/recorded_identity.hpp"
 #include "studies/doe/table.hpp"
 #include "studies/recording/description.hpp"
 
@@ -67,7 +69,7 @@ VelocityProfile read_section(const Node& section) {
   section.expect({"file", "position", "velocity", "position_error", "velocity_error", "origin_error", "from", "to", "z"});
   VelocityProfile profile;
   const Node file = section.at("file", "the table of points, e.g. points.csv");
-  profile.points = config::resolve_file(file);
+  profile.points = config::existing_file(file);
   const doe::Table table = doe::Table::read(profile.points);
   profile.position = column(section.at("position", "{column: NAME, unit: mm}"), table, "m");
   profile.velocity = column(section.at("velocity", "{column: NAME, unit: m/s}"), table, "m/s");
@@ -134,8 +136,8 @@ Eigen::MatrixXd covariance_of(const VelocityProfile& p, const std::vector<Value>
   const auto n = static_cast<Eigen::Index>(values.size());
   Eigen::MatrixXd c(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Value& v = values[static_cast<std::size_t>(i)];
-    for (Eigen::Index j = 0; j < n; ++j) c(i, j) = v.slope * values[static_cast<std::size_t>(j)].slope * p.origin_error * p.origin_error;
+    const Value& v = values[i];
+    for (Eigen::Index j = 0; j < n; ++j) c(i, j) = v.slope * values[j].slope * p.origin_error * p.origin_error;
     c(i, i) += (std::pow(p.velocity_error, 2) + std::pow(v.slope * p.position_error, 2)) / static_cast<double>(v.places.size());
   }
   return c;
@@ -194,15 +196,13 @@ RecordedCondition look_at_profile(const VelocityProfile& profile, std::size_t co
   r.omega = mill.context.omega;
   r.identity = identity(profile, how, condition);
   Observation& o = r.observation;
-  r.analyzers = fmt::format(
-      "analyzers:\n  distributions: {{bins_x: 50, bins_y: 50, bins_speed: 60, largest_speed: 3}}\n"
-      "  bed_profile: {{points: {}{}}}\n",
-      kPlaces, range_text(profile, c, mill, o));
+  r.analyzers = fmt::format("analyzers:\n  {}: {}\n  bed_profile: {{points: {}{}}}\n", kDistributions.plugin, kDistributions.parameters,
+                            kPlaces, range_text(profile, c, mill, o));
   o.value.resize(static_cast<Eigen::Index>(values.size()));
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::vector<double>& at = values[i].places;
     const double middle = std::accumulate(at.begin(), at.end(), 0.0) / static_cast<double>(at.size());
-    const Observable what{fmt::format("velocity at {:.1f} mm", 1e3 * middle), "m/s", "profile"};
+    const Observable what{fmt::format("velocity at {:.1f} mm", 1e3 * middle), "m/s", ObservableKind::profile};
     r.summaries.push_back({what, Summary::along, "bed_profile", "velocity", "", {}, 1, at});
     o.observables.push_back(what);
     o.value[static_cast<Eigen::Index>(i)] = values[i].velocity;
@@ -225,9 +225,8 @@ studies::ResultSet profile_of_run(const fs::path& run, const RecordedCondition& 
   studies::EngineOptions engine;
   engine.draws = static_cast<std::size_t>(how.study.observing.draws);
   engine.threads = 1;  // several runs are looked at at once
-  const Node section = config::parse_document(recorded.analyzers, "calibrate");
-  studies::ResultSet results =
-      studies::run_analyzers(source, studies::choose_analyzers(section, true, {}, how.registry, source.context()).instances, engine);
+  const std::vector<studies::AskedAnalyzer> analyzers = analyzers_of(recorded.analyzers, how.registry);
+  studies::ResultSet results = studies::run_analyzers(source, studies::create_analyzers(analyzers, source.context()).instances, engine);
   results.meta.context = source.context();
   results.meta.description = run.string();
   return results;

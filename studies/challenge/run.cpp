@@ -15,9 +15,9 @@ void diagnose_set(const fs::path& folder, const host::Registry& registry, const 
                   const naming::Options& naming) {
   const diagnose::Question question = diagnose::read_question(folder / "study.yaml", {}, registry);
   calibrate::Session session(question.study, registry, session_of);
-  diagnose::Workshop workshop = diagnose::workshop_of(question, registry, session, session_of.say);
-  const diagnose::Diagnosis found = diagnose::diagnose(question, workshop, naming);
-  diagnose::write_outputs({question, workshop, found}, session_of.output);
+  const diagnose::Diagnosis found =
+      diagnose::diagnose(question, session.machinery(), diagnose::evidence_of(question, registry, session), naming);
+  diagnose::write_outputs({question, found}, session_of.output);
 }
 
 std::string one_line(std::string text) {

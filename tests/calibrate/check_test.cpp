@@ -1,6 +1,6 @@
 #include <fstream>
 
-#include "studies/calibrate/study.hpp"
+#include "studies/calibrate/recordings.hpp"
 #include "tests/calibrate/made_up_mill.hpp"
 
 using namespace millscope;
@@ -28,7 +28,10 @@ std::string refusal(const std::string& condition, const std::string& parameter) 
                                                "conditions:\n  dry: {recording: r.yaml, role: fit}\nparameters:\n  " + parameter + "\n");
   const Study study = read_study(file);
   static const host::Registry registry;
-  const std::string message = message_of([&] { check_study(study, registry); });
+  const std::string message = message_of([&] {
+    check_study(study, registry);
+    check_recordings(study, read_recordings(study), registry);
+  });
   const std::string prefix = folder.path.string() + "/";
   return message.rfind(prefix, 0) == 0 ? message.substr(prefix.size()) : message;
 }

@@ -54,7 +54,7 @@ Observation MadeUpMill::observation(const Eigen::VectorXd& point, const std::str
     for (Eigen::Index p = 0; p < t.size(); ++p)
       v += std::cos(0.7 * static_cast<double>(i * (p + 1))) * (t[p] + 0.3 * t[p] * t[p]) / std::pow(3.0, static_cast<double>(p));
     o.value[i] = v + noise_ * normal(random);
-    o.observables.push_back({fmt::format("summary {}", i), "1", i == 0 ? "power" : "x"});
+    o.observables.push_back({fmt::format("summary {}", i), "1", i == 0 ? ObservableKind::power : ObservableKind::x});
   }
   o.power = {30 + 5 * o.value[0], 5 * noise_, "made up"};
   for (int b = 0; b < 5; ++b) {
@@ -97,10 +97,13 @@ Machinery MadeUpMill::machinery() {
     }
     return outcomes;
   };
-  m.observe = [this](std::size_t, const campaign::Outcome& outcome) { return observation(cache_.at(outcome.key), outcome.key); };
-  for (std::size_t c = 0; c < study_.conditions.size(); ++c) m.recorded.push_back(observation(truth_, "recording"));
+  m.observe = [this](std::size_t, const campaign::Outcome& outcome, const std::string&) {
+    return observation(cache_.at(outcome.key), outcome.key);
+  };
   m.slots = 2;
   return m;
 }
+
+std::vector<Observation> MadeUpMill::recorded() const { return {study_.conditions.size(), observation(truth_, "recording")}; }
 
 }  // namespace testing

@@ -42,7 +42,8 @@ class MadeUpMill {
   MadeUpMill(const millscope::calibrate::Study& study, const Eigen::VectorXd& truth, double noise = 0.01);
 
   millscope::calibrate::Machinery machinery();
-  int computed() const { return computed_; }  ///< simulations, each once
+  std::vector<millscope::calibrate::Observation> recorded() const;  ///< of every condition
+  int computed() const { return computed_; }                        ///< simulations, each once
 
   std::function<bool(const Eigen::VectorXd&)> fails;  ///< empty: none
   int interrupted_after = 1 << 30;                    ///< simulations computed

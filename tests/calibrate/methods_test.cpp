@@ -15,7 +15,7 @@ const std::string kTwo = "  a.mu: {range: [0.1, 0.8]}\n  a.e: {range: [0.3, 0.9]
 const std::string kFour = kTwo + "  b.mu: {range: [0.1, 0.8], name: mu_w}\n  b.e: {range: [0.3, 0.9], name: e_w}\n";
 
 Calibration calibrated(const Study& study, MadeUpMill& mill) {
-  Evaluator evaluator(study, mill.machinery());
+  Evaluator evaluator(study, mill.machinery(), mill.recorded());
   return calibrate::calibrate(evaluator);
 }
 
@@ -103,7 +103,7 @@ TEST_CASE("failed simulations are left out, their study goes on") {
   const Study study = testing::study_of(folder, kTwo, "method: emulator\nbudget: {simulations: 30}\n");
   MadeUpMill mill(study, Eigen::Vector2d(0.42, 0.7), 0.02);
   mill.fails = [](const Eigen::VectorXd& p) { return p[0] > 0.65; };
-  Evaluator evaluator(study, mill.machinery());
+  Evaluator evaluator(study, mill.machinery(), mill.recorded());
   const Calibration c = calibrate::calibrate(evaluator);
   CHECK(std::any_of(evaluator.trials().begin(), evaluator.trials().end(),
                     [](const Trial& t) { return t.failed && t.message == "condition 'dry75': a bead ran away"; }));
@@ -149,7 +149,7 @@ TEST_CASE("validation passes with the truth and fails far from it") {
   const Folder folder;
   const Study study = testing::study_of(folder, kTwo, "");
   MadeUpMill mill(study, Eigen::Vector2d(0.42, 0.7), 0.02);
-  Evaluator evaluator(study, mill.machinery());
+  Evaluator evaluator(study, mill.machinery(), mill.recorded());
   const Validation good = validate(evaluator, Eigen::Vector2d(0.42, 0.7), study.with_role(Role::held_out));
   CHECK(good.pass());
   CHECK(good.judged == 6);

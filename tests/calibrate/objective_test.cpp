@@ -1,4 +1,6 @@
 #include "studies/calibrate/objective.hpp"
+#include "studies/calibrate/json.hpp"
+#include "studies/calibrate/power.hpp"
 #include "tests/calibrate/made_up_mill.hpp"
 #include "tests/scratch.hpp"
 
@@ -13,7 +15,7 @@ Observation observation(double power, std::vector<double> x, std::vector<double>
   o.speed = {{}, std::move(speed), {}};
   o.value = std::move(value);
   o.covariance = variance * Eigen::MatrixXd::Identity(o.value.size(), o.value.size());
-  for (Eigen::Index i = 0; i < o.value.size(); ++i) o.observables.push_back({i == 0 ? "slip.mean" : "other", "1", "term"});
+  for (Eigen::Index i = 0; i < o.value.size(); ++i) o.observables.push_back({i == 0 ? "slip.mean" : "other", "1", ObservableKind::term});
   return o;
 }
 
@@ -45,25 +47,16 @@ TEST_CASE("the misfit weighs by both covariances") {
   CHECK(misfit(correlated, exact) == Approx(7.2 / 0.36));
 }
 
-TEST_CASE("an observation comes back from its file") {
-  Observation o = observation(30.1, {10, 20}, {50, 50}, Eigen::Vector2d(1.0 / 3.0, 2), 0.7);
-  o.x.edges = {0, 1, 2};
-  o.x.sem = {0.1, 0.2};
-  o.notes = {"a note"};
-  const Observation back = observation_from(to_json(o));
-  CHECK(back.value == o.value);
-  CHECK(back.covariance == o.covariance);
-  CHECK(back.x.percent == o.x.percent);
-  CHECK(back.notes == o.notes);
-}
-
 TEST_CASE("what is undefined stays so in its file, is refused where it has to be known, and can be left out") {
   Observation o;
   o.of = "a slow mill";
-  o.observables = {{"power", "W", "power"}, {"speed at the shoulder", "m/s", "region_speed"}, {"x", "%", "x"}};
+  o.observables = {
+      {"power", "W", ObservableKind::power}, {"speed at the shoulder", "m/s", ObservableKind::region_speed}, {"x", "%", ObservableKind::x}};
   o.value = Eigen::Vector3d(8, std::nan(""), 12);
   o.covariance = (Eigen::Matrix3d() << 1, 0, 0.3, 0, 1e-24, 0, 0.3, 0, 4).finished();
-  Observation back = observation_from(nlohmann::ordered_json::parse(to_json(o).dump()));
+  const testing::Folder folder;
+  write_cached(folder.path / "o.json", o);
+  Observation back = read_cached<Observation>(folder.path / "o.json").value();
   CHECK(std::isnan(back.value[1]));
   CHECK(back.value[2] == 12);
   CHECK_THAT(testing::refusal([&] { require_defined(back); }),
@@ -78,7 +71,7 @@ TEST_CASE("what is undefined stays so in its file, is refused where it has to be
 
 TEST_CASE("a power error widens the power alone, by a share of it") {
   Observation o;
-  o.observables = {{"power", "W", "power"}, {"x", "%", "x"}};
+  o.observables = {{"power", "W", ObservableKind::power}, {"x", "%", ObservableKind::x}};
   o.value = Eigen::Vector2d(8.0, 12.0);
   o.covariance = Eigen::Vector2d(0.0009, 0.25).asDiagonal();
   o.power = {8.0, 0.03, "measured"};

@@ -18,7 +18,7 @@ TEST_CASE("a calibration leaves its numbers, its case, its runs and its report")
                         "method: response_surface\nbudget: {simulations: 26}\n");
   testing::MadeUpMill mill(study, Eigen::Vector2d(0.42, 0.7), 0.02);
   mill.fails = [](const Eigen::VectorXd& p) { return p[0] > 0.62 && p[1] > 0.74; };
-  Evaluator evaluator(study, mill.machinery());
+  Evaluator evaluator(study, mill.machinery(), mill.recorded());
   const Calibration c = calibrate::calibrate(evaluator);
   const std::filesystem::path out = folder.path / "out";
   write_outputs(evaluator, c, out);

@@ -76,6 +76,9 @@ TEST_CASE("studies that cannot work are refused with their place") {
   CHECK(begins(refusal("  dry", "  dry: {recording: gone.yaml, role: fit}"),
                "s.yaml:3: 'conditions.dry.recording' is 'gone.yaml': no such file"));
   CHECK(begins(refusal("base", "base: gone.yaml"), "s.yaml:1: 'base' is 'gone.yaml': no such file"));
+  CHECK(begins(refusal("budget", "observe: {camera: gone.yaml}"),
+               "s.yaml:8: 'observe.camera' is 'gone.yaml': no such file; check the path, or write 'recording'"));
+  CHECK(begins(refusal("budget", "observe: {camera: .}"), "s.yaml:8: 'observe.camera' is '.': it is a folder"));
   CHECK(begins(refusal("budget", "budget: {simulation: 20}"), "s.yaml:8: unknown key 'simulation'"));
   CHECK(begins(refusal("budget", "buget: {simulations: 20}"), "s.yaml:8: unknown key 'buget'"));
   CHECK(begins(refusal("budget", "method: guess"), "s.yaml:8: 'method' is 'guess'"));

@@ -126,11 +126,15 @@ TEST_CASE("what a run shows of a profile is kept in a cache that is not there ye
   const Drum drum;
   write_run(drum.folder, [](double p) { return -6 * (p + 0.05); });
   drum.folder.write("summary.json", R"({"power_W": {"com": 1.5, "com_sem": 0.1}})");
-  const calibrate::Observer observer(drum.study, registry(), drum.folder.path / "cache" / "observations", 1, {});
-  const calibrate::Observation seen = observer.simulated(0, drum.folder.path, "key");
+  const calibrate::Observer observer(drum.study, registry(), calibrate::read_recordings(drum.study),
+                                     {drum.folder.path / "cache" / "observations", 1, {}});
+  campaign::Outcome run;
+  run.folder = drum.folder.path, run.key = "key";
+  const calibrate::Observation seen = observer.simulated(0, run);
   CHECK_THAT(seen.value[0], WithinAbs(0.24, 0.003));
   CHECK(seen.power.value == 1.5);
-  CHECK(observer.simulated(0, "gone", "key").value == seen.value);  // from the cache
+  run.folder = "gone";
+  CHECK(observer.simulated(0, run).value == seen.value);  // from the cache
 }
 
 TEST_CASE("an error of the origin is shared by all points, by their slopes") {
@@ -192,7 +196,12 @@ TEST_CASE("what is wrong with a profile is said with its place") {
 TEST_CASE("points outside the case's mill, another mill's speed and an objective of tracks are refused") {
   const Drum wide(kRecording, "p,v\n-130,1\n-70,1\n-50,1\n-40,1\n");
   CHECK(testing::message_of([&] { wide.look(); }).find("130 mm from the axis") != std::string::npos);
-  const auto checked = [](const Drum& drum) { return testing::message_of([&] { calibrate::check_study(drum.study, registry()); }); };
+  const auto checked = [](const Drum& drum) {
+    return testing::message_of([&] {
+      calibrate::check_study(drum.study, registry());
+      calibrate::check_recordings(drum.study, calibrate::read_recordings(drum.study), registry());
+    });
+  };
   CHECK(checked(Drum()).empty());
   CHECK(checked(Drum(kRecording + "condition: {speed: 3 rad/s}\n")).find("turning speed") != std::string::npos);
   CHECK(checked(Drum(kRecording, kPoints, "objective: chagas2015\n")).find("velocity profile") != std::string::npos);
@@ -203,12 +212,12 @@ TEST_CASE("calibration and validation go on without distributions and without a 
   const calibrate::Study study = testing::study_of(folder, "  a.mu: {range: [0.1, 0.8]}\n  a.e: {range: [0.3, 0.9]}\n",
                                                    "method: emulator\nbudget: {simulations: 16}\n");
   testing::MadeUpMill mill(study, Eigen::Vector2d(0.42, 0.7), 0.02);
-  calibrate::Machinery machinery = mill.machinery();
-  for (calibrate::Observation& o : machinery.recorded) {
+  std::vector<calibrate::Observation> recorded = mill.recorded();
+  for (calibrate::Observation& o : recorded) {
     o.x = {}, o.speed = {}, o.bead_seconds = 0;
     o.power.value = std::numeric_limits<double>::quiet_NaN();
   }
-  calibrate::Evaluator evaluator(study, machinery);
+  calibrate::Evaluator evaluator(study, mill.machinery(), recorded);
   const calibrate::Calibration c = calibrate::calibrate(evaluator);
   CHECK(mill.computed() == 16);
   CHECK(c.best[0] == Approx(0.42).margin(0.06));

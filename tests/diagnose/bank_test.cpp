@@ -147,7 +147,7 @@ TEST_CASE("a parameter set of which one condition failed is left out, and said")
     return "mill.speed=" + s.at("mill.speed") == speed_of(q, 1) && std::stod(s.at("fill.filling")) > 0.315;
   };
   const std::vector<BankPoint> points = plan_group(q, {}, 16);
-  const Bank bank = fill_bank(q, mill.workshop(), points, {0, 1});
+  const Bank bank = fill_bank(q, mill.machinery(), mill.evidence(), points, {0, 1});
   CHECK(mill.computed() == 32);
   std::size_t failed = 0;
   for (const BankPoint& p : points) failed += p.theta[2] > 0.315 ? 1 : 0;
@@ -164,7 +164,7 @@ TEST_CASE("a parameter set of which one condition failed is left out, and said")
   CHECK(both.condition.size() == 32);
   for (const BankRow& row : both.rows) CHECK(row.theta[2] <= 0.315);
   mill.fails = [](const auto&) { return true; };
-  const Bank none = fill_bank(q, mill.workshop(), points, {0});
+  const Bank none = fill_bank(q, mill.machinery(), mill.evidence(), points, {0});
   CHECK_THAT(testing::refusal([&] { data_of(q, none, {0}); }),
              Contains("no simulation of the bank has come to its end; the first: base_0_speed75: a bead ran away; correct the base case"));
 }
@@ -179,7 +179,7 @@ TEST_CASE("numbers stand under their condition when the first parameter set has 
     return "pairs.glass~glass.static_friction=" + s.at("pairs.glass~glass.static_friction") == first &&
            "mill.speed=" + s.at("mill.speed") == speed_of(q, 1);
   };
-  const BankData data = data_of(q, fill_bank(q, mill.workshop(), points, {0, 1}), {0, 1});
+  const BankData data = data_of(q, fill_bank(q, mill.machinery(), mill.evidence(), points, {0, 1}), {0, 1});
   REQUIRE(data.condition.size() == 32);
   CHECK(data.condition[15] == 0);
   CHECK(data.condition[16] == 1);
@@ -190,13 +190,13 @@ TEST_CASE("a bank knows where each of its simulations is") {
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, {}, {});
   const std::vector<BankPoint> points = plan_group(q, {}, 8);
-  Workshop workshop = mill.workshop();
-  workshop.run = [run = workshop.run](std::span<const campaign::Simulation> simulations) {
+  calibrate::Machinery machinery = mill.machinery();
+  machinery.run = [run = machinery.run](std::span<const campaign::Simulation> simulations) {
     std::vector<campaign::Outcome> outcomes = run(simulations);
     for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i].folder = simulations[i].label;
     return outcomes;
   };
-  const Bank bank = fill_bank(q, workshop, points, {1, 0});
+  const Bank bank = fill_bank(q, machinery, mill.evidence(), points, {1, 0});
   for (std::size_t p = 0; p < points.size(); ++p)
     CHECK(bank.runs[p] == std::vector<std::filesystem::path>{simulation_of(q, points[p], 1).label, simulation_of(q, points[p], 0).label});
 }
@@ -205,13 +205,13 @@ TEST_CASE("errors that a velocity profile states are correlated as it says, thos
   const Scratch folder;
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, {}, {});
-  Workshop workshop = mill.workshop();
-  Bank bank = fill_bank(q, workshop, plan_group(q, {}, 24), {0});
+  Evidence evidence = mill.evidence();
+  Bank bank = fill_bank(q, mill.machinery(), evidence, plan_group(q, {}, 24), {0});
   for (auto& run : bank.seen) run[0]->covariance.array() += 0.9 * run[0]->covariance(0, 0);
-  const auto between = [&](std::size_t law) { return problem_of(q, workshop, bank, {0}).noise[law](3, 4); };
+  const auto between = [&](std::size_t law) { return problem_of(q, evidence, bank, {0}).noise[law](3, 4); };
   CHECK(between(0) == 0);
   CHECK(between(1) > 0);
-  workshop.recorded[0].bead_seconds = 0;
+  evidence.recorded[0].bead_seconds = 0;
   CHECK(between(0) == 0);
   CHECK(between(1) == 0);
 }
@@ -244,7 +244,7 @@ TEST_CASE("what the camera is doubted of costs no simulation") {
   theta << 0.3, 0.4, 0.313, 0.004, -0.01;
   CHECK(doubted.camera(theta) == "schema_version: 1\nobservations:\n  doubted_frame: {kind: frame_error, offset_x: 0.004, scale: -0.01}\n");
   MadeUpMill mill(doubted, {}, {});
-  const BankData data = data_of(doubted, fill_bank(doubted, mill.workshop(), plan_group(doubted, {}, 8), {0}), {0});
+  const BankData data = data_of(doubted, fill_bank(doubted, mill.machinery(), mill.evidence(), plan_group(doubted, {}, 8), {0}), {0});
   CHECK(data.theta[3].products == Products::none);
   CHECK(data.theta[2].products == Products::all);
 }
@@ -335,7 +335,7 @@ TEST_CASE("a candidate of which too few runs with a nuisance apart came to their
   fragile.fails = [](const auto& s) {
     return s.contains("stiffness_factor") && s.contains(kRolling) && s.at("stiffness_factor") != "0.01";
   };
-  const BankData few = data_of(q, fill_bank(q, fragile.workshop(), plan_bank(q), {0}), {0});
+  const BankData few = data_of(q, fill_bank(q, fragile.machinery(), fragile.evidence(), plan_bank(q), {0}), {0});
   const auto is_rolling = [&](const BankRow& row) { return row.candidate() == rolling; };
   CHECK(std::count_if(few.rows.begin(), few.rows.end(), is_rolling) == q.bank.each);
   REQUIRE(few.left_out.size() == 2);
@@ -343,7 +343,7 @@ TEST_CASE("a candidate of which too few runs with a nuisance apart came to their
   CHECK_THAT(few.left_out[1], Contains("rolling_resistance with another stiffness was left out: 2 and 10 simulations"));
   // Linear, square and × the two frictions.
   MadeUpMill mill(q, {}, {});
-  BankData data = data_of(q, fill_bank(q, mill.workshop(), plan_bank(q), {0}), {0});
+  BankData data = data_of(q, fill_bank(q, mill.machinery(), mill.evidence(), plan_bank(q), {0}), {0});
   CHECK(data.left_out.empty());
   const Index with = Features(data).base_size();
   CHECK(Features(data).count(rolling) == 5);  // linear, square, × two frictions and × stiffness
@@ -364,7 +364,7 @@ TEST_CASE("a nuisance apart whose simulations fail is refused with the remedy") 
   mill.fails = [](const auto& s) {
     return s.contains("stiffness_factor") && !s.contains(kRolling) && std::stod(s.at("stiffness_factor")) > 0.0012;
   };
-  const Bank bank = fill_bank(q, mill.workshop(), plan_bank(q), {0});
+  const Bank bank = fill_bank(q, mill.machinery(), mill.evidence(), plan_bank(q), {0});
   CHECK_THAT(testing::refusal([&] { data_of(q, bank, {0}); }),
              Contains("finished simulations of the bank without a candidate vary the nuisance 'stiffness', 6 are needed; raise bank.base, "
                       "or leave the nuisance out"));

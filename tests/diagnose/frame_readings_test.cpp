@@ -53,7 +53,7 @@ const FrameReading& named(const std::vector<FrameReading>& readings, const Quest
 TEST_CASE("rides and flights tell where the axis stands, which way is down and whether the clock is right") {
   const Scratch folder;
   const Question q = question_of(folder, kDoubts);
-  const std::vector<FrameReading> readings = read_frame(q, kMill, misread());
+  const std::vector<FrameReading> readings = read_frame(q, kMill, calibrate::Recorded(misread()));
   REQUIRE(readings.size() == 4);  // neither the filling nor the scale
   const auto close = [&](const std::string& name, double truth, double most) {
     INFO(name);
@@ -74,22 +74,22 @@ TEST_CASE("what is not stated cannot be read against") {
   studies::Recording recording = misread();
   recording.frame.reset();
   recording.condition.speed.reset();
-  const std::vector<FrameReading> readings = read_frame(q, kMill, recording);
+  const std::vector<FrameReading> readings = read_frame(q, kMill, calibrate::Recorded(recording));
   REQUIRE(readings.size() == 1);
   CHECK(q.nuisances[readings[0].nuisance].name == "tilt");
-  CHECK(read_frame(question_of(folder, "hypotheses: {rolling_resistance: {}}\n"), kMill, misread()).empty());
+  CHECK(read_frame(question_of(folder, "hypotheses: {rolling_resistance: {}}\n"), kMill, calibrate::Recorded(misread())).empty());
 }
 
 TEST_CASE("rides on another circle than the shell's, a gravity that leans and a tilt about another axis are not read against") {
   const Scratch folder;
   const Question q = question_of(folder, kDoubts);
-  const std::vector<FrameReading> inner = read_frame(q, {0.152, 0.005, true}, misread());
+  const std::vector<FrameReading> inner = read_frame(q, {0.152, 0.005, true}, calibrate::Recorded(misread()));
   REQUIRE(inner.size() == 1);
   CHECK(q.nuisances[inner[0].nuisance].name == "tilt");
-  CHECK(read_frame(q, {0.145, 0.005, false}, misread()).size() == 3);
+  CHECK(read_frame(q, {0.145, 0.005, false}, calibrate::Recorded(misread())).size() == 3);
   std::string more = kDoubts;
   more.insert(more.find("hypotheses"), "  camera.frame_error.tilt_x: {range: [-0.1, 0.1], sigma: 0.01, name: roll}\n");
-  CHECK(read_frame(question_of(folder, more), kMill, misread()).size() == 2);
+  CHECK(read_frame(question_of(folder, more), kMill, calibrate::Recorded(misread())).size() == 2);
 }
 
 TEST_CASE("the case says on which circle beads ride and whether its gravity leans") {
@@ -115,11 +115,11 @@ TEST_CASE("what is wrong in all recordings alike does not average out") {
 TEST_CASE("a simulation's reading is its own frame, the recording's is what it tells") {
   const Scratch folder;
   const Question q = question_of(folder, kDoubts);
-  const std::vector<FrameReading> readings = read_frame(q, kMill, misread());
+  const std::vector<FrameReading> readings = read_frame(q, kMill, calibrate::Recorded(misread()));
   calibrate::Observation recorded, simulated;
   recorded.value = simulated.value = VectorXd::Constant(1, 7);
   recorded.covariance = simulated.covariance = MatrixXd::Constant(1, 1, 0.5);
-  recorded.observables = simulated.observables = {{"power", "W", "power"}};
+  recorded.observables = simulated.observables = {{"power", "W", calibrate::ObservableKind::power}};
   add_readings(readings, recorded);
   VectorXd theta(8);
   theta << 0.3, 0.4, 0.313, 0.001, -0.002, 0.05, 0.01, 0.005;
@@ -135,7 +135,7 @@ TEST_CASE("a simulation's reading is its own frame, the recording's is what it t
   CHECK_THAT(simulated.value[2], WithinAbs(-2, 1e-12));
   CHECK_THAT(simulated.value[3], WithinAbs(50, 1e-12));
   CHECK(simulated.covariance(1, 1) < 1e-5 * recorded.covariance(1, 1));
-  CHECK(simulated.observables[3].group == "frame tilt");
+  CHECK(simulated.observables[3].kind == calibrate::ObservableKind::frame);
 }
 
 TEST_CASE("a reading names a tilt that the charge alone leaves open") {
@@ -147,14 +147,14 @@ TEST_CASE("a reading names a tilt that the charge alone leaves open") {
     // A recording so noisy that the charge says nothing of so small a tilt.
     MadeUpMill mill(
         q, {}, {"pairs.glass~glass.static_friction=0.3", "pairs.glass~liner.static_friction=0.4", "camera.frame_error.tilt_z=0.06"}, 15);
-    Workshop w = mill.workshop();
+    Evidence evidence = mill.evidence();
     for (std::size_t c = 0; read && c < 3; ++c) {
-      w.readings.push_back({{0, {"tilt by free flights", "mrad", "frame tilt"}, 1e3, 0.06, 0.012}});
-      add_readings(w.readings.back(), w.recorded[c]);
+      evidence.readings.push_back({{0, {"tilt by free flights", "mrad", calibrate::ObservableKind::frame}, 1e3, 0.06, 0.012}});
+      add_readings(evidence.readings.back(), evidence.recorded[c]);
     }
     naming::Options options;
     options.draws = 400, options.comparison_draws = 100;
-    return diagnose::diagnose(q, w, options);
+    return diagnose::diagnose(q, mill.machinery(), evidence, options);
   };
   CHECK(diagnosed(false).named.empty());
   const Diagnosis d = diagnosed(true);

@@ -98,14 +98,15 @@ calibrate::Observation MadeUpMill::observation(std::size_t condition, const std:
   calibrate::Observation o;
   o.value = y;
   o.covariance = noise * noise * MatrixXd::Identity(kObservables, kObservables);
-  for (Index i = 0; i < kObservables; ++i) o.observables.push_back({fmt::format("summary {}", i), "1", i == 0 ? "power" : "x"});
+  for (Index i = 0; i < kObservables; ++i)
+    o.observables.push_back({fmt::format("summary {}", i), "1", i == 0 ? calibrate::ObservableKind::power : calibrate::ObservableKind::x});
   o.power = {y[0], noise, "made up"};
   o.bead_seconds = 100;
   return o;
 }
 
-Workshop MadeUpMill::workshop() {
-  Workshop w;
+calibrate::Machinery MadeUpMill::machinery() {
+  calibrate::Machinery w;
   w.run = [this](std::span<const campaign::Simulation> simulations) {
     std::vector<campaign::Outcome> outcomes;
     for (const campaign::Simulation& s : simulations) {
@@ -122,9 +123,14 @@ Workshop MadeUpMill::workshop() {
   w.observe = [this](std::size_t condition, const campaign::Outcome& o, const std::string& camera) {
     return observation(condition, o.key + camera_settings(camera), run_noise);
   };
-  for (std::size_t c = 0; c < conditions_; ++c)
-    w.recorded.push_back(observation(c, fmt::format("{}", fmt::join(truth_, "\n")), recording_noise_));
   return w;
+}
+
+Evidence MadeUpMill::evidence() const {
+  Evidence evidence;
+  for (std::size_t c = 0; c < conditions_; ++c)
+    evidence.recorded.push_back(observation(c, fmt::format("{}", fmt::join(truth_, "\n")), recording_noise_));
+  return evidence;
 }
 
 }  // namespace millscope::diagnose

@@ -34,7 +34,8 @@ class MadeUpMill {
   /// `truth`: settings that the recordings were made with, beside those of the conditions.
   MadeUpMill(const Question& question, std::vector<Physics> physics, const std::vector<std::string>& truth, double recording_noise = 1);
 
-  Workshop workshop();
+  calibrate::Machinery machinery();
+  Evidence evidence() const;
   int computed() const { return static_cast<int>(cache_.size()); }            ///< simulations, each once
   double run_noise = 0.3;                                                     ///< of the bank's simulations
   std::uint64_t seed = 0;                                                     ///< of all noise

@@ -33,9 +33,8 @@ nlohmann::json written(const Scratch& folder, const std::vector<std::string>& tr
                   recording_noise);
   naming::Options options;
   options.draws = 240, options.comparison_draws = 160;
-  Workshop workshop = mill.workshop();
-  const Diagnosis d = diagnose::diagnose(q, workshop, options);
-  write_outputs({q, workshop, d}, folder / "out");
+  const Diagnosis d = diagnose::diagnose(q, mill.machinery(), mill.evidence(), options);
+  write_outputs({q, d}, folder / "out");
   return nlohmann::json::parse(base::text_of(folder / "out/diagnosis.json"));
 }
 

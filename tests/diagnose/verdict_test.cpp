@@ -51,20 +51,17 @@ const Judged& judged(const Diagnosis& d, const std::string& name) {
 }
 
 /// A mill in which no bead is thrown to where 'summary 5' is taken, in the simulations that `lacks` names by condition and key.
-Workshop lacking(MadeUpMill& mill, const std::function<bool(std::size_t, const std::string&)>& lacks) {
-  Workshop w = mill.workshop();
-  w.observe = [look = w.observe, lacks](std::size_t condition, const campaign::Outcome& o, const std::string& camera) {
+calibrate::Machinery lacking(MadeUpMill& mill, const std::function<bool(std::size_t, const std::string&)>& lacks) {
+  calibrate::Machinery machinery = mill.machinery();
+  machinery.observe = [look = machinery.observe, lacks](std::size_t condition, const campaign::Outcome& o, const std::string& camera) {
     calibrate::Observation seen = look(condition, o, camera);
     if (lacks(condition, o.key)) seen.value[5] = std::nan("");
     return seen;
   };
-  return w;
+  return machinery;
 }
 
-Diagnosis found(const Question& q, MadeUpMill& mill) {
-  Workshop workshop = mill.workshop();
-  return diagnose::diagnose(q, workshop, quick());
-}
+Diagnosis found(const Question& q, MadeUpMill& mill) { return diagnose::diagnose(q, mill.machinery(), mill.evidence(), quick()); }
 
 Diagnosis diagnosed(const std::vector<Physics>& physics, const std::vector<std::string>& truth, double recording_noise = 1) {
   const Scratch folder;
@@ -186,9 +183,9 @@ TEST_CASE("what shows in the held-out condition alone is said, and how it could 
   const Scratch folder;
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, usual(), kTheta);
-  Workshop workshop = mill.workshop();
-  workshop.recorded[2].value.array() += 8;
-  const Diagnosis d = diagnose::diagnose(q, workshop, quick());
+  Evidence evidence = mill.evidence();
+  evidence.recorded[2].value.array() += 8;
+  const Diagnosis d = diagnose::diagnose(q, mill.machinery(), evidence, quick());
   INFO(d.sentence);
   CHECK(d.verdict == Verdict::no_mismatch);
   CHECK_THAT(d.sentence, Contains("the retuned base does not describe the held-out condition 'speed50'"));
@@ -203,9 +200,9 @@ TEST_CASE("where nothing could be seen a held-out condition may still differ, an
   for (std::uint64_t k = 0; k < 6; ++k) {
     MadeUpMill mill(q, usual(), kTheta, 60);
     mill.seed = k;
-    Workshop workshop = mill.workshop();
-    workshop.recorded[2].value.array() += 480;
-    const Diagnosis d = diagnose::diagnose(q, workshop, quick());
+    Evidence evidence = mill.evidence();
+    evidence.recorded[2].value.array() += 480;
+    const Diagnosis d = diagnose::diagnose(q, mill.machinery(), evidence, quick());
     INFO(d.sentence);
     if (d.verdict != Verdict::undetectable) continue;
     ++unseen;
@@ -266,18 +263,18 @@ TEST_CASE("what simulations leave undefined is compared nowhere, and that is sai
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, usual(), with(kRolling + "=0.12"));
   // Neither without the effect nor where it is weak: in the fitted condition 1 and in the held-out one.
-  Workshop workshop = lacking(mill, [](std::size_t condition, const std::string& key) {
+  const calibrate::Machinery machinery = lacking(mill, [](std::size_t condition, const std::string& key) {
     return condition > 0 && key.find(kRolling + "=0.1") == std::string::npos;
   });
-  const Diagnosis d = diagnose::diagnose(q, workshop, quick());
+  const Diagnosis d = diagnose::diagnose(q, machinery, mill.evidence(), quick());
   INFO(d.sentence);
   CHECK(d.verdict == Verdict::named);
   CHECK(d.named == std::vector<std::string>{"rolling_resistance"});
   CHECK(d.bank.failures.empty());
   CHECK(d.problem.observed.size() == 16 + 15);
-  CHECK(workshop.recorded[0].value.size() == 16);
-  CHECK(workshop.recorded[2].value.size() == 15);
-  CHECK(workshop.recorded[2].covariance.rows() == 15);
+  CHECK(d.evidence.recorded[0].value.size() == 16);
+  CHECK(d.evidence.recorded[2].value.size() == 15);
+  CHECK(d.evidence.recorded[2].covariance.rows() == 15);
   REQUIRE(d.notes.size() >= 2);
   CHECK_THAT(d.notes[0], Contains("'summary 5' of condition 'speed60' was compared nowhere: in"));
   CHECK_THAT(d.notes[1], Contains("'summary 5' of condition 'speed50' was compared nowhere: in"));
@@ -288,9 +285,9 @@ TEST_CASE("what a prediction leaves undefined none is judged by, and that is sai
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, usual(), with(kRolling + "=0.12"));
   // One seed of each prediction of the held-out condition; no run of the bank has this seed.
-  Workshop workshop =
+  const calibrate::Machinery machinery =
       lacking(mill, [](std::size_t condition, const std::string& key) { return condition == 2 && key.ends_with("seed=15855"); });
-  const Diagnosis d = diagnose::diagnose(q, workshop, quick());
+  const Diagnosis d = diagnose::diagnose(q, machinery, mill.evidence(), quick());
   INFO(d.sentence);
   CHECK(d.named == std::vector<std::string>{"rolling_resistance"});
   REQUIRE(d.held_out.size() == 1);
@@ -299,7 +296,7 @@ TEST_CASE("what a prediction leaves undefined none is judged by, and that is sai
   CHECK(d.held_out[0].improves);
   CHECK(std::isnan(d.held_out[0].scores[0].prediction.value[5]));
   CHECK(std::isfinite(d.held_out[0].scores[0].misfit));
-  CHECK(workshop.recorded[2].value.size() == 16);
+  CHECK(d.evidence.recorded[2].value.size() == 16);
   CHECK(std::any_of(d.notes.begin(), d.notes.end(),
                     [](const std::string& n) { return n.find("held out, not compared: 'summary 5'") != std::string::npos; }));
 }
@@ -312,9 +309,9 @@ TEST_CASE("candidates that cannot matter get their first simulations alone") {
   MadeUpMill mill(q, physics, kTheta);
   mill.run_noise = 0.05;
   std::vector<std::string> said;
-  Workshop w = mill.workshop();
-  w.say = [&](const std::string& line) { said.push_back(line); };
-  const Diagnosis d = diagnose::diagnose(q, w, quick());
+  calibrate::Machinery machinery = mill.machinery();
+  machinery.progress = [&](const std::string& line) { said.push_back(line); };
+  const Diagnosis d = diagnose::diagnose(q, machinery, mill.evidence(), quick());
   CHECK(d.bank.points.size() == 24 + 8 + 10 + 10 + 4);
   CHECK(std::any_of(said.begin(), said.end(), [](const std::string& s) {
     return s.rfind("lifter_wear: at its strongest", 0) == 0 && s.find("cannot matter here") != std::string::npos;

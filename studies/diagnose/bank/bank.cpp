@@ -212,22 +212,23 @@ campaign::Simulation simulation_at(const Question& question, const VectorXd& the
   return s;
 }
 
-calibrate::Observation Workshop::look(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
-                                      const VectorXd& theta) const {
+calibrate::Observation Evidence::look(const calibrate::Machinery& machinery, const Question& question, std::size_t condition,
+                                      const campaign::Outcome& outcome, const VectorXd& theta) const {
   if (outcome.state == campaign::State::failed) throw base::UserError(outcome.message);
-  calibrate::Observation o = observe(condition, outcome, question.camera(theta));
+  calibrate::Observation o = machinery.observe(condition, outcome, question.camera(theta));
   if (!readings.empty()) add_readings(question, readings[condition], theta, o);
   if (!without.empty()) calibrate::leave_out(o, without[condition]);
   return o;
 }
 
-Bank fill_bank(const Question& question, const Workshop& workshop, std::vector<BankPoint> points, std::vector<std::size_t> conditions) {
+Bank fill_bank(const Question& question, const calibrate::Machinery& machinery, const Evidence& evidence, std::vector<BankPoint> points,
+               std::vector<std::size_t> conditions) {
   std::vector<campaign::Simulation> simulations;
   for (const BankPoint& p : points) {
     for (const std::size_t c : conditions) simulations.push_back(simulation_of(question, p, c));
   }
-  const std::vector<campaign::Outcome> outcomes = workshop.run(simulations);
-  if (workshop.say) workshop.say(fmt::format("looking at {} simulations through the recordings' cameras", outcomes.size()));
+  const std::vector<campaign::Outcome> outcomes = machinery.run(simulations);
+  machinery.say(fmt::format("looking at {} simulations through the recordings' cameras", outcomes.size()));
   Bank bank{std::move(points), std::move(conditions), {}, {}, {}};
   const std::size_t per_point = bank.conditions.size();
   bank.runs.resize(bank.points.size());
@@ -238,7 +239,7 @@ Bank fill_bank(const Question& question, const Workshop& workshop, std::vector<B
   base::for_each_item(outcomes.size(), base::worker_count(0, outcomes.size()), [&](std::size_t i, std::size_t) {
     try {
       bank.seen[i / per_point][i % per_point] =
-          workshop.look(question, bank.conditions[i % per_point], outcomes[i], bank.points[i / per_point].theta);
+          evidence.look(machinery, question, bank.conditions[i % per_point], outcomes[i], bank.points[i / per_point].theta);
     } catch (const base::UserError& e) {
       failures[i] = fmt::format("{}: {}", simulations[i].label, e.what());
     }

@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "studies/analysis/results.hpp"
-#include "studies/calibrate/observation.hpp"
-#include "studies/campaign/campaign.hpp"
+#include "studies/calibrate/machinery.hpp"
 #include "studies/diagnose/bank/frame_readings.hpp"
 
 namespace millscope::diagnose {
@@ -55,24 +52,16 @@ campaign::Simulation simulation_of(const Question& question, const BankPoint& po
 campaign::Simulation simulation_at(const Question& question, const VectorXd& theta, const std::vector<naming::ActiveCandidate>& active,
                                    std::size_t condition, int replicate, const std::string& label);
 
-/// What runs and what looks; tests put their own in place. `observe` is called from several threads at once. `camera`: Question::camera.
-struct Workshop {
-  std::function<std::vector<campaign::Outcome>(std::span<const campaign::Simulation>)> run;
-  std::function<calibrate::Observation(std::size_t condition, const campaign::Outcome&, const std::string& camera)> observe;
-  std::vector<calibrate::Observation> recorded;  ///< of every condition, with the readings
-  std::function<void(const std::string&)> say;
-  /// Results of other analyzers, of the recording where the outcome has no folder; not set: nothing is looked at again.
-  std::function<studies::ResultSet(std::size_t condition, const campaign::Outcome&, const std::string& analyzers,
-                                   const std::string& camera)>
-      results = {};
+/// What the recordings show, and what of it is compared.
+struct Evidence {
+  std::vector<calibrate::Observation> recorded;          ///< of every condition, with the readings
   std::vector<std::vector<FrameReading>> readings = {};  ///< of every recording's frame; empty: nothing of it is doubted
-
-  std::vector<std::set<std::string>> without = {};  ///< [conditions] observables that are compared nowhere; empty: all are
+  std::vector<std::set<std::string>> without = {};       ///< [conditions] observables that are compared nowhere; empty: all are
 
   /// What a simulation at θ shows, readings of the frame included; NaN for what is undefined: the speed where no bead was seen. Throws
   /// base::UserError where it failed.
-  calibrate::Observation look(const Question& question, std::size_t condition, const campaign::Outcome& outcome,
-                              const VectorXd& theta) const;
+  calibrate::Observation look(const calibrate::Machinery& machinery, const Question& question, std::size_t condition,
+                              const campaign::Outcome& outcome, const VectorXd& theta) const;
 };
 
 /// The points with what was seen of them in some conditions.
@@ -90,14 +79,21 @@ struct Bank {
 };
 
 /// Runs what is not in the cache. What is undefined is NaN.
-Bank fill_bank(const Question& question, const Workshop& workshop, std::vector<BankPoint> points, std::vector<std::size_t> conditions);
+Bank fill_bank(const Question& question, const calibrate::Machinery& machinery, const Evidence& evidence, std::vector<BankPoint> points,
+               std::vector<std::size_t> conditions);
 
-/// Takes what any of the bank's simulations leaves undefined (the speed in a region into which they throw no bead) from the recordings, the
-/// bank and what is looked at later. One sentence for each observable.
-std::vector<std::string> leave_out_undefined(const Question& question, Workshop& workshop, Bank& bank);
+/// What some of the bank's simulations leave undefined: the speed in a region into which they throw no bead.
+struct Undefined {
+  std::vector<std::set<std::string>> names;  ///< [conditions of the study] of observables
+  std::vector<std::string> notes;            ///< one sentence for each
+};
+Undefined undefined_in(const Question& question, const Bank& bank);
+/// The same without these observables, which are compared nowhere from now on.
+Evidence leave_out(Evidence evidence, const Undefined& undefined);
+Bank leave_out(Bank bank, const Undefined& undefined);
 
 /// Which of some conditions' simulations are not steady yet when they begin to be looked at, by all of them together: one run's chance
-/// hides what they strength, and what they strength is wrong in all of the surrogate. One sentence for each.
+/// hides what they share, and what they share is wrong in all of the surrogate. One sentence for each.
 std::vector<std::string> unsettled(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions);
 
 /// The numbers of some of the bank's conditions; points of which one failed are left out.

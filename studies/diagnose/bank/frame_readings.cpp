@@ -39,12 +39,12 @@ bool doubts(const Question& q, const std::string& parameter) {
 }
 
 struct Reader {
-  const studies::Recording& recording;
+  const calibrate::Recorded& recorded;
   const ExpectedMill& mill;
-  std::optional<studies::MillMotion> motion = {};
+  const studies::Recording& recording = recorded.tracks();
   std::optional<studies::FreeFlight> flight = {};
 
-  const studies::MillMotion& rides() { return motion ? *motion : motion.emplace(studies::estimate_motion(recording)); }
+  const studies::MillMotion& rides() { return recorded.motion(); }
 
   /// An inner layer of the charge turns on a circle, too, but slower.
   bool along_shell() {
@@ -100,9 +100,9 @@ ExpectedMill expected_mill(const Question& question, std::size_t condition, cons
   return {c.mill_radius > c.bead_radius ? c.mill_radius - c.bead_radius : 0, c.bead_radius, mill.upright && !varied};
 }
 
-std::vector<FrameReading> read_frame(const Question& question, const ExpectedMill& mill, const studies::Recording& recording) {
+std::vector<FrameReading> read_frame(const Question& question, const ExpectedMill& mill, const calibrate::Recorded& recorded) {
   std::vector<FrameReading> out;
-  Reader reader{recording, mill};
+  Reader reader{recorded, mill};
   const bool ellipse = doubts(question, "tilt_x") || doubts(question, "tilt_y");
   for (std::size_t i = 0; i < question.nuisances.size(); ++i) {
     const Nuisance& n = question.nuisances[i];
@@ -117,7 +117,7 @@ std::vector<FrameReading> read_frame(const Question& question, const ExpectedMil
       r = reader.tilt(), r.per_unit = 1e3, unit = "mrad", of = "free flights";
     if (!(r.sem > 0)) continue;
     r.nuisance = i;
-    r.observable = {fmt::format("{} by {}", n.name, of), unit, "frame " + n.name};
+    r.observable = {fmt::format("{} by {}", n.name, of), unit, calibrate::ObservableKind::frame};
     out.push_back(std::move(r));
   }
   return out;

@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "studies/calibrate/observation.hpp"
+#include "studies/calibrate/recordings.hpp"
 #include "studies/diagnose/question/question.hpp"
-#include "studies/recording/recording.hpp"
 
 namespace millscope::diagnose {
 
@@ -30,7 +29,7 @@ ExpectedMill expected_mill(const Question& question, std::size_t condition, cons
 /// Of the nuisances offset_x, offset_y, clock (from rides) and tilt_z (from flights), as far as the recording tells them: rides on
 /// another circle than the shell's tell nothing, nor do flights where the case's own gravity leans, nor circles that a tilt_x or tilt_y
 /// makes ellipses. Beads that all slip along the shell look like a slow clock.
-std::vector<FrameReading> read_frame(const Question& question, const ExpectedMill& mill, const studies::Recording& recording);
+std::vector<FrameReading> read_frame(const Question& question, const ExpectedMill& mill, const calibrate::Recorded& recorded);
 
 /// What is wrong in all recordings alike (loose rides, supported flights) does not average out: each error grows by √ of the number of
 /// conditions that read the same.

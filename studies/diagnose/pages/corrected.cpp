@@ -21,8 +21,9 @@ std::string choices_text(const Question& q) {
   if (o.z_low && o.z_high) fmt::format_to(std::back_inserter(out), ", z: [{:.6g}, {:.6g}]", *o.z_low, *o.z_high);
   fmt::format_to(std::back_inserter(out), "}}\nbank: {{base: {}, each: {}, first: {}}}\npower_error: {:.6g}\n", q.bank.base, q.bank.each,
                  q.bank.first, q.study.power_error);
-  if (!q.study.objective.without.empty())
-    fmt::format_to(std::back_inserter(out), "objective: {{without: [{}]}}\n", fmt::join(q.study.objective.without, ", "));
+  std::vector<std::string> without;
+  for (const calibrate::ObservableKind kind : q.study.objective.without) without.emplace_back(calibrate::name_of(kind));
+  if (!without.empty()) fmt::format_to(std::back_inserter(out), "objective: {{without: [{}]}}\n", fmt::join(without, ", "));
   if (!q.study.constraints.empty()) out += "constraints:\n";
   for (const calibrate::Constraint& c : q.study.constraints)
     fmt::format_to(std::back_inserter(out), "  - {}\n", nlohmann::json(c.text).dump());

@@ -44,10 +44,10 @@ std::string region_of(const Told& t, std::size_t condition, Index observable) {
   Index first = 0;
   for (const std::size_t c : t.diagnosis.fit) {
     if (c == condition) break;
-    first += t.workshop.recorded[c].value.size();
+    first += t.diagnosis.evidence.recorded[c].value.size();
   }
-  const calibrate::Observable& o = t.workshop.recorded[condition].observables[observable - first];
-  const bool regional = o.group == "occupancy" || o.group == "region_speed";
+  const calibrate::Observable& o = t.diagnosis.evidence.recorded[condition].observables[observable - first];
+  const bool regional = o.kind == calibrate::ObservableKind::occupancy || o.kind == calibrate::ObservableKind::region_speed;
   return regional ? o.name.substr(o.name.find(' ') + 1) : "whole mill";
 }
 
@@ -96,7 +96,7 @@ Json held_out(const Told& t) {
       scores.push_back(std::move(one));
     }
     Json names = Json::array();
-    const calibrate::Observation& recorded = t.workshop.recorded[h.condition];
+    const calibrate::Observation& recorded = t.diagnosis.evidence.recorded[h.condition];
     for (std::size_t i = 0; i < recorded.observables.size(); ++i) {
       Json row = {{"observable", recorded.observables[i].name}, {"unit", recorded.observables[i].unit}, {"recorded", recorded.value[i]}};
       for (const Score& s : h.scores) row[s.prediction.name] = s.prediction.value[i];

@@ -14,7 +14,6 @@ namespace millscope::diagnose {
 /// A diagnosis with what it was made from.
 struct Told {
   const Question& question;
-  const Workshop& workshop;
   const Diagnosis& diagnosis;
 };
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "studies/calibrate/power.hpp"
 #include "studies/diagnose/pages/outputs.hpp"
 #include "studies/picture/picture.hpp"
 
@@ -72,7 +73,9 @@ void drift(const Told& t, Drawer& drawer) {
 /// Observables of a held-out condition before and after.
 void held_out(const Told& t, Drawer& drawer) {
   for (const HeldOut& h : t.diagnosis.held_out) {
-    const calibrate::Observation& recorded = t.workshop.recorded[h.condition];
+    const calibrate::Observation& recorded = t.diagnosis.evidence.recorded[h.condition];
+    MatrixXd covariance = recorded.covariance;
+    calibrate::add_power_error(recorded, t.question.study.power_error, covariance);
     CurvePicture p;
     p.title = "Held out: " + t.question.study.conditions[h.condition].name;
     p.x_label = "observable", p.value_label = "difference over its standard deviation";
@@ -84,10 +87,7 @@ void held_out(const Told& t, Drawer& drawer) {
       for (Index i = 0; i < recorded.value.size(); ++i) {
         if (!std::isfinite(s.prediction.value[i])) continue;
         c.x.push_back(static_cast<double>(i + 1));
-        const bool power = recorded.observables[i].group == "power";
-        const double meter = power ? t.question.study.power_error * recorded.value[i] : 0;
-        c.value.push_back((recorded.value[i] - s.prediction.value[i]) /
-                          std::sqrt(recorded.covariance(i, i) + s.prediction.covariance(i, i) + meter * meter));
+        c.value.push_back((recorded.value[i] - s.prediction.value[i]) / std::sqrt(covariance(i, i) + s.prediction.covariance(i, i)));
       }
       p.curves.push_back(std::move(c));
     }

@@ -99,7 +99,7 @@ void held_out(const Told& t, std::string& out) {
   out += "## On data that were not fitted\n\n";
   if (t.diagnosis.held_out.empty()) out += "No condition has the role `held_out`: nothing confirms the choice.\n\n";
   for (const HeldOut& h : t.diagnosis.held_out) {
-    const calibrate::PowerFigure& recorded = t.workshop.recorded[h.condition].power;
+    const calibrate::PowerFigure& recorded = t.diagnosis.evidence.recorded[h.condition].power;
     add(out,
         "{}, recorded power {}. Misfit: mean squared difference over its variance, about 1 when only chance differs.\n\n"
         "| model | misfit | power | improvement of the corrected model (90 %) |\n|---|---|---|---|\n",
@@ -137,7 +137,7 @@ base::Interval90 parameter_at(const Candidate& c, const base::Interval90& streng
 std::string observable_name(const Told& t, Index observable) {
   Index at = 0;
   for (const std::size_t c : t.diagnosis.fit) {
-    const calibrate::Observation& o = t.workshop.recorded[c];
+    const calibrate::Observation& o = t.diagnosis.evidence.recorded[c];
     if (observable < at + o.value.size())
       return fmt::format("{}: {}", t.question.study.conditions[c].name, o.observables[observable - at].name);
     at += o.value.size();
@@ -148,7 +148,7 @@ std::string observable_name(const Told& t, Index observable) {
 std::string mismatch_sentence(const Told& t, const naming::Mismatch& m) {
   Index at = 0;
   for (const std::size_t c : t.diagnosis.fit) {
-    const calibrate::Observation& o = t.workshop.recorded[c];
+    const calibrate::Observation& o = t.diagnosis.evidence.recorded[c];
     if (m.observable >= at + o.value.size()) {
       at += o.value.size();
       continue;

@@ -22,6 +22,7 @@ struct Diagnosis {
   std::vector<std::string> notes;
 
   std::vector<std::size_t> fit, held;
+  Evidence evidence;  ///< as it was compared
   Bank bank;
   naming::Problem problem;
   naming::Result naming;
@@ -31,14 +32,13 @@ struct Diagnosis {
   TermOffer terms;                    ///< that would describe `missing`
 };
 
+/// What the session's recordings show; what they tell of a frame that the study doubts is part of it.
+Evidence evidence_of(const Question& question, const host::Registry& registry, const calibrate::Session& session);
+
 /// Everything from the bank on.
-Diagnosis diagnose(const Question& question, Workshop& workshop, const naming::Options& options);
+Diagnosis diagnose(const Question& question, const calibrate::Machinery& machinery, Evidence evidence, const naming::Options& options);
 
 /// Verdict, sentence, names and next experiment of a diagnosis that has everything else.
-void conclude(const Question& question, const Workshop& workshop, double level, double noise_units, Diagnosis& diagnosis);
-
-/// The workshop of a session.
-Workshop workshop_of(const Question& question, const host::Registry& registry, calibrate::Session& session,
-                     std::function<void(const std::string&)> say);
+void conclude(const Question& question, double level, double noise_units, Diagnosis& diagnosis);
 
 }  // namespace millscope::diagnose

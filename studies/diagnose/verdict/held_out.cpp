@@ -26,10 +26,10 @@ Prediction simulate(const HeldOutRequest& r, const VectorXd& coded, const std::v
   p.name = name;
   int done = 0;
   std::string message;
-  for (const campaign::Outcome& outcome : r.workshop.run(simulations)) {
+  for (const campaign::Outcome& outcome : r.machinery.run(simulations)) {
     calibrate::Observation o;
     try {
-      o = r.workshop.look(r.question, condition, outcome, theta);
+      o = r.evidence.look(r.machinery, r.question, condition, outcome, theta);
     } catch (const base::UserError& e) {
       message = e.what();
       continue;
@@ -113,8 +113,8 @@ Score score(const Judge& judge, Prediction prediction) {
 
 Judge judge_of(const HeldOutRequest& r, std::size_t condition, const std::vector<Prediction>& predictions) {
   naming::Problem held;
-  add_recorded(r.question, r.workshop, r.bank, {condition}, held);
-  Judge judge{{}, {}, {}, {}, r.workshop.recorded[condition].power.value};
+  add_recorded(r.question, r.evidence, r.bank, {condition}, held);
+  Judge judge{{}, {}, {}, {}, r.evidence.recorded[condition].power.value};
   for (Index i = 0; i < held.observed.size(); ++i) {
     if (std::all_of(predictions.begin(), predictions.end(),
                     [i](const Prediction& p) { return !p.failure.empty() || std::isfinite(p.value[i]); }))
@@ -129,7 +129,7 @@ HeldOut judged(const HeldOutRequest& r, std::size_t condition, std::vector<Predi
   const Judge judge = judge_of(r, condition, all);
   HeldOut out;
   out.condition = condition;
-  const auto& observables = r.workshop.recorded[condition].observables;
+  const auto& observables = r.evidence.recorded[condition].observables;
   for (std::size_t i = 0; i < observables.size(); ++i) {
     if (!std::binary_search(judge.kept.begin(), judge.kept.end(), Index(i))) out.not_compared.push_back(observables[i].name);
   }
@@ -190,7 +190,7 @@ std::vector<Alone> fit_alone(const HeldOutRequest& r) {
   std::vector<Alone> out;
   const std::vector<naming::ActiveCandidate> active = best_active(r);
   for (const std::size_t condition : r.bank.conditions) {
-    const naming::Problem one = problem_alone(r.question, r.workshop, r.bank, condition, r.problem.data);
+    const naming::Problem one = problem_alone(r.question, r.evidence, r.bank, condition, r.problem.data);
     const naming::Surrogate surrogate(one.data);
     const naming::Weighting weighting(one.covariance, surrogate);
     const MatrixXd& w = weighting.whitener;

@@ -39,14 +39,15 @@ struct HeldOut {
   bool contradicts = false;               ///< that against some rival model lies below 0
 };
 
-/// θ that matches the powers of the fit conditions, nuisances at their priors' means (those varied apart as they are in the case), as near the
-/// middle of the ranges as that allows: the practice.
+/// θ that matches the powers of the fit conditions, nuisances at their priors' means (those varied apart as they are in the case), as near
+/// the middle of the ranges as that allows: the practice.
 VectorXd retuned_to_power(const naming::BankData& data, const naming::Surrogate& surrogate, const VectorXd& observed,
                           const MatrixXd& covariance, const std::vector<Index>& powers);
 
 struct HeldOutRequest {
   const Question& question;
-  const Workshop& workshop;
+  const calibrate::Machinery& machinery;
+  const Evidence& evidence;
   const Bank& bank;                ///< of all conditions
   const naming::Problem& problem;  ///< of the fit conditions
   const naming::Result& naming;

@@ -80,18 +80,18 @@ std::vector<ForceBySpeed> by_speed(const Side& recorded, const std::vector<Side>
 
 std::vector<MissingForce> missing_force(const HeldOutRequest& r) {
   std::vector<MissingForce> out;
-  if (!r.workshop.results) return out;
+  if (!r.machinery.results) return out;
   const VectorXd theta = r.problem.data.natural(r.naming.base.coded);
   for (const std::size_t condition : r.fit) {
-    if (!r.workshop.recorded[condition].of_tracks()) continue;
+    if (!r.evidence.recorded[condition].of_tracks()) continue;
     std::vector<campaign::Simulation> simulations;
     for (int replicate = 1; replicate <= kForceSeeds; ++replicate)
       simulations.push_back(simulation_at(r.question, theta, {}, condition, replicate, "retuned to all observables"));
-    const Side recorded{r.workshop.results(condition, {}, kAnalyzers, {})};
+    const Side recorded{r.machinery.results(condition, {}, kAnalyzers, {})};
     std::vector<Side> simulated;
-    for (const campaign::Outcome& outcome : r.workshop.run(simulations)) {
+    for (const campaign::Outcome& outcome : r.machinery.run(simulations)) {
       if (outcome.state == campaign::State::done)
-        simulated.push_back({r.workshop.results(condition, outcome, kAnalyzers, r.question.camera(theta))});
+        simulated.push_back({r.machinery.results(condition, outcome, kAnalyzers, r.question.camera(theta))});
     }
     if (!simulated.empty())
       out.push_back({condition, recorded.set.meta.context.omega, cells_of(recorded, simulated), by_speed(recorded, simulated)});

@@ -30,7 +30,7 @@ struct MissingForce {
   std::vector<ForceBySpeed> by_speed;
 };
 
-/// Of the retuned base in the fitted conditions, two seeds each. Empty where the workshop cannot look again.
+/// Of the retuned base in the fitted conditions, two seeds each. Empty where the machinery cannot look again.
 std::vector<MissingForce> missing_force(const HeldOutRequest& request);
 
 /// "speed75, 120 to 150 mm, 30 to 60° past 6 o'clock: …".

@@ -1,8 +1,8 @@
 #include "studies/diagnose/verdict/recorded_problem.hpp"
 
 #include <algorithm>
-#include <cmath>
 
+#include "studies/calibrate/power.hpp"
 #include "studies/diagnose/naming/surrogate.hpp"
 
 namespace millscope::diagnose {
@@ -24,26 +24,22 @@ MatrixXd correlation_of(const Bank& bank, std::size_t condition, Index size) {
 
 }  // namespace
 
-void add_recorded(const Question& question, const Workshop& workshop, const Bank& bank, const std::vector<std::size_t>& conditions,
+void add_recorded(const Question& question, const Evidence& evidence, const Bank& bank, const std::vector<std::size_t>& conditions,
                   naming::Problem& problem) {
   Index n = 0;
-  for (const std::size_t c : conditions) n += workshop.recorded[c].value.size();
+  for (const std::size_t c : conditions) n += evidence.recorded[c].value.size();
   problem.observed.resize(n);
   problem.covariance = MatrixXd::Zero(n, n);
   problem.noise.assign(2, problem.covariance);
   Index at = 0;
   for (const std::size_t c : conditions) {
-    const calibrate::Observation& o = workshop.recorded[c];
+    const calibrate::Observation& o = evidence.recorded[c];
     const Index size = o.value.size();
     const VectorXd deviation = o.covariance.diagonal().cwiseSqrt();
     problem.observed.segment(at, size) = o.value;
     MatrixXd own = o.covariance, simulated = own;  // a profile's errors are stated, its correlations too
     if (o.of_tracks()) simulated = deviation.asDiagonal() * correlation_of(bank, c, size) * deviation.asDiagonal();
-    for (Index i = 0; i < size; ++i) {
-      if (o.observables[i].group != "power") continue;
-      const double variance = std::pow(question.study.power_error * o.value[i], 2);
-      own(i, i) += variance, simulated(i, i) += variance;
-    }
+    for (MatrixXd* covariance : {&own, &simulated}) calibrate::add_power_error(o, question.study.power_error, *covariance);
     problem.noise[0].block(at, at, size, size) = own;
     problem.noise[1].block(at, at, size, size) = simulated;
     problem.covariance.block(at, at, size, size) = 0.5 * (own + simulated);
@@ -51,22 +47,22 @@ void add_recorded(const Question& question, const Workshop& workshop, const Bank
   }
 }
 
-naming::Problem problem_of(const Question& question, const Workshop& workshop, const Bank& bank,
+naming::Problem problem_of(const Question& question, const Evidence& evidence, const Bank& bank,
                            const std::vector<std::size_t>& conditions) {
   naming::Problem p;
   p.data = data_of(question, bank, conditions);
   p.alternatives = alternatives_of(question);
-  add_recorded(question, workshop, bank, conditions, p);
+  add_recorded(question, evidence, bank, conditions, p);
   naming::choose_scales(p.data);
   return p;
 }
 
-naming::Problem problem_alone(const Question& question, const Workshop& workshop, const Bank& bank, std::size_t condition,
+naming::Problem problem_alone(const Question& question, const Evidence& evidence, const Bank& bank, std::size_t condition,
                               const naming::BankData& like) {
   naming::Problem p;
   p.data = data_of(question, bank, {condition});
   for (std::size_t i = 0; i < p.data.theta.size(); ++i) p.data.theta[i].logarithmic = like.theta[i].logarithmic;
-  add_recorded(question, workshop, bank, {condition}, p);
+  add_recorded(question, evidence, bank, {condition}, p);
   return p;
 }
 

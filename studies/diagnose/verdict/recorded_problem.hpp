@@ -12,15 +12,15 @@ namespace millscope::diagnose {
 /// and meter. What is not known well is how the errors of 35 numbers are correlated: a recording has ten or twenty independent blocks and
 /// its correlations are shrunk towards none; those of simulated beads, the mean over the bank, know nothing of the camera's own wander.
 /// Observables are weighed by the mean of both, and p-values hold under either as the law of noise.
-void add_recorded(const Question& question, const Workshop& workshop, const Bank& bank, const std::vector<std::size_t>& conditions,
+void add_recorded(const Question& question, const Evidence& evidence, const Bank& bank, const std::vector<std::size_t>& conditions,
                   naming::Problem& problem);
 
 /// Bank and recordings of some conditions, with the alternatives of the question.
-naming::Problem problem_of(const Question& question, const Workshop& workshop, const Bank& bank,
+naming::Problem problem_of(const Question& question, const Evidence& evidence, const Bank& bank,
                            const std::vector<std::size_t>& conditions);
 
 /// Bank and recording of one condition, each coordinate on the scale that `like` has chosen; without alternatives.
-naming::Problem problem_alone(const Question& question, const Workshop& workshop, const Bank& bank, std::size_t condition,
+naming::Problem problem_alone(const Question& question, const Evidence& evidence, const Bank& bank, std::size_t condition,
                               const naming::BankData& like);
 
 /// Candidates of the question and nuisances that may leave their prior.

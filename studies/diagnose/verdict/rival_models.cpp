@@ -15,6 +15,13 @@ constexpr int kPlacebos = 20;
 constexpr int kTries = 4096;
 constexpr double kPull = 0.05;  // towards the middle of the ranges, where powers leave θ open
 
+/// Of these an observable of the same name is the same in all conditions: regions of the mill, readings of the camera's frame. Groups of
+/// bins are only in their order.
+bool same_everywhere(calibrate::ObservableKind kind) {
+  using enum calibrate::ObservableKind;
+  return kind == occupancy || kind == region_speed || kind == frame;
+}
+
 }  // namespace
 
 VectorXd retuned_to_power(const naming::BankData& data, const naming::Surrogate& surrogate, const VectorXd& observed,
@@ -45,7 +52,7 @@ RivalModels::RivalModels(const HeldOutRequest& request, std::size_t held)
     : r_(request),
       held_(held),
       surrogate_(request.problem.data),
-      held_surrogate_(problem_alone(request.question, request.workshop, request.bank, held, request.problem.data).data) {}
+      held_surrogate_(problem_alone(request.question, request.evidence, request.bank, held, request.problem.data).data) {}
 
 std::optional<std::size_t> RivalModels::metered() const {
   for (const std::size_t c : r_.fit) {
@@ -58,8 +65,8 @@ std::vector<Index> RivalModels::powers_of(std::size_t condition) const {
   std::vector<Index> powers;
   Index at = 0;
   for (const std::size_t c : r_.fit) {
-    for (const calibrate::Observable& o : r_.workshop.recorded[c].observables) {
-      if (c == condition && o.group == "power") powers.push_back(at);
+    for (const calibrate::Observable& o : r_.evidence.recorded[c].observables) {
+      if (c == condition && o.kind == calibrate::ObservableKind::power) powers.push_back(at);
       ++at;
     }
   }
@@ -77,18 +84,17 @@ VectorXd RivalModels::power_only(std::size_t condition) const {
 }
 
 std::optional<Index> RivalModels::partner(Index i, std::size_t fitted) const {
-  const auto& own = r_.workshop.recorded[held_].observables;
-  const auto& other = r_.workshop.recorded[fitted].observables;
+  const auto& own = r_.evidence.recorded[held_].observables;
+  const auto& other = r_.evidence.recorded[fitted].observables;
   const calibrate::Observable& what = own[i];
-  const std::string& group = what.group;
-  if (group == "occupancy" || group == "region_speed") {  // regions are the same everywhere, groups of bins only in their order
+  if (same_everywhere(what.kind)) {
     const auto same = std::find_if(other.begin(), other.end(), [&](const calibrate::Observable& o) { return o.name == what.name; });
     return same == other.end() ? std::nullopt : std::optional<Index>(same - other.begin());
   }
   Index place = 0;
-  for (Index k = 0; k < i; ++k) place += own[k].group == group ? 1 : 0;
+  for (Index k = 0; k < i; ++k) place += own[k].kind == what.kind ? 1 : 0;
   for (Index k = 0; k < std::ssize(other); ++k) {
-    if (other[k].group == group && place-- == 0) return k;
+    if (other[k].kind == what.kind && place-- == 0) return k;
   }
   return std::nullopt;
 }
@@ -107,13 +113,13 @@ Prediction RivalModels::placebo(const Prediction& base) const {
     const VectorXd chance = random.normals(n);
     VectorXd held(n), fitted = VectorXd::Zero(m);
     for (Index i = 0; i < n; ++i)  // what is not fitted stays as it is
-      held[i] = is_fitted(i) ? chance[i] * std::sqrt(r_.workshop.recorded[held_].covariance(i, i)) : 0;
+      held[i] = is_fitted(i) ? chance[i] * std::sqrt(r_.evidence.recorded[held_].covariance(i, i)) : 0;
     Index at = 0;
     for (const std::size_t c : r_.fit) {
       for (Index i = 0; i < n; ++i) {
         if (const auto p = partner(i, c)) fitted[at + *p] = chance[i] * std::sqrt(r_.naming.covariance(at + *p, at + *p));
       }
-      at += r_.workshop.recorded[c].value.size();
+      at += r_.evidence.recorded[c].value.size();
     }
     // θ and the placebo's size in turn: the problem is nearly linear.
     const naming::Model model(r_.problem.data, surrogate_, weighting, {});
@@ -132,9 +138,7 @@ Prediction RivalModels::placebo(const Prediction& base) const {
   Prediction p = base;
   p.name = "placebo", p.simulated = false;
   p.value += moved;
-  for (Index i = 0; i < n; ++i) {
-    if (r_.workshop.recorded[held_].observables[i].group == "power") p.power = p.value[i];
-  }
+  if (const auto i = r_.evidence.recorded[held_].find(calibrate::ObservableKind::power)) p.power = p.value[*i];
   return p;
 }
 
@@ -158,7 +162,7 @@ Prediction RivalModels::discrepancy(const Prediction& base) const {
       if (!all) break;
       difference[k] = residual[at + *there];
       noise[k] = r_.naming.covariance(at + *there, at + *there);
-      at += r_.workshop.recorded[r_.fit[k]].value.size();
+      at += r_.evidence.recorded[r_.fit[k]].value.size();
     }
     if (!all) continue;
     const double signal = std::max(0.0, (difference.cwiseAbs2() - noise).mean());  // what the residuals have beyond their noise
@@ -170,7 +174,7 @@ Prediction RivalModels::discrepancy(const Prediction& base) const {
       for (Index b = 0; b < speed.size(); ++b) k(a, b) += signal * kernel(speed[a], speed[b]);
     }
     p.value[i] += to.dot(k.ldlt().solve(difference));
-    if (r_.workshop.recorded[held_].observables[i].group == "power") p.power = p.value[i];
+    if (r_.evidence.recorded[held_].observables[i].kind == calibrate::ObservableKind::power) p.power = p.value[i];
   }
   return p;
 }

@@ -27,15 +27,15 @@ std::string meaning(const Question& question, const Diagnosis& diagnosis, Index 
   return fmt::format("'{}' is {:.4g} and not {:.4g} ± {:.2g}.", c.name, value, c.prior_mean, c.prior_sigma);
 }
 
-double seconds(const Workshop& workshop, const std::vector<std::size_t>& conditions) {
+double seconds(const Evidence& evidence, const std::vector<std::size_t>& conditions) {
   double sum = 0;
-  for (const std::size_t c : conditions) sum += workshop.recorded[c].bead_seconds;
+  for (const std::size_t c : conditions) sum += evidence.recorded[c].bead_seconds;
   return sum;
 }
 
 /// Squared distance, in noise units, between the predictions of two fitted candidates in one condition.
-double separation(const Question& question, const Workshop& workshop, const Diagnosis& diagnosis, std::size_t condition, Index a, Index b) {
-  const naming::Problem one = problem_alone(question, workshop, diagnosis.bank, condition, diagnosis.problem.data);
+double separation(const Question& question, const Diagnosis& diagnosis, std::size_t condition, Index a, Index b) {
+  const naming::Problem one = problem_alone(question, diagnosis.evidence, diagnosis.bank, condition, diagnosis.problem.data);
   const naming::Surrogate s(one.data);
   const MatrixXd w = naming::Weighting(one.covariance, s).whitener;
   const auto at = [&](Index alternative) {
@@ -45,7 +45,7 @@ double separation(const Question& question, const Workshop& workshop, const Diag
   return (w * (at(a) - at(b))).squaredNorm();
 }
 
-std::string to_separate(const Question& question, const Workshop& workshop, const Diagnosis& diagnosis) {
+std::string to_separate(const Question& question, const Diagnosis& diagnosis) {
   const Index best = *diagnosis.naming.best;
   const Index other = *std::max_element(diagnosis.naming.kept.begin() + 1, diagnosis.naming.kept.end(), [&](Index a, Index b) {
     return diagnosis.naming.judged[a].against_best_p < diagnosis.naming.judged[b].against_best_p;
@@ -53,10 +53,10 @@ std::string to_separate(const Question& question, const Workshop& workshop, cons
   std::size_t where = diagnosis.bank.conditions.front();
   double most = -1;
   for (const std::size_t c : diagnosis.bank.conditions) {
-    const double distance = separation(question, workshop, diagnosis, c, best, other);
+    const double distance = separation(question, diagnosis, c, best, other);
     if (distance > most) most = distance, where = c;
   }
-  const calibrate::Observation& there = workshop.recorded[where];
+  const calibrate::Observation& there = diagnosis.evidence.recorded[where];
   return fmt::format("Of the conditions that were simulated, '{}' separates {} from {} best: {:.1f} noise units with {}.",
                      question.study.conditions[where].name, name_of(diagnosis, best), name_of(diagnosis, other), std::sqrt(most),
                      there.of_tracks() ? fmt::format("the {:.0f} s recorded there", there.bead_seconds) : "the errors stated there");
@@ -69,7 +69,7 @@ double lambda_if(const Diagnosis& diagnosis, Index alternative, double longer) {
   return naming::Visibility(diagnosis.problem, s, weighting, diagnosis.naming.judged[alternative].fit.coded, alternative).lambda();
 }
 
-std::string to_see(const Workshop& workshop, const Diagnosis& diagnosis, double noise_units) {
+std::string to_see(const Diagnosis& diagnosis, double noise_units) {
   std::optional<Index> which;
   for (Index j = 0; j < std::ssize(diagnosis.naming.judged); ++j) {
     if (diagnosis.problem.alternatives[j].candidate &&
@@ -82,7 +82,7 @@ std::string to_see(const Workshop& workshop, const Diagnosis& diagnosis, double 
   const std::string now = fmt::format("The most visible candidate, {}, stands {:.1f} noise units out at its strongest",
                                       name_of(diagnosis, *which), std::sqrt(diagnosis.naming.judged[*which].lambda));
   if (longer >= kLongest) return now + "; a longer recording alone would not show it: the bank has to grow (bank.base, bank.each).";
-  const double recorded = seconds(workshop, diagnosis.fit);
+  const double recorded = seconds(diagnosis.evidence, diagnosis.fit);
   if (!(recorded > 0))
     return now + fmt::format("; errors smaller by {:.2g} times would bring it to {:.0f}.", std::sqrt(longer), noise_units);
   return now + fmt::format("; about {:.2g} times the {:.0f} s recorded would bring it to {:.0f}.", longer, recorded, noise_units);
@@ -146,7 +146,7 @@ void tell_held_out(const Question& question, double level, Diagnosis& diagnosis)
         fmt::format("Give {} the role fit and hold another condition out: only what is fitted can be named.", fmt::join(differ, " and "));
 }
 
-void nothing_named(const Question& question, const Workshop& workshop, double level, double noise_units, Diagnosis& diagnosis) {
+void nothing_named(const Question& question, double level, double noise_units, Diagnosis& diagnosis) {
   // A nuisance that would be seen says nothing of physics.
   bool blind = true;
   const bool physics = std::any_of(diagnosis.problem.alternatives.begin(), diagnosis.problem.alternatives.end(),
@@ -168,7 +168,7 @@ void nothing_named(const Question& question, const Workshop& workshop, double le
         "The recordings look like the retuned base (p = {:.2g}), but no candidate could be seen in them even at its strongest: these data "
         "cannot tell.",
         diagnosis.naming.base_p);
-    diagnosis.next_experiment = to_see(workshop, diagnosis, noise_units);
+    diagnosis.next_experiment = to_see(diagnosis, noise_units);
   } else {
     const double least = std::min_element(diagnosis.naming.judged.begin(), diagnosis.naming.judged.end(),
                                           [](const naming::Judged& a, const naming::Judged& b) { return a.p_family < b.p_family; })
@@ -183,9 +183,9 @@ void nothing_named(const Question& question, const Workshop& workshop, double le
 
 }  // namespace
 
-void conclude(const Question& question, const Workshop& workshop, double level, double noise_units, Diagnosis& diagnosis) {
+void conclude(const Question& question, double level, double noise_units, Diagnosis& diagnosis) {
   reservations(diagnosis);
-  if (!diagnosis.naming.best) return nothing_named(question, workshop, level, noise_units, diagnosis);
+  if (!diagnosis.naming.best) return nothing_named(question, level, noise_units, diagnosis);
   const naming::Judged& best = diagnosis.naming.judged[*diagnosis.naming.best];
   const std::string name = name_of(diagnosis, *diagnosis.naming.best);
   for (const Index k : diagnosis.naming.kept) diagnosis.named.push_back(name_of(diagnosis, k));
@@ -216,7 +216,7 @@ void conclude(const Question& question, const Workshop& workshop, double level, 
     diagnosis.verdict = Verdict::ambiguous;
     diagnosis.sentence = fmt::format("Something is missing (family-wise p = {:.2g}); these data cannot choose between {}.", best.p_family,
                                      fmt::join(diagnosis.named, ", "));
-    diagnosis.next_experiment = to_separate(question, workshop, diagnosis);
+    diagnosis.next_experiment = to_separate(question, diagnosis);
     return;
   }
   if (!held_out_confirms(diagnosis)) {

@@ -1,0 +1,80 @@
+#include "studies/calibrate/processing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "studies/analysis/engine.hpp"
+#include "studies/analysis/follow.hpp"
+#include "studies/trajectory/trajectory.hpp"
+
+namespace millscope::calibrate {
+namespace {
+
+constexpr double kEvenStep = 0.002;  // s between the even times: recordings have a location every 5 ms
+
+std::string as_yaml(std::span<const UsedAnalyzer> analyzers) {
+  std::string text = "analyzers:\n";
+  for (const UsedAnalyzer& a : analyzers) text += fmt::format("  {}: {}\n", a.plugin, a.parameters);
+  return text;
+}
+
+}  // namespace
+
+Smoothing smoothing_of(const studies::Recording& recording) {
+  const studies::NoiseEstimate noise = studies::estimate_noise_model(recording.runs, recording.gap_limit);
+  return {noise.standard_deviation, noise.correlation, recording.gap_limit};
+}
+
+studies::TrajectoryOptions trajectory_options(Side side, const Smoothing& smoothing, const Observing& observing) {
+  studies::TrajectoryOptions options;
+  options.step = kEvenStep;
+  options.gap_limit = smoothing.gap_limit;
+  options.noise = smoothing.noise;
+  options.noise_correlation = smoothing.noise_correlation;
+  if (side == Side::simulated && observing.camera == "exact") options.noise = {}, options.noise_correlation.reset();
+  if (side == Side::recorded && observing.z_low) options.low = *observing.z_low, options.high = *observing.z_high;
+  return options;
+}
+
+studies::ResultSet process(const Tracks& tracks, const Smoothing& smoothing, const Processing& how) {
+  studies::TrajectoryOptions options = trajectory_options(tracks.side, smoothing, how.study.observing);
+  options.axis = tracks.mill.axis;
+  const studies::Followed followed =
+      studies::follow(studies::tracer_runs(tracks.recording, options), {.of = tracks.recording.file.string(),
+                                                                        .one = "track",
+                                                                        .many = "tracks",
+                                                                        .mill = tracks.mill.context,
+                                                                        .motion = studies::even_motion(tracks.mill.context.omega),
+                                                                        .threads = how.threads});
+  studies::FrameSource& source = *followed.source;
+  studies::EngineOptions engine;
+  engine.draws = static_cast<std::size_t>(how.study.observing.draws);
+  engine.threads = how.threads;
+  studies::ResultSet results = studies::run_analyzers(source, studies::create_analyzers(how.analyzers, source.context()).instances, engine);
+  results.meta.context = source.context();
+  results.meta.description = source.description();
+  std::vector<std::string>& notes = results.meta.notes;
+  notes.insert(notes.begin(), tracks.mill.notes.begin(), tracks.mill.notes.end());
+  notes.insert(notes.end(), followed.notes.begin(), followed.notes.end());
+  return results;
+}
+
+std::vector<studies::AskedAnalyzer> analyzers_of(const std::string& text, const host::Registry& registry) {
+  return studies::read_analyzers(config::parse_document(text, "calibrate"), true, {}, registry);
+}
+
+std::vector<studies::AskedAnalyzer> analyzers_of(const Study& study, const host::Registry& registry) {
+  std::vector<studies::AskedAnalyzer> all = analyzers_of(as_yaml(kUsedAnalyzers), registry);
+  const auto section = study.root.valid() ? study.root.find("analyzers") : std::nullopt;
+  if (!section) return all;
+  for (studies::AskedAnalyzer& more : studies::read_analyzers(study.root, true, {}, registry)) {
+    if (std::any_of(all.begin(), all.end(), [&](const studies::AskedAnalyzer& known) { return known.name == more.name; }))
+      section->fail(fmt::format("'{}' is the name of an analyzer that calibrate uses itself; give yours another, with 'kind: {}'",
+                                more.name, more.name));
+    all.push_back(std::move(more));
+  }
+  return all;
+}
+
+}  // namespace millscope::calibrate

@@ -1,0 +1,70 @@
+#include "studies/calibrate/recorded_identity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "kernel/base/hash.hpp"
+#include "kernel/base/program.hpp"
+#include "kernel/base/text.hpp"
+#include "studies/analysis/open_source.hpp"
+
+namespace millscope::calibrate {
+
+std::string observing_program() {
+  constexpr std::array<std::string_view, 6> kRooms{"studies/recording", "studies/trajectory", "studies/inspect",
+                                                   "studies/camera",    "studies/analysis",   "studies/calibrate"};
+  const std::span<const std::string_view> kernel = base::kernel_folders();
+  std::vector<std::string_view> rooms(kernel.begin(), kernel.end());
+  rooms.insert(rooms.end(), kRooms.begin(), kRooms.end());
+  std::string text;
+  for (const auto& [part, value] : base::program_parts(rooms)) text += part + "\n" + value + "\n";
+  return text;
+}
+
+std::string identity_of(const studies::Recording& recording, const Processing& how, std::size_t condition) {
+  const Study& study = how.study;
+  std::vector<std::string> parts{observing_program(), std::to_string(study.observing.draws), std::to_string(study.observing.beads),
+                                 study.observing.camera};
+  for (const UsedAnalyzer& a : kUsedAnalyzers) parts.push_back(fmt::format("{}: {}", a.plugin, a.parameters));
+  if (study.observing.camera_is_file()) parts.push_back(base::text_of(study.observing.camera));
+  if (study.observing.z_low) parts.push_back(fmt::format("{:.17g} {:.17g}", *study.observing.z_low, *study.observing.z_high));
+  parts.push_back(studies::file_hash(study.base) + studies::file_hash(recording.file));
+  for (const studies::Run& run : recording.runs) parts.push_back(run.name + studies::file_hash(run.source));
+  for (const ObservableKind kind : study.objective.without) parts.push_back(fmt::format("without {}", name_of(kind)));
+  for (const Term& term : study.objective.terms) parts.push_back(term.name());
+  if (const auto own = study.root.valid() ? study.root.find("analyzers") : std::nullopt) parts.push_back(dump(*own));
+  const auto& settings = study.conditions[condition].settings;
+  parts.insert(parts.end(), settings.begin(), settings.end());
+  // A plugin that is not asked changes nothing; a study with analyzers of its own may ask any.
+  const bool own_analyzers = !study.objective.terms.empty() || (study.root.valid() && study.root.has("analyzers"));
+  for (const host::PluginRecord& r : how.registry.records()) {
+    const bool asked = own_analyzers ||
+                       std::any_of(kUsedAnalyzers.begin(), kUsedAnalyzers.end(), [&](const UsedAnalyzer& a) { return a.plugin == r.name; });
+    if (r.kind == "observation" || (r.kind == "analyzer" && asked)) parts.push_back(r.name + r.code_hash);
+  }
+  return hash_of(parts);
+}
+
+std::string hash_of(const std::vector<std::string>& texts) {
+  base::Hash hash;
+  for (const std::string& text : texts) hash.add(text).add("\xff");
+  return hash.text();
+}
+
+std::string dump(const config::Node& node) {
+  if (node.is_null()) return "~";
+  if (node.is_scalar()) return node.text();
+  std::string out = "{";
+  if (node.is_sequence()) {
+    for (const config::Node& item : node.items()) out += dump(item) + ",";
+    return out + "}";
+  }
+  for (const std::string& key : node.keys()) out += key + ":" + dump(node.at(key)) + ",";
+  return out + "}";
+}
+
+}  // namespace millscope::calibrate

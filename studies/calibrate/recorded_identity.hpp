@@ -1,0 +1,24 @@
+// Names of what is kept in the cache: hashes of all that it depends on. For the files of this room.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/calibrate/processing.hpp"
+
+namespace millscope::calibrate {
+
+/// What of this program decides what is seen of a recording and of a simulation: the code that runs and tracks pass, compiler, flags,
+/// libraries.
+std::string observing_program();
+
+/// Of everything that the results of a recording depend on.
+std::string identity_of(const studies::Recording& recording, const Processing& how, std::size_t condition);
+
+/// FNV-1a over texts.
+std::string hash_of(const std::vector<std::string>& texts);
+
+/// A subtree of the study as text, for hashes.
+std::string dump(const config::Node& node);
+
+}  // namespace millscope::calibrate

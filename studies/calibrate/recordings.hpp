@@ -1,0 +1,47 @@
+// The recordings of a study, read and cleaned once, and handed to all who look at them: the checks, the observer, and diagnose.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "studies/calibrate/study.hpp"
+#include "studies/calibrate/velocity_profile.hpp"
+#include "studies/inspect/mill_motion.hpp"
+#include "studies/recording/recording.hpp"
+
+namespace millscope::calibrate {
+
+/// What was recorded in a condition: tracks, or a velocity profile. May be looked at by several threads.
+class Recorded {
+ public:
+  explicit Recorded(studies::Recording tracks) : tracks_(std::move(tracks)) {}
+  explicit Recorded(VelocityProfile profile) : profile_(std::move(profile)) {}
+
+  bool of_tracks() const { return tracks_.has_value(); }
+  const studies::Recording& tracks() const { return tracks_.value(); }
+  const VelocityProfile& profile() const { return profile_.value(); }
+  /// What is stated of the mill.
+  const studies::Condition& stated() const { return tracks_ ? tracks_->condition : profile_->condition; }
+  /// Where the axis stands and how the mill turns, by the tracks; estimated when it is asked for first.
+  const studies::MillMotion& motion() const;
+
+ private:
+  std::optional<studies::Recording> tracks_;
+  std::optional<VelocityProfile> profile_;
+  mutable std::once_flag motion_asked_;
+  mutable studies::MillMotion motion_;
+};
+
+/// One for each condition of a study.
+using Recordings = std::vector<std::shared_ptr<const Recorded>>;
+
+/// Throws base::UserError.
+std::shared_ptr<const Recorded> read_recorded(const std::filesystem::path& recording);
+Recordings read_recordings(const Study& study);
+
+/// Holds the recordings against the case that is to be compared with them: another mill, beads, filling or speed. Throws base::UserError.
+void check_recordings(const Study& study, const Recordings& recordings, const host::Registry& registry);
+
+}  // namespace millscope::calibrate
