@@ -45,8 +45,8 @@ format: ## clang-format every source
 	clang-format -i $(SOURCES)
 
 tidy: packages-test ## clang-tidy over every source
-	cmake --preset release -DMILLSCOPE_TESTS=ON $(CMAKE_OPTIONS)
-	tools/tidy.sh $(BUILD)
+	cmake --preset dev -DMILLSCOPE_TESTS=ON $(CMAKE_OPTIONS)
+	tools/tidy.sh build/dev
 
 asan: packages-test ## build and test with the address and undefined-behaviour sanitizers
 	cmake --preset asan $(CMAKE_OPTIONS)
