@@ -57,6 +57,8 @@ TEST_CASE("diagnosis.json has every figure that is promised") {
   const Scratch folder;
   const nlohmann::json j = written(folder, with_rolling());
   CHECK(j["schema_version"] == 2);
+  CHECK(j["hypotheses"][0]["lambda_at"][0].contains("strength"));  // version 1 called it a share
+  CHECK_FALSE(j["hypotheses"][0]["lambda_at"][0].contains("share"));
   CHECK(j["verdict"] == "named");
   CHECK(j["named"] == nlohmann::json({"rolling_resistance"}));
   CHECK(j["next_experiment"] == "");
