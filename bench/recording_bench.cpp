@@ -57,7 +57,7 @@ double grid(const Trajectory& trajectory) {
       const int i = static_cast<int>((piece.position[0][k] + kHalf) / (2 * kHalf) * kCells);
       const int j = static_cast<int>((piece.position[1][k] + kHalf) / (2 * kHalf) * kCells);
       if (i < 0 || j < 0 || i >= kCells || j >= kCells) continue;
-      auto& cell = cells[static_cast<std::size_t>(j * kCells + i)];
+      auto& cell = cells[j * kCells + i];
       cell[0] += piece.weight[k];
       for (std::size_t axis = 0; axis < 3; ++axis) cell[axis + 1] += piece.weight[k] * piece.velocity[axis][k];
     }

@@ -60,7 +60,7 @@ std::vector<Region> regions_of(std::span<const double> y_edges, std::span<const 
       const double r = std::hypot(px, py) / mill.radius;
       const std::size_t ring = r < kRings[1] ? 0 : r < kRings[2] ? 1 : 2;
       const int sector = std::min(kSectors - 1, static_cast<int>((clock_angle(px, py, mill.sense) + 180) * kSectors / 360));
-      all[ring * kSectors + static_cast<std::size_t>(sector)].cells.push_back(iy * nx + ix);
+      all[ring * kSectors + sector].cells.push_back(iy * nx + ix);
     }
   }
   std::erase_if(all, [](const Region& region) { return region.cells.empty(); });
@@ -69,13 +69,12 @@ std::vector<Region> regions_of(std::span<const double> y_edges, std::span<const 
 
 std::vector<Line> borders_of(const std::vector<Region>& regions, const std::vector<bool>& chosen, const MillPlace& mill) {
   std::array<std::array<bool, kSectors>, kRings.size()> is_chosen{};  // the last ring lies outside the mill
-  for (std::size_t i = 0; i < regions.size(); ++i) is_chosen[regions[i].ring][static_cast<std::size_t>(regions[i].sector)] = chosen[i];
+  for (std::size_t i = 0; i < regions.size(); ++i) is_chosen[regions[i].ring][regions[i].sector] = chosen[i];
   std::vector<Line> lines;
   for (std::size_t ring = 0; ring + 1 < kRings.size(); ++ring) {
     for (int sector = 0; sector < kSectors; ++sector) {
-      const bool here = is_chosen[ring][static_cast<std::size_t>(sector)];
-      const bool outside = is_chosen[ring + 1][static_cast<std::size_t>(sector)],
-                 before = is_chosen[ring][static_cast<std::size_t>((sector + kSectors - 1) % kSectors)];
+      const bool here = is_chosen[ring][sector];
+      const bool outside = is_chosen[ring + 1][sector], before = is_chosen[ring][(sector + kSectors - 1) % kSectors];
       if (here != outside) lines.push_back(arc(mill, ring + 1, sector));
       const double from = sector * 360.0 / kSectors - 180;
       if (here != before) lines.push_back({at(mill, ring, from), at(mill, ring + 1, from)});

@@ -42,7 +42,7 @@ Number value_of_rank(std::vector<Number>& values, std::size_t rank) {
 
 /// `values`: not empty, left in another order.
 inline double quantile(std::vector<double>& values, double fraction) {
-  return value_of_rank(values, static_cast<std::size_t>(std::llround(fraction * static_cast<double>(values.size() - 1))));
+  return value_of_rank(values, std::llround(fraction * static_cast<double>(values.size() - 1)));
 }
 
 /// `values`: not empty, left in another order.

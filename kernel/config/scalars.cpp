@@ -23,7 +23,7 @@ std::size_t number_length(std::string_view text) {
   if (!begins) return 0;
   double ignored = 0;
   const auto [end, error] = std::from_chars(text.data() + sign, text.data() + text.size(), ignored);
-  return error == std::errc::invalid_argument ? 0 : static_cast<std::size_t>(end - text.data());
+  return error == std::errc::invalid_argument ? 0 : end - text.data();
 }
 
 std::string example(std::string_view si_unit) {

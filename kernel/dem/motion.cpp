@@ -40,7 +40,7 @@ Pose pose_at(const Motion& m, double time) {
   const double skew[3][3] = {{0, -a[2], a[1]}, {a[2], 0, -a[0]}, {-a[1], a[0], 0}};
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      p.rotation[i][j] = (i == j ? c : 0.0) + s * skew[i][j] + (1 - c) * a[static_cast<std::size_t>(i)] * a[static_cast<std::size_t>(j)];
+      p.rotation[i][j] = (i == j ? c : 0.0) + s * skew[i][j] + (1 - c) * a[i] * a[j];
     }
   }
   const double w = kTwoPi * m.oscillation_frequency;

@@ -139,7 +139,7 @@ class StateReader {
     for (std::size_t k = 0; k < owners.size(); ++k) {
       const std::size_t left = (all.size() - at) / std::tuple_size_v<Record<Item>>;
       demand(lengths[k] >= 0 && static_cast<std::size_t>(lengths[k]) <= left);
-      take(all, at, static_cast<std::size_t>(lengths[k]), std::invoke(access, *owners[k]));
+      take(all, at, lengths[k], std::invoke(access, *owners[k]));
     }
     demand(at == all.size());
   }

@@ -14,7 +14,7 @@ void pause() { __builtin_ia32_pause(); }
 
 }  // namespace
 
-Workers::Workers(int count) : count_(count), claimed_(static_cast<std::size_t>(count)) {
+Workers::Workers(int count) : count_(count), claimed_(count) {
   for (int w = 1; w < count_; ++w) threads_.emplace_back([this, w] { loop(w); });
 }
 
@@ -37,7 +37,7 @@ void Workers::share(int worker) {
 
 bool Workers::claim(int worker, unsigned generation) {
   unsigned before = generation - 1;
-  return claimed_[static_cast<std::size_t>(worker)].compare_exchange_strong(before, generation, std::memory_order_acq_rel);
+  return claimed_[worker].compare_exchange_strong(before, generation, std::memory_order_acq_rel);
 }
 
 void Workers::run(int slabs, const std::function<void(int, int)>& task) {

@@ -81,7 +81,7 @@ bool ArchiveReader::has(const std::string& name) const {
 std::size_t ArchiveReader::size(const std::string& name) const {
   const Handle set = impl_->open(name);
   const Handle space(H5Dget_space(set), H5Sclose);
-  return static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
+  return H5Sget_simple_extent_npoints(space);
 }
 
 void ArchiveReader::read_into(const std::string& name, std::span<double> values) const { impl_->read(name, values); }

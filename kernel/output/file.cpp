@@ -44,7 +44,7 @@ void File::write(std::string_view bytes) {
     const ssize_t done = ::write(descriptor_, bytes.data(), bytes.size());
     if (done < 0 && errno == EINTR) continue;
     if (done < 0) throw_write_error(path_, errno);
-    bytes.remove_prefix(static_cast<std::size_t>(done));
+    bytes.remove_prefix(done);
   }
 }
 

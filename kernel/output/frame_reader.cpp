@@ -119,8 +119,7 @@ void FrameReader::read(BeadField field, std::size_t first, std::size_t count, st
   if (first + count > frame_count() || values.size() != 3 * count * impl_->beads.size()) {
     throw std::logic_error("FrameReader: frames outside the file, or a buffer of another size");
   }
-  if (count > 0)
-    hdf5::read_rows_raw(impl_->fields[static_cast<std::size_t>(field)], first, count, H5T_IEEE_F32LE, values.data(), impl_->path);
+  if (count > 0) hdf5::read_rows_raw(impl_->fields[field], first, count, H5T_IEEE_F32LE, values.data(), impl_->path);
 }
 
 }  // namespace millscope::output

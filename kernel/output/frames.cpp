@@ -202,7 +202,7 @@ void FrameWriter::append(const FrameView& frame) {
   f.last_time = frame.time;
 }
 
-std::size_t FrameWriter::frame_count() const { return static_cast<std::size_t>(impl_->time.rows()); }
+std::size_t FrameWriter::frame_count() const { return impl_->time.rows(); }
 
 void FrameWriter::flush() { impl_->file.sync(); }
 

@@ -38,7 +38,7 @@ Handle creation_list() {
 
 Column::Column(Handle set, fs::path path) : set_(std::move(set)), path_(std::move(path)) {
   const Handle space(H5Dget_space(set_), H5Sclose);
-  extent_.resize(static_cast<std::size_t>(std::max(1, H5Sget_simple_extent_ndims(space))));
+  extent_.resize(std::max(1, H5Sget_simple_extent_ndims(space)));
   check(H5Sget_simple_extent_dims(space, extent_.data(), nullptr), path_, "reading a dataset's shape");
 }
 

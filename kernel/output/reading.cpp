@@ -43,7 +43,7 @@ Dataset open_dataset(hid_t parent, const std::string& name, int rank, const std:
   const Handle space(H5Dget_space(set.id), H5Sclose);
   const int found = H5Sget_simple_extent_ndims(space);
   if (found != rank) damaged(path, fmt::format("its dataset '{}' has {} dimensions instead of {}", name, found, rank));
-  set.extent.resize(static_cast<std::size_t>(rank));
+  set.extent.resize(rank);
   if (rank > 0) check(H5Sget_simple_extent_dims(space, set.extent.data(), nullptr), path, "reading a dataset's shape");
   return set;
 }
@@ -68,7 +68,7 @@ std::vector<std::string> get_texts(hid_t object, const char* name) {
   const Handle space(H5Aget_space(attribute), H5Sclose);
   const hssize_t count = H5Sget_simple_extent_npoints(space);
   if (count <= 0) return texts;
-  std::vector<char*> raw(static_cast<std::size_t>(count), nullptr);
+  std::vector<char*> raw(count, nullptr);
   if (H5Aread(attribute, text_type(), raw.data()) < 0) return texts;
   for (char* text : raw) {
     texts.emplace_back(text == nullptr ? "" : text);

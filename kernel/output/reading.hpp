@@ -28,7 +28,7 @@ template <class T>
 std::vector<T> read_rows(const Dataset& set, hsize_t count, const std::filesystem::path& path) {
   hsize_t size = count;
   for (std::size_t axis = 1; axis < set.extent.size(); ++axis) size *= set.extent[axis];
-  std::vector<T> values(static_cast<std::size_t>(size));
+  std::vector<T> values(size);
   if (size > 0) read_rows_raw(set, 0, count, type_of<T>(), values.data(), path);
   return values;
 }

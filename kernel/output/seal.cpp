@@ -51,7 +51,7 @@ bool read_all(int descriptor, char* bytes, std::size_t count) {
     if (done < 0 && errno == EINTR) continue;
     if (done <= 0) return false;
     bytes += done;
-    count -= static_cast<std::size_t>(done);
+    count -= done;
   }
   return true;
 }
@@ -60,7 +60,7 @@ bool checksum_of(int descriptor, std::uint64_t length, std::uint64_t& checksum) 
   std::vector<char> block(kBlock);
   base::Hash sum;
   for (std::uint64_t at = 0; at < length; at += kBlock) {
-    const std::size_t count = static_cast<std::size_t>(std::min<std::uint64_t>(kBlock, length - at));
+    const std::size_t count = std::min<std::uint64_t>(kBlock, length - at);
     if (!read_all(descriptor, block.data(), count)) return false;
     add_words(sum, block.data(), count);
   }

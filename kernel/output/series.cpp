@@ -122,7 +122,7 @@ void SeriesWriter::close() {
 const std::vector<double>& Series::column(const std::string& name) const {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) throw UserError(fmt::format("series.csv has no column '{}', but {}", name, fmt::join(names, ", ")));
-  return columns[static_cast<std::size_t>(found - names.begin())];
+  return columns[found - names.begin()];
 }
 
 Series read_series(const fs::path& path) {

@@ -65,7 +65,7 @@ const fs::path& TrackReader::path() const { return impl_->path; }
 const std::vector<TrackInfo>& TrackReader::tracks() const { return impl_->tracks; }
 
 std::size_t TrackReader::sample_count(std::size_t track) const {
-  return static_cast<std::size_t>(hdf5::open_dataset(impl_->file, impl_->tracks.at(track).name + "/t", 1, impl_->path).extent[0]);
+  return hdf5::open_dataset(impl_->file, impl_->tracks.at(track).name + "/t", 1, impl_->path).extent[0];
 }
 
 TrackSamples TrackReader::read(std::size_t track) const {

@@ -100,7 +100,7 @@ void set_domain(const Assembly& a, dem::Settings& s) {
 double mill_speed(const Assembly& a) {
   if (a.c.mill) return a.c.mill->speed;
   const int body = a.wall_body_of_mill();
-  return body < 0 ? 0.0 : a.c.geometry[static_cast<std::size_t>(body)].motion.rotation->speed;
+  return body < 0 ? 0.0 : a.c.geometry[body].motion.rotation->speed;
 }
 
 double shortest_rayleigh_time(const config::Case& c) {

@@ -34,7 +34,7 @@ double sphere_mass(double radius, double density) { return 4.0 / 3.0 * std::numb
 
 PairContext context_of(const Assembly& a, int first, int second, bool wall) {
   const auto material = [&a](int index) {
-    const config::MaterialCase& m = a.c.material(a.materials[static_cast<std::size_t>(index)]);
+    const config::MaterialCase& m = a.c.material(a.materials[index]);
     return Material{m.name.c_str(), m.density, a.c.softened_young(m), m.poisson};
   };
   PairContext p{};
@@ -70,7 +70,7 @@ dem::PairPhysics make_pair(Assembly& a, const host::Registry& registry, int firs
   p.first = first;
   p.second = second;
   p.wall = wall;
-  const std::string &n1 = a.materials[static_cast<std::size_t>(first)], &n2 = a.materials[static_cast<std::size_t>(second)];
+  const std::string &n1 = a.materials[first], &n2 = a.materials[second];
   p.name = n1 + "~" + n2 + (wall ? " (wall)" : "");
   const config::Node section = a.c.pairs.lookup(n1, n2);
   const PairContext context = context_of(a, first, second, wall);
@@ -107,10 +107,9 @@ struct MaterialUse {
 
 MaterialUse use_of_materials(const Assembly& a) {
   MaterialUse use{std::vector<bool>(a.materials.size()), std::vector<bool>(a.materials.size())};
-  for (const config::BeadCase& b : a.c.beads) use.of_beads[static_cast<std::size_t>(a.index_of_material(b.material))] = true;
+  for (const config::BeadCase& b : a.c.beads) use.of_beads[a.index_of_material(b.material)] = true;
   for (std::size_t g = 0; g < a.geometries.size(); ++g) {
-    for (const std::string& slot : a.geometries[g].slots)
-      use.of_walls[static_cast<std::size_t>(a.index_of_material(a.c.geometry[g].material_of(slot)))] = true;
+    for (const std::string& slot : a.geometries[g].slots) use.of_walls[a.index_of_material(a.c.geometry[g].material_of(slot))] = true;
   }
   return use;
 }

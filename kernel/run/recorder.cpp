@@ -222,7 +222,7 @@ void Recorder::write_frame(const dem::System& system) {
   view.time = system.time();
   const int body = a_.wall_body_of_mill();
   if (body >= 0) {
-    const dem::Motion& motion = system.bodies[static_cast<std::size_t>(body)].motion;
+    const dem::Motion& motion = system.bodies[body].motion;
     view.wall_angle = dem::pose_at(motion, view.time).angle;
     view.angular_velocity = dem::angular_speed(motion, view.time);
   }

@@ -27,7 +27,7 @@ class Cells {
       periodic_[axis] = a.c.domain.periodic[axis];
       count_[axis] = std::max<std::int64_t>(1, static_cast<std::int64_t>(extent_[axis] / size));
     }
-    cells_.resize(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]));
+    cells_.resize(count_[0] * count_[1] * count_[2]);
   }
 
   bool is_free(const Point& p, double radius) const {
@@ -64,7 +64,7 @@ class Cells {
   }
   std::size_t index(std::array<std::int64_t, 3> at) const {
     for (std::size_t axis = 0; axis < 3; ++axis) at[axis] = (at[axis] + count_[axis]) % count_[axis];
-    return static_cast<std::size_t>((at[0] * count_[1] + at[1]) * count_[2] + at[2]);
+    return (at[0] * count_[1] + at[1]) * count_[2] + at[2];
   }
   double distance2(const Point& p, const Point& q) const {
     double sum = 0;

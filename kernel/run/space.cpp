@@ -21,10 +21,9 @@ void mark_touching(const GeometryUse& g, const std::vector<Point>& sites, std::v
     z[i] = sites[i][2];
   }
   std::vector<std::vector<std::uint32_t>> near(n);
-  const CandidateSink sink{
-      &near, [](void* host, std::int64_t bead, std::uint32_t feature) {
-        (*static_cast<std::vector<std::vector<std::uint32_t>>*>(host))[static_cast<std::size_t>(bead)].push_back(feature);
-      }};
+  const CandidateSink sink{&near, [](void* host, std::int64_t bead, std::uint32_t feature) {
+                             (*static_cast<std::vector<std::vector<std::uint32_t>>*>(host))[bead].push_back(feature);
+                           }};
   const GeometryBeads all{static_cast<std::int64_t>(n), {x.data(), y.data(), z.data()}, r.data()};
   Failure failure{};
   g.object.check(g.object.table().candidates(g.object.self(), &all, 0.0, &sink, &failure), failure);
@@ -86,12 +85,12 @@ void mark_hidden(const GeometryUse& g, const std::vector<Point>& sites, std::vec
     // A face across the axis (an end wall) may be met from anywhere; it is found by the touching test and the box.
     if (high - low > 2.5) continue;
     for (std::ptrdiff_t s = sector(low); s <= sector(high); ++s)
-      bins[static_cast<std::size_t>((s + 2 * static_cast<std::ptrdiff_t>(kSectors)) % static_cast<std::ptrdiff_t>(kSectors))].push_back(t);
+      bins[(s + 2 * static_cast<std::ptrdiff_t>(kSectors)) % static_cast<std::ptrdiff_t>(kSectors)].push_back(t);
   }
   for (std::size_t i = 0; i < sites.size(); ++i) {
     if (bad[i]) continue;
-    const std::size_t s = static_cast<std::size_t>((sector(angle(sites[i].data())) + static_cast<std::ptrdiff_t>(kSectors)) %
-                                                   static_cast<std::ptrdiff_t>(kSectors));
+    const std::ptrdiff_t s =
+        (sector(angle(sites[i].data())) + static_cast<std::ptrdiff_t>(kSectors)) % static_cast<std::ptrdiff_t>(kSectors);
     const Point target{axis[0], axis[1], sites[i][2]};
     for (const std::uint64_t t : bins[s]) {
       const auto vertex = [&](std::uint64_t k) {

@@ -16,7 +16,7 @@ constexpr double kSteadyTolerance = 0.01;
 double power_of_centre(const Assembly& a, const Sample& s) {
   const int body = a.wall_body_of_mill();
   if (body < 0) return 0.0;
-  const dem::Motion& m = a.system->bodies[static_cast<std::size_t>(body)].motion;
+  const dem::Motion& m = a.system->bodies[body].motion;
   const std::array<double, 3>& g = a.gravity;
   const std::array<double, 3> r{s.centre[0] - m.point[0], s.centre[1] - m.point[1], s.centre[2] - m.point[2]};
   const double moment =
@@ -146,14 +146,14 @@ Json collision_summary(const Assembly& a, const dem::Ledger& now, const dem::Led
     Json edges = Json::array(), counts = Json::array();
     int low = dem::ImpactBins::kCount, high = -1;
     for (int k = 0; k < dem::ImpactBins::kCount; ++k) {
-      if (n.spectrum[static_cast<std::size_t>(k)] - b.spectrum[static_cast<std::size_t>(k)] > 0) {
+      if (n.spectrum[k] - b.spectrum[k] > 0) {
         low = std::min(low, k);
         high = k;
       }
     }
     for (int k = low; k <= high; ++k) {
       edges.push_back(dem::ImpactBins::lower_edge(k));
-      counts.push_back(n.spectrum[static_cast<std::size_t>(k)] - b.spectrum[static_cast<std::size_t>(k)]);
+      counts.push_back(n.spectrum[k] - b.spectrum[k]);
     }
     j["impact_spectrum"] = {{"lower_edge_J", edges}, {"count", counts}};
     list.push_back(j);

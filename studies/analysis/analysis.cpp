@@ -56,7 +56,7 @@ EngineOptions engine_options(const AnalysisRequest& request, const config::Node&
   if (const auto section = settings.find("resampling")) {
     section->expect({"draws", "seed", "block"});
     if (const auto node = section->find("draws")) {
-      options.draws = static_cast<std::size_t>(config::read_integer(*node, config::between(20, 10000, "fewer give no stable error")));
+      options.draws = config::read_integer(*node, config::between(20, 10000, "fewer give no stable error"));
     }
     if (const auto node = section->find("seed"))
       options.seed = static_cast<std::uint64_t>(config::read_integer(*node, config::not_negative()));

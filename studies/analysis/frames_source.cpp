@@ -82,7 +82,7 @@ void FramesSource::select(std::optional<double> from, std::optional<double> to) 
   const std::vector<double>& time = reader_.scalars().time;
   // A frame on the very edge belongs to it, whatever the rounding of its time.
   const double slack = time.size() > 1 ? 1e-6 * (time[1] - time[0]) : 0;
-  const auto place = [&](double t) { return static_cast<std::size_t>(std::lower_bound(time.begin(), time.end(), t) - time.begin()); };
+  const auto place = [&](double t) { return std::lower_bound(time.begin(), time.end(), t) - time.begin(); };
   begin_ = from ? place(*from - slack) : 0;
   end_ = to ? place(*to + slack) : time.size();
   if (end_ >= begin_ + 2) return;

@@ -136,7 +136,7 @@ std::string file_hash(const fs::path& file) {
   for (std::uint64_t part = 0; part < kParts; ++part) {
     if (!whole) in.seekg(static_cast<std::streamoff>(part * ((size - kPart) / (kParts - 1))));
     in.read(buffer.data(), static_cast<std::streamsize>(kPart));
-    hash.add(buffer.data(), static_cast<std::size_t>(in.gcount()));
+    hash.add(buffer.data(), in.gcount());
     if (!in) break;
   }
   return hash.text();

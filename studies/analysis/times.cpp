@@ -102,11 +102,11 @@ double usual_step(const std::vector<BasicSeries>& stretches) {
 std::vector<double> even_row(const BasicSeries& s, std::size_t basic, double step) {
   std::vector<double> row;
   if (s.size() == 0) return row;
-  const auto last = static_cast<std::size_t>(std::lround((s.time.back() - s.time.front()) / step));
+  const auto last = std::lround((s.time.back() - s.time.front()) / step);
   row.assign(last + 1, 0.0);
   std::vector<double> count(last + 1, 0.0);
   for (std::size_t i = 0; i < s.size(); ++i) {
-    const auto at = std::min(last, static_cast<std::size_t>(std::lround((s.time[i] - s.time.front()) / step)));
+    const auto at = std::min(last, std::lround((s.time[i] - s.time.front()) / step));
     row[at] += s.value[basic][i];
     count[at] += 1;
   }

@@ -27,7 +27,7 @@ std::vector<std::size_t> pick(const output::TrackReader& reader, const std::vect
     const auto [end, error] = std::from_chars(tracer.data(), tracer.data() + tracer.size(), id);
     const auto found = std::find_if(tracks.begin(), tracks.end(), [&](const output::TrackInfo& t) { return t.bead == id; });
     if (error == std::errc() && end == tracer.data() + tracer.size() && found != tracks.end()) {
-      picked.insert(static_cast<std::size_t>(found - tracks.begin()));
+      picked.insert(found - tracks.begin());
       continue;
     }
     std::string known;

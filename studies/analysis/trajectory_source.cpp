@@ -170,7 +170,7 @@ void TrajectorySource::lay_out(std::size_t number, std::size_t parts) {
     const bool is_last = chunk.last == size;
     const double until = is_last ? std::numeric_limits<double>::infinity() : arrays->time[chunk.last - 1];
     chunk.location_first = from;
-    from = static_cast<std::size_t>(std::upper_bound(t.location_time.begin(), t.location_time.end(), until) - t.location_time.begin());
+    from = std::upper_bound(t.location_time.begin(), t.location_time.end(), until) - t.location_time.begin();
     chunk.location_last = from;
   }
   arrays_.push_back(std::move(arrays));

@@ -49,7 +49,7 @@ studies::ResultSet process(const Tracks& tracks, const Smoothing& smoothing, con
                                                                         .threads = how.threads});
   studies::FrameSource& source = *followed.source;
   studies::EngineOptions engine;
-  engine.draws = static_cast<std::size_t>(how.study.observing.draws);
+  engine.draws = how.study.observing.draws;
   engine.threads = how.threads;
   studies::ResultSet results = studies::run_analyzers(source, studies::create_analyzers(how.analyzers, source.context()).instances, engine);
   results.meta.context = source.context();

@@ -81,7 +81,7 @@ template <class Value>
 double between(const std::vector<double>& axis, const ResultArray& values, const Value& at, double place) {
   const auto above = std::lower_bound(axis.begin(), axis.end(), place);
   if (above == axis.end() || (above == axis.begin() && place < axis.front())) return std::numeric_limits<double>::quiet_NaN();
-  const auto k = static_cast<std::size_t>(above - axis.begin());
+  const auto k = above - axis.begin();
   const auto known = [&](std::size_t i) {
     const bool vague = i < values.flags.size() && (values.flags[i] & (studies::kOftenUndefined | studies::kNoUncertainty)) != 0;
     return vague ? std::numeric_limits<double>::quiet_NaN() : at(values, i);
@@ -142,7 +142,7 @@ Eigen::MatrixXd drawn(const ResultSet& results, const std::vector<Summary>& summ
   Eigen::MatrixXd all(draws, value.size());
   for (Eigen::Index d = 0; d < draws; ++d) {
     for (Eigen::Index i = 0; i < value.size(); ++i) {
-      const double v = evaluate(results, summaries[i], static_cast<std::size_t>(d));
+      const double v = evaluate(results, summaries[i], d);
       all(d, i) = std::isfinite(v) ? v : std::isfinite(value[i]) ? value[i] : 0;
     }
   }

@@ -223,7 +223,7 @@ studies::ResultSet profile_of_run(const fs::path& run, const RecordedCondition& 
   studies::FramesSource source(output::FrameReader(run / "frames.h5"), mill.context,
                                config::read_case(case_file.string()).time.analyze_from, std::nullopt);
   studies::EngineOptions engine;
-  engine.draws = static_cast<std::size_t>(how.study.observing.draws);
+  engine.draws = how.study.observing.draws;
   engine.threads = 1;  // several runs are looked at at once
   const std::vector<studies::AskedAnalyzer> analyzers = analyzers_of(recorded.analyzers, how.registry);
   studies::ResultSet results = studies::run_analyzers(source, studies::create_analyzers(analyzers, source.context()).instances, engine);

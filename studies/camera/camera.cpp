@@ -40,7 +40,7 @@ Status give_room(void* host, std::int64_t count, TrackBuffer* out) {
   if (count < 0) return 1;
   Samples& samples = *static_cast<Samples*>(host);
   try {
-    samples.resize(static_cast<std::size_t>(count));
+    samples.resize(count);
   } catch (const std::exception&) {
     return 1;
   }

@@ -28,8 +28,8 @@ double normal_share(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2)
 
 void add_windows(const Piece& piece, const std::vector<double>& times, const Middle& middle, std::size_t& group,
                  std::vector<RateWindow>& out) {
-  const auto per_window = static_cast<std::size_t>(std::lround(kWindow / piece.step));
-  const auto windows_in_group = static_cast<std::size_t>(std::lround(kGroup / kWindow));
+  const auto per_window = std::lround(kWindow / piece.step);
+  const auto windows_in_group = std::lround(kGroup / kWindow);
   std::size_t made = 0;
   for (std::size_t first = 0; first + per_window < piece.size(); first += per_window, ++made) {
     const double from = piece.start + static_cast<double>(first) * piece.step;

@@ -39,8 +39,8 @@ Derivatives derivatives(const LogLikelihood& groups, const std::vector<FitParame
   const auto n = static_cast<Eigen::Index>(at.size());
   const auto moved = [&](Eigen::Index i, double a, Eigen::Index j, double b) {
     std::vector<double> x = at;
-    x[static_cast<std::size_t>(i)] += a * step_of(parameters[static_cast<std::size_t>(i)]);
-    x[static_cast<std::size_t>(j)] += b * step_of(parameters[static_cast<std::size_t>(j)]);
+    x[i] += a * step_of(parameters[i]);
+    x[j] += b * step_of(parameters[j]);
     return groups(x);
   };
   Derivatives d{Eigen::MatrixXd(n, n), Eigen::MatrixXd::Zero(n, n)};
@@ -48,19 +48,19 @@ Derivatives derivatives(const LogLikelihood& groups, const std::vector<FitParame
   Eigen::MatrixXd gradient(static_cast<Eigen::Index>(middle.size()), n);
   std::vector<double> up(at.size()), down(at.size());
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double h = step_of(parameters[static_cast<std::size_t>(i)]);
+    const double h = step_of(parameters[i]);
     const std::vector<double> high = moved(i, 1, i, 0), low = moved(i, -1, i, 0);
     for (std::size_t g = 0; g < middle.size(); ++g) gradient(static_cast<Eigen::Index>(g), i) = (high[g] - low[g]) / (2 * h);
     d.curvature(i, i) = (sum(high) - 2 * sum(middle) + sum(low)) / (h * h);
     for (Eigen::Index j = 0; j < i; ++j) {
-      const double k = step_of(parameters[static_cast<std::size_t>(j)]);
+      const double k = step_of(parameters[j]);
       const double mixed = sum(moved(i, 1, j, 1)) - sum(moved(i, 1, j, -1)) - sum(moved(i, -1, j, 1)) + sum(moved(i, -1, j, -1));
       d.curvature(i, j) = d.curvature(j, i) = mixed / (4 * h * k);
     }
   }
   d.scatter = gradient.transpose() * gradient;
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double known = std::pow(parameters[static_cast<std::size_t>(i)].deviation, -2);
+    const double known = std::pow(parameters[i].deviation, -2);
     d.curvature(i, i) -= known;
     d.scatter(i, i) += known;
   }
@@ -75,13 +75,12 @@ std::vector<std::vector<double>> sandwich(const Derivatives& d) {
   Eigen::VectorXd inverse = bend.unaryExpr([&](double b) { return b > least ? 1 / b : 0.0; });
   const Eigen::MatrixXd h = solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
   const Eigen::MatrixXd covariance = h * d.scatter * h;
-  const auto n = static_cast<std::size_t>(bend.size());
+  const Eigen::Index n = bend.size();
   std::vector<std::vector<double>> result(n, std::vector<double>(n));
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    for (std::size_t j = 0; j < n; ++j) result[i][j] = covariance(row, static_cast<Eigen::Index>(j));
-    for (Eigen::Index k = 0; k < bend.size(); ++k) {
-      if (bend[k] <= least && std::abs(solver.eigenvectors()(row, k)) > 0.1) result[i][i] = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) result[i][j] = covariance(i, j);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      if (bend[k] <= least && std::abs(solver.eigenvectors()(i, k)) > 0.1) result[i][i] = std::numeric_limits<double>::infinity();
     }
   }
   return result;

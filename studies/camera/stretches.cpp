@@ -86,10 +86,9 @@ double drift_of(const Stretch& s, const Middle& middle) {
   const auto count = static_cast<Eigen::Index>(s.time.size());
   Eigen::MatrixXd powers(count, 3), values(count, 2);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const double t = 2 * s.time[at] / s.time.back() - 1;
+    const double t = 2 * s.time[i] / s.time.back() - 1;
     powers.row(i) << 1, t, t * t;
-    values.row(i) << std::hypot(s.value[0][at] - middle.at[0], s.value[1][at] - middle.at[1]), s.value[2][at];
+    values.row(i) << std::hypot(s.value[0][i] - middle.at[0], s.value[1][i] - middle.at[1]), s.value[2][i];
   }
   const Eigen::MatrixXd coefficients = powers.colPivHouseholderQr().solve(values);
   return coefficients.bottomRows(2).norm();

@@ -30,7 +30,7 @@ std::vector<std::size_t> chosen_tracks(const SimulatedBeads& beads, const std::v
       throw UserError(
           fmt::format("--bead {}: the run did not follow this bead; it followed {}{}", id, known, tracks.size() > 10 ? ", …" : ""));
     }
-    chosen.push_back(static_cast<std::size_t>(found - tracks.begin()));
+    chosen.push_back(found - tracks.begin());
   }
   return chosen;
 }

@@ -72,7 +72,7 @@ double simulated_time(const std::filesystem::path& run) {
   std::ifstream in(run / "series.csv", std::ios::binary | std::ios::ate);
   if (!in) return 0;
   const std::streamoff size = in.tellg(), from = std::max<std::streamoff>(0, size - kTail);
-  std::string tail(static_cast<std::size_t>(size - from), '\0');
+  std::string tail(size - from, '\0');
   in.seekg(from);
   in.read(tail.data(), static_cast<std::streamsize>(tail.size()));
   const std::size_t end = tail.rfind('\n');  // what follows is a row in the making

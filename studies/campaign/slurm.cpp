@@ -200,7 +200,7 @@ class Slurm {
 
   void report() {
     if (!board_.progress().due()) return;
-    std::vector<Underway> underway(static_cast<std::size_t>(running_));
+    std::vector<Underway> underway(running_);
     double waiting = 0;
     for (const Handed& h : handed_) waiting += h.job.work;
     for (const Job& job : board_.open()) waiting += job.work;

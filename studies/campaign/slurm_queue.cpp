@@ -31,7 +31,7 @@ std::string read_all(int descriptor) {
     const ssize_t n = ::read(descriptor, part.data(), part.size());
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return text;
-    text.append(part.data(), static_cast<std::size_t>(n));
+    text.append(part.data(), n);
   }
 }
 

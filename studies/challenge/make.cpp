@@ -34,8 +34,7 @@ TrueEffect true_effect(const diagnose::Candidate& c, double strength) {
 
 Answer answer_of(const diagnose::Question& q, const Truth& truth, const std::string& set) {
   Answer a{set, truth.kind, truth.name, {}, {}, Json::object()};
-  for (const naming::ActiveCandidate& e : truth.effects)
-    a.effects.push_back(true_effect(q.candidates[static_cast<std::size_t>(e.candidate)], e.strength));
+  for (const naming::ActiveCandidate& e : truth.effects) a.effects.push_back(true_effect(q.candidates[e.candidate], e.strength));
   const std::vector<naming::Coordinate> coordinates = q.coordinates();
   for (std::size_t i = 0; i < coordinates.size(); ++i) a.theta.emplace_back(coordinates[i].name, truth.theta[static_cast<Eigen::Index>(i)]);
   return a;

@@ -151,7 +151,7 @@ void add_gains(const std::vector<Marked>& sets, Score& s) {
 
 std::size_t place(std::vector<std::string>& labels, const std::string& label) {
   const auto found = std::find(labels.begin(), labels.end(), label);
-  if (found != labels.end()) return static_cast<std::size_t>(found - labels.begin());
+  if (found != labels.end()) return found - labels.begin();
   labels.push_back(label);
   return labels.size() - 1;
 }

@@ -217,7 +217,7 @@ std::vector<ObservableVerdict> judge(const std::vector<TestedObservable>& observ
     const auto strongest =
         std::max_element(verdict.elements.begin(), verdict.elements.end(),
                          [](const TestedElement& x, const TestedElement& y) { return x.weight * x.deviate < y.weight * y.deviate; });
-    verdict.strongest = static_cast<std::size_t>(strongest - verdict.elements.begin());
+    verdict.strongest = strongest - verdict.elements.begin();
     verdict.p = strongest->p;
     verdicts.push_back(std::move(verdict));
   }

@@ -103,7 +103,7 @@ std::vector<ResultPair> pair_results(const ResultSet& a, const ResultSet& b, con
   std::vector<ResultPair> pairs;
   const auto find = [](const ResultSet& results, const ResultArray& like) {
     const auto same = [&](const ResultArray& x) { return x.analyzer == like.analyzer && x.name == like.name; };
-    return static_cast<std::size_t>(std::find_if(results.arrays.begin(), results.arrays.end(), same) - results.arrays.begin());
+    return std::find_if(results.arrays.begin(), results.arrays.end(), same) - results.arrays.begin();
   };
   for (std::size_t i = 0; i < a.arrays.size(); ++i) {
     if (!is_chosen(options, a.arrays[i])) continue;

@@ -24,7 +24,7 @@ std::vector<bool> centre_runs(const Design& design) {
     for (Index i = 0; i < design.coded.cols() && !centre.back(); ++i) {
       if (std::abs(std::abs(design.coded(run, i)) - 1) < kOnLevel) continue;
       throw UserError(fmt::format("run {}: {} at coded {:.4g} is neither -1 nor +1; a second-order fit (quadratic) takes such plans",
-                                  run + 1, design.factors[static_cast<std::size_t>(i)].name, design.coded(run, i)));
+                                  run + 1, design.factors[i].name, design.coded(run, i)));
     }
   }
   return centre;
@@ -45,7 +45,7 @@ Plan plan_of(const Design& design) {
   Eigen::MatrixXd signs(design.coded.rows(), design.coded.cols());
   Index runs = 0;
   for (Index run = 0; run < design.coded.rows(); ++run) {
-    if (!plan.centre[static_cast<std::size_t>(run)]) signs.row(runs++) = design.coded.row(run);
+    if (!plan.centre[run]) signs.row(runs++) = design.coded.row(run);
   }
   plan.has_centre = runs < design.coded.rows();
   if (runs == 0) throw UserError("all runs are centre runs; add runs at the two levels");
@@ -85,7 +85,7 @@ Model model_of(const Design& design, const Plan& plan, const std::vector<Effect>
   }
   if (plan.has_centre) {
     Eigen::VectorXd centre(design.coded.rows());
-    for (Index run = 0; run < centre.size(); ++run) centre[run] = plan.centre[static_cast<std::size_t>(run)] ? 1 : 0;
+    for (Index run = 0; run < centre.size(); ++run) centre[run] = plan.centre[run] ? 1 : 0;
     add(centre, "curvature");
   }
   return model;

@@ -63,7 +63,7 @@ std::vector<int> signs_of(const std::vector<FactorColumn>& columns, const std::v
 bool sort_runs(Composite& plan, const std::vector<FactorColumn>& columns) {
   for (std::size_t run = 0; run < plan.design.kind.size(); ++run) {
     const std::vector<int> signs = signs_of(columns, plan.levels, run);
-    const std::size_t moved = signs.size() - static_cast<std::size_t>(std::count(signs.begin(), signs.end(), 0));
+    const std::size_t moved = signs.size() - std::count(signs.begin(), signs.end(), 0);
     if (moved != 0 && moved != 1 && moved != signs.size()) return false;
     plan.design.kind[run] = moved == 0 ? "centre" : moved == 1 ? "axial" : "factorial";
     if (moved == signs.size()) plan.corners.insert(signs);
@@ -101,10 +101,9 @@ bool find_axial(Composite& plan, const std::vector<FactorColumn>& columns) {
     Index factor = 0;
     const Index row = static_cast<Index>(run);
     plan.design.coded.row(row).cwiseAbs().maxCoeff(&factor);
-    const std::size_t i = static_cast<std::size_t>(factor);
     sides.insert({factor, plan.design.coded(row, factor) > 0});
-    plan.axial.push_back({row, factor, std::abs(columns[i].column.value[run] - plan.levels[i].middle) / plan.step[i],
-                          plan.levels[i].tolerance / plan.step[i]});
+    plan.axial.push_back({row, factor, std::abs(columns[factor].column.value[run] - plan.levels[factor].middle) / plan.step[factor],
+                          plan.levels[factor].tolerance / plan.step[factor]});
   }
   return sides.size() == 2 * columns.size();
 }

@@ -62,7 +62,7 @@ Eigen::MatrixXd stacked(const Eigen::MatrixXd& above, const Eigen::MatrixXd& bel
 void append(Design& design, const Eigen::MatrixXd& runs, const char* kind) {
   if (runs.rows() == 0) return;
   design.coded = design.coded.size() == 0 ? runs : stacked(design.coded, runs);
-  design.kind.insert(design.kind.end(), static_cast<std::size_t>(runs.rows()), kind);
+  design.kind.insert(design.kind.end(), runs.rows(), kind);
 }
 
 /// The shortest word tells what is lost: one factor is constant, two factors are one.
@@ -97,7 +97,7 @@ void check(const std::vector<Factor>& factors) {
 Eigen::VectorXd natural(const std::vector<Factor>& factors, const Eigen::VectorXd& coded) {
   Eigen::VectorXd values(coded.size());
   for (Eigen::Index i = 0; i < coded.size(); ++i) {
-    const Factor& f = factors.at(static_cast<std::size_t>(i));
+    const Factor& f = factors.at(i);
     values[i] = f.centre + f.step * coded[i];
   }
   return values;
@@ -106,7 +106,7 @@ Eigen::VectorXd natural(const std::vector<Factor>& factors, const Eigen::VectorX
 Eigen::VectorXd coded(const std::vector<Factor>& factors, const Eigen::VectorXd& natural) {
   Eigen::VectorXd values(natural.size());
   for (Eigen::Index i = 0; i < natural.size(); ++i) {
-    const Factor& f = factors.at(static_cast<std::size_t>(i));
+    const Factor& f = factors.at(i);
     values[i] = (natural[i] - f.centre) / f.step;
   }
   return values;

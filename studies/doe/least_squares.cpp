@@ -22,7 +22,7 @@ constexpr double kNothing = 1e-12;  // relative to a sum of squares: rounding, n
 double about_mean(const Eigen::VectorXd& y) { return (y.array() - y.mean()).square().sum(); }
 
 void check_factor(const Design& design, Index i) {
-  const std::string& name = design.factors[static_cast<std::size_t>(i)].name;
+  const std::string& name = design.factors[i].name;
   const Eigen::VectorXd x = design.coded.col(i);
   if ((x.array() == x[0]).all()) throw UserError(fmt::format("factor {} has one value in all runs; leave it out or vary it", name));
   for (Index j = 0; j < i; ++j) {
@@ -30,7 +30,7 @@ void check_factor(const Design& design, Index i) {
     const double together = (x.array() - x.mean()).matrix().dot((z.array() - z.mean()).matrix());
     if (together * together < about_mean(x) * about_mean(z) * (1 - 1e-10)) continue;
     throw UserError(fmt::format("factors {} and {} vary together in all runs, so that their effects cannot be told apart; leave one out",
-                                design.factors[static_cast<std::size_t>(j)].name, name));
+                                design.factors[j].name, name));
   }
 }
 
@@ -44,9 +44,9 @@ std::string dependent_term(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr
   const Eigen::VectorXd share = independent.colPivHouseholderQr().solve(scaled.col(order[rank]));
   std::string of;
   for (Index c = 0; c < rank; ++c) {
-    if (std::abs(share[c]) > 1e-6) of += (of.empty() ? "" : ", ") + names[static_cast<std::size_t>(order[c])];
+    if (std::abs(share[c]) > 1e-6) of += (of.empty() ? "" : ", ") + names[order[c]];
   }
-  const std::string& term = names[static_cast<std::size_t>(order[rank])];
+  const std::string& term = names[order[rank]];
   return of.empty() ? fmt::format("{} is zero in all runs", term) : fmt::format("{} is a combination of {}", term, of);
 }
 
@@ -135,9 +135,9 @@ PureError split_residual(const Eigen::MatrixXd& coded, const Eigen::VectorXd& re
 
 // t_i = e_i √((ν − 1)/(S (1 − h_i) − e_i²)), ν and S those of the residual (Cook, Weisberg 1982).
 std::vector<Residual> residuals_of(const LeastSquares& fit) {
-  std::vector<Residual> residuals(static_cast<std::size_t>(fit.error.size()));
+  std::vector<Residual> residuals(fit.error.size());
   for (Index run = 0; run < fit.error.size(); ++run) {
-    Residual& r = residuals[static_cast<std::size_t>(run)];
+    Residual& r = residuals[run];
     r.value = fit.error[run];
     r.leverage = fit.model.row(run).dot(fit.inverse * fit.model.row(run).transpose());
     const double others = fit.residual_sum * (1 - r.leverage) - r.value * r.value;

@@ -63,7 +63,7 @@ std::array<Index, 2> widest(const Surface& s) {
 }
 
 studies::CellAxis axis_of(const Surface& s, Index i) {
-  const Factor& f = s.factors[static_cast<std::size_t>(i)];
+  const Factor& f = s.factors[i];
   studies::CellAxis axis{f.name, f.unit, {}};
   for (int edge = 0; edge <= kCells; ++edge)
     axis.edges.push_back(f.centre + f.step * (s.lower[i] + (s.upper[i] - s.lower[i]) * edge / kCells));

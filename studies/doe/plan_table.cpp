@@ -40,7 +40,7 @@ std::string plan_table(const Design& design) {
   for (const Factor& f : design.factors) text += "," + f.name;
   text += "\n";
   for (Eigen::Index run = 0; run < design.coded.rows(); ++run) {
-    text += fmt::format("{},{}", run + 1, design.kind[static_cast<std::size_t>(run)]);
+    text += fmt::format("{},{}", run + 1, design.kind[run]);
     for (const double value : natural(design.factors, design.coded.row(run).transpose())) text += fmt::format(",{:.10g}", value);
     text += "\n";
   }

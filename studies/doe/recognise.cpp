@@ -135,7 +135,7 @@ Eigen::MatrixXd corner_runs(const Design& design) {
   Eigen::MatrixXd corners(design.coded.rows(), design.coded.cols());
   Index count = 0;
   for (Index run = 0; run < design.coded.rows(); ++run) {
-    if (design.kind[static_cast<std::size_t>(run)] == "factorial") corners.row(count++) = design.coded.row(run);
+    if (design.kind[run] == "factorial") corners.row(count++) = design.coded.row(run);
   }
   return corners.topRows(count);
 }
@@ -145,13 +145,13 @@ void check_generators(const Table& table, const RecognisedTable& found, const st
   const Design& design = found.design;
   const auto generators = parse_generators(texts, design.factors);
   for (Index run = 0; run < design.coded.rows(); ++run) {
-    if (design.kind[static_cast<std::size_t>(run)] != "factorial") continue;
+    if (design.kind[run] != "factorial") continue;
     for (std::size_t g = 0; g < generators.size(); ++g) {
       double product = generators[g].of.negative ? -1 : 1;
       for (const int i : members(generators[g].of)) product *= design.coded(run, i);
       if (product == design.coded(run, generators[g].made)) continue;
-      throw UserError(fmt::format("{}: this run does not obey the generator '{}'; correct the generator or the level",
-                                  table.place(static_cast<std::size_t>(run)), texts[g]));
+      throw UserError(
+          fmt::format("{}: this run does not obey the generator '{}'; correct the generator or the level", table.place(run), texts[g]));
     }
   }
 }

@@ -23,14 +23,14 @@ void check_runs(int runs, int least) {
 /// One run in the middle of each layer of each factor, coded.
 Eigen::MatrixXd draw_hypercube(Eigen::Index runs, Eigen::Index factors, Random& dice) {
   Eigen::MatrixXd coded(runs, factors);
-  std::vector<Eigen::Index> layer(static_cast<std::size_t>(runs));
+  std::vector<Eigen::Index> layer(runs);
   for (Eigen::Index i = 0; i < factors; ++i) {
     std::iota(layer.begin(), layer.end(), 0);
     for (std::size_t left = layer.size(); left > 1; --left) {
       std::swap(layer[left - 1], layer[static_cast<std::size_t>(dice.uniform() * static_cast<double>(left))]);
     }
     for (Eigen::Index run = 0; run < runs; ++run) {
-      coded(run, i) = (2 * static_cast<double>(layer[static_cast<std::size_t>(run)]) + 1) / static_cast<double>(runs) - 1;
+      coded(run, i) = (2 * static_cast<double>(layer[run]) + 1) / static_cast<double>(runs) - 1;
     }
   }
   return coded;
@@ -46,7 +46,7 @@ double closest_pair(const Eigen::MatrixXd& points) {
 
 Design spread(std::vector<Factor> factors, Eigen::MatrixXd coded) {
   Design design;
-  design.kind.assign(static_cast<std::size_t>(coded.rows()), "spread");
+  design.kind.assign(coded.rows(), "spread");
   design.coded = std::move(coded);
   design.factors = std::move(factors);
   return design;
@@ -55,7 +55,7 @@ Design spread(std::vector<Factor> factors, Eigen::MatrixXd coded) {
 }  // namespace
 
 Eigen::MatrixXd sobol_points(Eigen::Index points, Eigen::Index dimensions) {
-  boost::random::sobol engine(static_cast<std::size_t>(dimensions));
+  boost::random::sobol engine(dimensions);
   Eigen::MatrixXd unit(points, dimensions);
   for (Eigen::Index point = 0; point < points; ++point) {
     for (Eigen::Index i = 0; i < dimensions; ++i) unit(point, i) = static_cast<double>(engine() >> 11) * 0x1p-53;

@@ -172,12 +172,12 @@ StationaryRegion region_of(const Surface& s, const StationaryPoint& point) {
 std::string text_of(const Axis& axis, const std::vector<Factor>& factors) {
   Index leading = 0;
   const double most = axis.direction.cwiseAbs().maxCoeff(&leading);
-  if (most > 0.95) return factors[static_cast<std::size_t>(leading)].name;
+  if (most > 0.95) return factors[leading].name;
   std::string text;
   for (Index i = 0; i < axis.direction.size(); ++i) {
     if (std::abs(axis.direction[i]) < 0.1) continue;
     text += fmt::format("{}{:.2g} {}", text.empty() ? (axis.direction[i] < 0 ? "-" : "") : (axis.direction[i] < 0 ? " - " : " + "),
-                        std::abs(axis.direction[i]), factors[static_cast<std::size_t>(i)].name);
+                        std::abs(axis.direction[i]), factors[i].name);
   }
   return text;
 }

@@ -16,9 +16,9 @@ using Index = Eigen::Index;
 
 std::string name_of(const std::vector<int>& term, const std::vector<Factor>& factors) {
   if (term.empty()) return "1";
-  const std::string& first = factors[static_cast<std::size_t>(term[0])].name;
+  const std::string& first = factors[term[0]].name;
   if (term.size() == 1) return first;
-  return term[0] == term[1] ? first + "^2" : first + "*" + factors[static_cast<std::size_t>(term[1])].name;
+  return term[0] == term[1] ? first + "^2" : first + "*" + factors[term[1]].name;
 }
 
 std::vector<Coefficient> named_terms(const std::vector<Factor>& factors) {

@@ -109,7 +109,7 @@ bool Table::has(const std::string& name) const { return std::find(names_.begin()
 std::size_t Table::index_of(const std::string& name) const {
   const auto found = std::find(names_.begin(), names_.end(), name);
   if (found == names_.end()) throw UserError(fmt::format("{}: has no column '{}'; {}", file_, name, config::suggestion(name, names_)));
-  return static_cast<std::size_t>(found - names_.begin());
+  return found - names_.begin();
 }
 
 Column Table::numbers(std::size_t column) const {

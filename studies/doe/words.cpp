@@ -85,8 +85,7 @@ std::vector<Generator> parse_generators(const std::vector<std::string>& texts, c
     generators.push_back(parse_generator(text, factors));
     const std::uint32_t bit = 1u << generators.back().made;
     if (made & bit) {
-      throw UserError(
-          fmt::format("generator '{}': '{}' is made twice", text, factors[static_cast<std::size_t>(generators.back().made)].name));
+      throw UserError(fmt::format("generator '{}': '{}' is made twice", text, factors[generators.back().made].name));
     }
     made |= bit;
   }
@@ -138,7 +137,7 @@ std::string resolution_of(const std::vector<Word>& relation) {
   if (relation.empty()) return "full";
   int shortest = kMostFactors;
   for (const Word& word : relation) shortest = std::min(shortest, word.length());
-  return static_cast<std::size_t>(shortest) < kRoman.size() ? kRoman[static_cast<std::size_t>(shortest)] : std::to_string(shortest);
+  return static_cast<std::size_t>(shortest) < kRoman.size() ? kRoman[shortest] : std::to_string(shortest);
 }
 
 std::vector<std::vector<Word>> chains(int factors, const std::vector<Word>& relation) {
@@ -169,7 +168,7 @@ std::string text_of(Word word, const std::vector<Factor>& factors) {
   bool first = true;
   for (const int i : members(word)) {
     if (!first) text += '*';
-    text += factors[static_cast<std::size_t>(i)].name;
+    text += factors[i].name;
     first = false;
   }
   return text;

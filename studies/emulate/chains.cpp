@@ -62,17 +62,16 @@ void Population::accept(Index chain, const VectorXd& proposal, double log_correc
 }
 
 void Population::sample(int draws) {
-  const auto count = static_cast<std::size_t>(position_.cols());
+  const Index count = position_.cols();
   draws_.assign(count, MatrixXd(position_.rows(), draws));
   values_.assign(count, VectorXd(draws));
   accepted_ = 0;
   proposed_ = 0;
   for (Index t = 0; t < draws; ++t) {
-    for (std::size_t c = 0; c < count; ++c) {
-      const auto chain = static_cast<Index>(c);
+    for (Index chain = 0; chain < count; ++chain) {
       step(chain);
-      draws_[c].col(t) = position_.col(chain);
-      values_[c][t] = value_[chain];
+      draws_[chain].col(t) = position_.col(chain);
+      values_[chain][t] = value_[chain];
     }
   }
 }
@@ -89,7 +88,7 @@ Agreement agreement(const std::vector<VectorXd>& chains) {
   VectorXd means(m);
   double within = 0;
   for (Index c = 0; c < m; ++c) {
-    VectorXd& half = halves[static_cast<std::size_t>(c)];
+    VectorXd& half = halves[c];
     means[c] = half.mean();
     half.array() -= means[c];
     within += half.squaredNorm() / (length - 1) / static_cast<double>(m);

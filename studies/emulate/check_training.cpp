@@ -61,8 +61,7 @@ void check_variety(const Box& box, const Training& t) {
 }  // namespace
 
 std::string observable_name(const Training& training, Index observable) {
-  const auto j = static_cast<std::size_t>(observable);
-  return j < training.observable.size() ? training.observable[j] : fmt::format("observable {}", observable + 1);
+  return observable < std::ssize(training.observable) ? training.observable[observable] : fmt::format("observable {}", observable + 1);
 }
 
 void check_training(const Box& box, const Training& t) {

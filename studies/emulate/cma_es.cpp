@@ -127,7 +127,7 @@ void CmaEs::recombine(const std::vector<std::size_t>& order) {
   const Strategy s(static_cast<double>(n), state_.population, parents);
   const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(state_.covariance);
   MatrixXd steps(n, parents);
-  for (Index i = 0; i < parents; ++i) steps.col(i) = (state_.asked[order[static_cast<std::size_t>(i)]] - state_.mean) / state_.sigma;
+  for (Index i = 0; i < parents; ++i) steps.col(i) = (state_.asked[order[i]] - state_.mean) / state_.sigma;
   const VectorXd step = steps * s.weights;
   state_.mean += state_.sigma * step;
 

@@ -65,7 +65,7 @@ Process best_process(const Sample& sample, const FitOptions& options, Index obse
 MatrixXd standardised(const std::vector<Process>& process) {
   MatrixXd z(process.front().sample().output.size(), static_cast<Index>(process.size()));
   for (Index j = 0; j < z.cols(); ++j) {
-    const Process::LeftOut left = process[static_cast<std::size_t>(j)].leave_one_out();
+    const Process::LeftOut left = process[j].leave_one_out();
     z.col(j) = left.residual.array() / left.variance.array().sqrt();
   }
   return z;
@@ -119,7 +119,7 @@ Emulator Emulator::fit(const Box& box, const Training& training, const FitOption
       ((training.output.rowwise() - state->centre.transpose()).colwise().squaredNorm() / static_cast<double>(training.output.rows()))
           .cwiseSqrt();
   state->noise.resize(q);
-  std::vector<std::shared_ptr<Process>> found(static_cast<std::size_t>(q));
+  std::vector<std::shared_ptr<Process>> found(q);
   base::for_each_item(found.size(), base::worker_count(options.threads, found.size()), [&](std::size_t j, std::size_t) {
     const auto observable = static_cast<Index>(j);
     try {
@@ -130,7 +130,7 @@ Emulator Emulator::fit(const Box& box, const Training& training, const FitOption
     }
   });
   for (Index j = 0; j < q; ++j) {
-    const Process& process = *found[static_cast<std::size_t>(j)];
+    const Process& process = *found[j];
     state->process.push_back(process);
     state->hyperparameters.push_back(summary(process, state->spread[j]));
     const auto noise = training.noise_variance.col(j);
@@ -147,9 +147,8 @@ Prediction Emulator::at(const VectorXd& point) const {
   const Index q = observables();
   Prediction result{VectorXd(q), VectorXd(q), VectorXd(q), state_->noise};
   for (Index j = 0; j < q; ++j) {
-    const auto index = static_cast<std::size_t>(j);
-    const Process::Value value = state_->process[index].at(coded);
-    const Hyperparameters& fitted = state_->hyperparameters[index];
+    const Process::Value value = state_->process[j].at(coded);
+    const Hyperparameters& fitted = state_->hyperparameters[j];
     const double unit = state_->spread[j];
     result.mean[j] = state_->centre[j] + unit * value.mean;
     result.variance[j] = fitted.inflation * unit * unit * value.variance;
@@ -168,7 +167,7 @@ Diagnostics Emulator::leave_one_out() const {
   Diagnostics d{MatrixXd(n, q), MatrixXd(n, q), MatrixXd(n, q), VectorXd(q), VectorXd(q), VectorXd(q), 0};
   for (Index j = 0; j < q; ++j) {
     const double unit = state_->spread[j];
-    const Process::LeftOut left = state_->process[static_cast<std::size_t>(j)].leave_one_out();
+    const Process::LeftOut left = state_->process[j].leave_one_out();
     d.predicted.col(j) = state_->training.output.col(j) - unit * left.residual;
     d.deviation.col(j) = unit * left.variance.cwiseSqrt();
     d.standardised.col(j) = left.residual.cwiseQuotient(left.variance.cwiseSqrt());
@@ -191,16 +190,14 @@ Emulator Emulator::believing(const VectorXd& point) const {
   state->training.output.row(n) = believed.mean.transpose();
   state->training.noise_variance.row(n) = believed.noise.transpose();
   for (Index j = 0; j < observables(); ++j) {
-    Process& process = state->process[static_cast<std::size_t>(j)];
+    Process& process = state->process[j];
     process = Process(sample_of(*state, j), process.shape());
   }
   return Emulator(std::move(state));
 }
 
 const MatrixXd& Emulator::correlation() const { return state_->correlation; }
-const Hyperparameters& Emulator::hyperparameters(Index observable) const {
-  return state_->hyperparameters.at(static_cast<std::size_t>(observable));
-}
+const Hyperparameters& Emulator::hyperparameters(Index observable) const { return state_->hyperparameters.at(observable); }
 Index Emulator::observables() const { return state_->training.output.cols(); }
 const Training& Emulator::training() const { return state_->training; }
 const Box& Emulator::box() const { return state_->box; }

@@ -122,14 +122,14 @@ VectorXd find_mode(const Likelihood& likelihood, std::uint64_t seed) {
   const Box& box = likelihood.box();
   const Index p = box.size();
   const MatrixXd points = prior_points(box, kPerParameter * static_cast<int>(p), seed);
-  std::vector<double> value(static_cast<std::size_t>(points.cols()));
+  std::vector<double> value(points.cols());
   std::vector<Index> order(value.size());
   std::iota(order.begin(), order.end(), Index{0});
-  for (const Index i : order) value[static_cast<std::size_t>(i)] = likelihood.log_density(box.coded(points.col(i)));
-  const auto better = [&](Index a, Index b) { return value[static_cast<std::size_t>(a)] > value[static_cast<std::size_t>(b)]; };
+  for (const Index i : order) value[i] = likelihood.log_density(box.coded(points.col(i)));
+  const auto better = [&](Index a, Index b) { return value[a] > value[b]; };
   std::stable_sort(order.begin(), order.end(), better);
   VectorXd best = box.coded(points.col(order.front()));
-  double most = value[static_cast<std::size_t>(order.front())];
+  double most = value[order.front()];
   for (std::uint64_t start = 0; start < kStarts; ++start) {
     const VectorXd from = box.coded(points.col(order[start]));
     const VectorXd found = climb(likelihood, from, 0.05, seed + start);

@@ -56,12 +56,12 @@ MatrixXd local_covariance(const MatrixXd& centres) {
   const VectorXd unit =
       ((centres.colwise() - centres.rowwise().mean()).rowwise().squaredNorm() / static_cast<double>(n)).cwiseSqrt().cwiseMax(1e-9);
   const MatrixXd scaled = unit.cwiseInverse().asDiagonal() * centres;
-  std::vector<std::pair<double, Index>> distance(static_cast<std::size_t>(n));
+  std::vector<std::pair<double, Index>> distance(n);
   for (Index i = 0; i < n; ++i) {
-    for (Index j = 0; j < n; ++j) distance[static_cast<std::size_t>(j)] = {(scaled.col(i) - scaled.col(j)).squaredNorm(), j};
+    for (Index j = 0; j < n; ++j) distance[j] = {(scaled.col(i) - scaled.col(j)).squaredNorm(), j};
     std::sort(distance.begin(), distance.end());
     for (Index k = 0; k < near; ++k) {
-      const VectorXd d = centres.col(distance[static_cast<std::size_t>(k)].second) - centres.col(i);
+      const VectorXd d = centres.col(distance[k].second) - centres.col(i);
       sum += d * d.transpose();
     }
   }

@@ -155,7 +155,7 @@ Posterior sample_posterior(const Emulator& emulator, const Box& box, const Obser
   result.mode = box.natural(mode);
   result.misfit = likelihood.misfit(mode);
   for (Index k = 0; k < p; ++k) {
-    Marginal& m = result.marginal[static_cast<std::size_t>(k)];
+    Marginal& m = result.marginal[k];
     m.mode = result.mode[k];
     m.at_edge = std::abs(mode[k]) > 1 - kEdge;
   }

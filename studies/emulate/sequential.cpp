@@ -69,11 +69,11 @@ struct Runs {
       if (!box.contains(x)) continue;
       point.push_back(x);
       expected.push_back(draws.at(x).mean());
-      if (expected.back() < expected[static_cast<std::size_t>(best)]) best = static_cast<Index>(expected.size()) - 1;
+      if (expected.back() < expected[best]) best = static_cast<Index>(expected.size()) - 1;
     }
   }
   /// The smallest expected objective; where no run lies in the box, there is nothing to improve on but the worst imaginable.
-  double least() const { return expected.empty() ? std::numeric_limits<double>::max() : expected[static_cast<std::size_t>(best)]; }
+  double least() const { return expected.empty() ? std::numeric_limits<double>::max() : expected[best]; }
   double spread() const {
     if (expected.size() < 2) return 0;
     return deviation_of(VectorXd::Map(expected.data(), static_cast<Index>(expected.size())));
@@ -87,7 +87,7 @@ std::vector<VectorXd> candidates(const Box& box, const Runs& runs, std::uint64_t
   std::vector<VectorXd> points;
   for (Index i = 0; i < even.cols(); ++i) points.emplace_back(even.col(i));
   if (runs.point.empty()) return points;
-  const VectorXd& best = runs.point[static_cast<std::size_t>(runs.best)];
+  const VectorXd& best = runs.point[runs.best];
   points.push_back(best);
   base::RandomStream random(seed, 0x4ea);
   for (const double width : {0.3, 0.1, 0.03}) {

@@ -23,8 +23,7 @@ Eigen::VectorXd Box::natural(const Eigen::VectorXd& coded) const {
 }
 
 std::string Box::name_of(Eigen::Index parameter) const {
-  const auto i = static_cast<std::size_t>(parameter);
-  return i < name.size() ? name[i] : fmt::format("parameter {}", parameter + 1);
+  return parameter < std::ssize(name) ? name[parameter] : fmt::format("parameter {}", parameter + 1);
 }
 
 void Box::check() const {

@@ -32,7 +32,7 @@ Index closest(const Eigen::MatrixXd& correlation, Index parameter) {
 }
 
 std::string sentence(const Posterior& posterior, const Box& box, Index k) {
-  const Marginal& m = posterior.marginal[static_cast<std::size_t>(k)];
+  const Marginal& m = posterior.marginal[k];
   const char* const word = m.determined == Determined::well     ? "determined"
                            : m.determined == Determined::weakly ? "weakly determined"
                                                                 : "hardly determined";
@@ -59,7 +59,7 @@ double freedom(const Posterior& posterior, Index observables) {
 void add_statements(Posterior& posterior, const Box& box, Index observables) {
   const Index p = box.size();
   for (Index k = 0; k < p; ++k) {
-    Marginal& m = posterior.marginal[static_cast<std::size_t>(k)];
+    Marginal& m = posterior.marginal[k];
     m.determined = verdict(m.width_ratio);
     m.statement = sentence(posterior, box, k);
   }

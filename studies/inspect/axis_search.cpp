@@ -53,7 +53,7 @@ class Distances {
     std::fill(count_.begin(), count_.end(), 0.0);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double dx = points.x[i] - cx, dy = points.y[i] - cy, r = std::sqrt(dx * dx + dy * dy) / bin_;
-      if (r < static_cast<double>(count_.size())) count_[static_cast<std::size_t>(r)] += weights.empty() ? 1 : weights[i];
+      if (r < static_cast<double>(count_.size())) count_[r] += weights.empty() ? 1 : weights[i];
     }
   }
 
@@ -67,13 +67,13 @@ class Distances {
       gain.push_back(near - (k > 0 ? 10 * (1 - near) : 0));
     }
     double beyond_all = 0;  // weight farther than `reach` beyond the radius
-    for (std::ptrdiff_t k = reach; k < bins; ++k) beyond_all += count_[static_cast<std::size_t>(k)];
+    for (std::ptrdiff_t k = reach; k < bins; ++k) beyond_all += count_[k];
     std::pair<double, double> result{-1e300, 0};
     for (std::ptrdiff_t j = 0; j < bins; ++j) {
-      if (j + reach < bins) beyond_all -= count_[static_cast<std::size_t>(j + reach)];
+      if (j + reach < bins) beyond_all -= count_[j + reach];
       double score = -10 * (j + reach + 1 <= bins ? beyond_all : 0);
       for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(0, j - reach); k <= std::min(bins - 1, j + reach); ++k) {
-        score += count_[static_cast<std::size_t>(k)] * gain[static_cast<std::size_t>(k - j + reach)];
+        score += count_[k] * gain[k - j + reach];
       }
       if (score > result.first) result = {score, (static_cast<double>(j) + 0.5) * bin_};
     }
@@ -100,7 +100,7 @@ std::optional<Rotation> search_rotation(const std::vector<Parabola>& windows, co
   Random random(1);
   std::optional<Rotation> best;
   for (int attempt = 0; attempt < 4000; ++attempt) {
-    const auto i = static_cast<std::size_t>(random.below(windows.size())), j = static_cast<std::size_t>(random.below(windows.size()));
+    const auto i = random.below(windows.size()), j = random.below(windows.size());
     std::optional<Rotation> trial = through(windows[i], windows[j], 0.15 * extent);
     if (!trial) continue;
     trial->circle.radius = enclosing_radius(x, y, trial->circle.x, trial->circle.y, scratch);

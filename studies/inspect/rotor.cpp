@@ -225,8 +225,8 @@ std::optional<Rotor> recognise_rotor(const Recording& recording) {
   const Vector3d centre = plane.middle + circle.x * plane.first + circle.y * plane.second,
                  axis = turned < 0 ? Vector3d(-plane.normal) : plane.normal;
   for (int a = 0; a < 3; ++a) {
-    rotor.centre[static_cast<std::size_t>(a)] = centre[a];
-    rotor.axis[static_cast<std::size_t>(a)] = axis[a];
+    rotor.centre[a] = centre[a];
+    rotor.axis[a] = axis[a];
   }
   rotor.plateaus = merge(find_plateaus(paces));
   return rotor;

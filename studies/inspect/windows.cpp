@@ -33,7 +33,7 @@ Parabola fit_parabola(const Run& run, std::size_t first, std::size_t last) {
     const double s = run.time[i] - result.middle;
     const Eigen::Vector3d powers(1, s, s * s);
     normal += powers * powers.transpose();
-    for (int a = 0; a < 3; ++a) moments.col(a) += run.position[static_cast<std::size_t>(a)][i] * powers;
+    for (int a = 0; a < 3; ++a) moments.col(a) += run.position[a][i] * powers;
   }
   const Eigen::Matrix3d inverse = normal.inverse();
   const Eigen::Matrix3d solution = inverse * moments;
@@ -41,15 +41,14 @@ Parabola fit_parabola(const Run& run, std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
     const double s = run.time[i] - result.middle;
     for (int a = 0; a < 3; ++a) {
-      const double miss = run.position[static_cast<std::size_t>(a)][i] - (solution(0, a) + s * (solution(1, a) + s * solution(2, a)));
-      squares[static_cast<std::size_t>(a)] += miss * miss;
+      const double miss = run.position[a][i] - (solution(0, axis) + s * (solution(1, axis) + s * solution(2, axis)));
+      squares[a] += miss * miss;
     }
   }
-  for (int a = 0; a < 3; ++a) {
-    const auto axis = static_cast<std::size_t>(a);
-    result.position[axis] = solution(0, a);
-    result.velocity[axis] = solution(1, a);
-    result.acceleration[axis] = 2 * solution(2, a);
+  for (int axis = 0; axis < 3; ++axis) {
+    result.position[axis] = solution(0, axis);
+    result.velocity[axis] = solution(1, axis);
+    result.acceleration[axis] = 2 * solution(2, axis);
     result.scatter[axis] = result.count > 3 ? std::sqrt(squares[axis] / static_cast<double>(result.count - 3)) : 0;
   }
   result.velocity_per_noise = std::sqrt(inverse(1, 1));

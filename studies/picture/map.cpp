@@ -161,12 +161,10 @@ class MapDrawing {
     if (picture_.framed.empty()) return;
     const auto nx = static_cast<std::ptrdiff_t>(picture_.x.edges.size()) - 1, ny = static_cast<std::ptrdiff_t>(picture_.y.edges.size()) - 1;
     const auto framed = [&](std::ptrdiff_t ix, std::ptrdiff_t iy) {
-      return ix >= 0 && iy >= 0 && ix < nx && iy < ny && picture_.framed[static_cast<std::size_t>(iy * nx + ix)] != 0;
+      return ix >= 0 && iy >= 0 && ix < nx && iy < ny && picture_.framed[iy * nx + ix] != 0;
     };
     const Pen pen{{0, 0, 0, 1}, 0.9};
-    const auto corner = [&](std::ptrdiff_t ix, std::ptrdiff_t iy) {
-      return frame_.at(picture_.x.edges[static_cast<std::size_t>(ix)], picture_.y.edges[static_cast<std::size_t>(iy)]);
-    };
+    const auto corner = [&](std::ptrdiff_t ix, std::ptrdiff_t iy) { return frame_.at(picture_.x.edges[ix], picture_.y.edges[iy]); };
     for (std::ptrdiff_t iy = 0; iy <= ny; ++iy) {
       for (std::ptrdiff_t ix = 0; ix <= nx; ++ix) {
         if (framed(ix, iy) != framed(ix - 1, iy)) canvas.line(corner(ix, iy), corner(ix, iy + 1), pen);

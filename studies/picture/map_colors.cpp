@@ -8,7 +8,7 @@
 
 namespace millscope::studies {
 Color MapColors::operator()(double value) const {
-  if (named) return distinct_color(static_cast<std::size_t>(std::lround(value) - 1));
+  if (named) return distinct_color(std::lround(value) - 1);
   const double fraction = (value - low) / (high - low);
   return diverging ? diverging_color(fraction) : sequential_color(fraction);
 }

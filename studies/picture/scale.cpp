@@ -18,7 +18,7 @@ constexpr std::string_view kMinus = "\u2212";
 std::string superscript(int number) {
   constexpr std::array<const char*, 10> digits{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
   std::string text = number < 0 ? "⁻" : "";
-  for (const char c : std::to_string(std::abs(number))) text += digits[static_cast<std::size_t>(c - '0')];
+  for (const char c : std::to_string(std::abs(number))) text += digits[c - '0'];
   return text;
 }
 

@@ -205,7 +205,7 @@ Description read_description(const fs::path& file) {
     description.separator_place = node->where();
   }
   if (const auto node = root.find("skip_lines")) {
-    description.skip_lines = static_cast<std::size_t>(config::read_integer(*node, config::between(0, 1e6)));
+    description.skip_lines = config::read_integer(*node, config::between(0, 1e6));
     description.skip_lines_place = node->where();
   }
   const auto mirror = root.find("mirror");

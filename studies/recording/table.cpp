@@ -31,7 +31,7 @@ const char* skip_value(const char* p, const char* end, char separator) {
     while (p != end && !is_blank(*p)) ++p;
     return p;
   }
-  const void* found = std::memchr(p, separator, static_cast<std::size_t>(end - p));
+  const void* found = std::memchr(p, separator, end - p);
   return found == nullptr ? end : static_cast<const char*>(found);
 }
 
@@ -51,11 +51,11 @@ class RowReader {
  public:
   explicit RowReader(const Layout& layout) : layout_(layout) {
     for (int quantity = 0; quantity < kQuantities; ++quantity) {
-      const int column = layout.column[static_cast<std::size_t>(quantity)];
+      const int column = layout.column[quantity];
       if (column < 0) continue;
       last_ = std::max(last_, column);
       target_.resize(std::max(target_.size(), static_cast<std::size_t>(column) + 1), -1);
-      target_[static_cast<std::size_t>(column)] = quantity;
+      target_[column] = quantity;
     }
   }
 
@@ -65,10 +65,10 @@ class RowReader {
     for (int column = 0; column < columns; ++column) {
       p = skip_blanks(p, end);
       if (p == end) return "has too few columns";
-      const int quantity = column <= last_ ? target_[static_cast<std::size_t>(column)] : -1;
+      const int quantity = column <= last_ ? target_[column] : -1;
       if (quantity < 0) {
         p = skip_value(p, end, layout_.separator);
-      } else if (!read_value(p, end, values[static_cast<std::size_t>(quantity)])) {
+      } else if (!read_value(p, end, values[quantity])) {
         return "has something else than a number";
       }
       if (!step_over(p, end, layout_.separator)) {
@@ -155,7 +155,7 @@ Rows read_rows(std::string_view text, const Layout& layout, RunReport& report, F
   for (const char* p = text.data(); p != end;) {
     ++number;
     const char* const begin = p;
-    const auto* stop = static_cast<const char*>(std::memchr(p, '\n', static_cast<std::size_t>(end - p)));
+    const auto* stop = static_cast<const char*>(std::memchr(p, '\n', end - p));
     const bool whole = stop != nullptr;
     if (!whole) stop = end;
     p = whole ? stop + 1 : end;

@@ -47,7 +47,7 @@ std::size_t read_bytes(const std::filesystem::path& file, std::unique_ptr<char[]
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) throw UserError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
     if (got == 0) return filled;
-    filled += static_cast<std::size_t>(got);
+    filled += got;
     if (filled < room) continue;
     room = 2 * room + 65536;  // a pipe says no size, a file may grow
     auto larger = std::make_unique_for_overwrite<char[]>(room);

@@ -31,7 +31,7 @@ struct Choice {
 Choice choose(std::size_t frames, std::size_t beads, std::uint64_t bytes) {
   Choice c;
   const std::uint64_t most = std::max<std::uint64_t>(bytes / kBytesPerBead, 1);
-  c.stride = static_cast<std::size_t>((beads + most - 1) / most);
+  c.stride = (beads + most - 1) / most;
   c.beads = (beads + c.stride - 1) / c.stride;
   const std::size_t count = std::clamp<std::size_t>(static_cast<std::size_t>(most / c.beads), 1, frames);
   for (std::size_t i = 0; i < count; ++i) c.frames.push_back(count == 1 ? frames - 1 : i * (frames - 1) / (count - 1));

@@ -57,7 +57,7 @@ nlohmann::ordered_json document_of(const std::string& title, const std::vector<n
 }
 
 std::string page_of(const nlohmann::ordered_json& document) {
-  std::string_view rest(millscope_page_begin, static_cast<std::size_t>(millscope_page_end - millscope_page_begin));
+  std::string_view rest(millscope_page_begin, millscope_page_end - millscope_page_begin);
   std::string out;
   // The data's place is looked for after the title's, and what was put in is not looked at again.
   rest = before(rest, "@TITLE@", out);

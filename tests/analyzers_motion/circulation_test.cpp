@@ -92,13 +92,13 @@ TEST_CASE("axial dispersion and correlation times of random motions come out") {
   Random random(7);
   std::vector<std::vector<double>> z(kBeads), v(kBeads);
   for (std::int64_t bead = 0; bead < kBeads; ++bead) {
-    auto& w = v[static_cast<std::size_t>(bead)];
+    auto& w = v[bead];
     w = noise_with_memory(random, kFrames, kStep, kMemory);
     double place = 0.5;
     for (double& speed : w) {
       speed *= std::sqrt(kDispersion / kMemory);  // D = σ² τ
       place += speed * kStep;
-      z[static_cast<std::size_t>(bead)].push_back(place);
+      z[bead].push_back(place);
     }
   }
   const auto motion = [&](double period) {

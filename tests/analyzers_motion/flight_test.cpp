@@ -49,7 +49,7 @@ Frames flights(const World& world, std::int64_t beads, double step, Random& rand
   for (std::size_t f = 0; f < 2 * rest + fly; ++f) {
     const bool flying = f >= rest && f < rest + fly;
     for (std::int64_t bead = 0; bead < beads; ++bead) {
-      Sample s = now[static_cast<std::size_t>(bead)];
+      Sample s = now[bead];
       if (!flying) s.velocity = {0, 0, 0};
       frames.add_sample(bead, s, step);
     }

@@ -42,7 +42,7 @@ TEST_CASE("the border of one region runs along its arcs and sides") {
   const auto middle =
       std::find_if(regions.begin(), regions.end(), [](const Region& r) { return r.name == "0.5–0.8 R, 0–45° past 6 o'clock"; });
   REQUIRE(middle != regions.end());
-  chosen[static_cast<std::size_t>(middle - regions.begin())] = true;
+  chosen[middle - regions.begin()] = true;
   const auto lines = borders_of(regions, chosen, mill);
   CHECK(lines.size() == 4);
   for (const auto& line : lines) {

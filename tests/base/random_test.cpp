@@ -40,7 +40,7 @@ TEST_CASE("a shuffle keeps what it shuffles, and puts every item everywhere") {
     std::vector<int> items(kItems);
     std::iota(items.begin(), items.end(), 0);
     random.shuffle(items);
-    for (int place = 0; place < kItems; ++place) ++at[items[static_cast<std::size_t>(place)]][place];
+    for (int place = 0; place < kItems; ++place) ++at[items[place]][place];
   }
   for (const auto& places : at) {
     CHECK(std::accumulate(std::begin(places), std::end(places), 0) == kDraws);

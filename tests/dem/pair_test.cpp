@@ -138,7 +138,7 @@ TEST_CASE("a column of spheres carries the weight above each contact") {
   Assembly a = assembled(s);
   constexpr int kCount = 10;
   std::vector<Bead> beads(kCount);
-  for (int i = 0; i < kCount; ++i) beads[static_cast<std::size_t>(i)].position = {0, kRadius * (1 + 2 * i), 0};
+  for (int i = 0; i < kCount; ++i) beads[i].position = {0, kRadius * (1 + 2 * i), 0};
   start(a, beads);
   const Energy first = observed(a);
   advance(a, std::llround(1.0 / a.time_step));

@@ -37,7 +37,7 @@ TEST_CASE("a linear model with normal noise has the posterior of the textbook") 
   CHECK(posterior.converged);
   CHECK(posterior.acceptance > 0.1);
   for (Index k = 0; k < 2; ++k) {
-    const Marginal& m = posterior.marginal[static_cast<std::size_t>(k)];
+    const Marginal& m = posterior.marginal[k];
     const double deviation = std::sqrt(covariance(k, k));
     INFO(m.statement);
     CHECK_THAT(m.mean, WithinAbs(mean[k], 0.06 * deviation));
@@ -160,7 +160,7 @@ TEST_CASE("ninety of a hundred truths lie in their 90 % intervals") {
     const VectorXd value = p.mean + root * random.normals(3);
     const Posterior posterior = sample_posterior(emulator, box, {value, noise}, {.seed = 7 + static_cast<std::uint64_t>(i), .draws = 150});
     for (const Index k : {Index{0}, Index{1}}) {
-      const Marginal& m = posterior.marginal[static_cast<std::size_t>(k)];
+      const Marginal& m = posterior.marginal[k];
       if (m.low90 <= truth[k] && truth[k] <= m.high90) inside[k] += 100.0 / kTruths;
     }
   }

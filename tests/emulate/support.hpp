@@ -24,7 +24,7 @@ inline MatrixXd latin(const Box& box, Index runs, std::uint64_t seed) {
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Index>(i);
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
     for (Index i = 0; i < runs; ++i) {
-      const double part = (static_cast<double>(order[static_cast<std::size_t>(i)]) + random.uniform()) / static_cast<double>(runs);
+      const double part = (static_cast<double>(order[i]) + random.uniform()) / static_cast<double>(runs);
       points(k, i) = box.lower[k] + part * (box.upper[k] - box.lower[k]);
     }
   }

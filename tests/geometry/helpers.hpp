@@ -77,10 +77,9 @@ std::vector<std::vector<std::uint32_t>> candidates_of(Wall& wall, const std::vec
   std::vector<double> x, y, z, r(points.size(), radius);
   for (const Point& p : points) x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
   std::vector<std::vector<std::uint32_t>> found(points.size());
-  const CandidateSink sink{
-      &found, [](void* host, std::int64_t bead, std::uint32_t feature) {
-        (*static_cast<std::vector<std::vector<std::uint32_t>>*>(host))[static_cast<std::size_t>(bead)].push_back(feature);
-      }};
+  const CandidateSink sink{&found, [](void* host, std::int64_t bead, std::uint32_t feature) {
+                             (*static_cast<std::vector<std::vector<std::uint32_t>>*>(host))[bead].push_back(feature);
+                           }};
   wall.candidates({static_cast<std::int64_t>(points.size()), {x.data(), y.data(), z.data()}, r.data()}, margin, sink);
   return found;
 }

@@ -68,7 +68,7 @@ TEST_CASE("a series is read back as it was written, without the row that is bein
   CHECK(series.names == kColumns);
   const std::vector<double>& energy = series.column("kinetic_energy_J");
   REQUIRE(energy.size() == 51);
-  for (int k = 0; k < 50; ++k) CHECK(energy[static_cast<std::size_t>(k)] == std::sqrt(k));
+  for (int k = 0; k < 50; ++k) CHECK(energy[k] == std::sqrt(k));
   CHECK(std::isnan(energy[50]));
   CHECK(series.column("time_s")[50] == 0.5);
   CHECK_THAT(refusal([&] { static_cast<void>(series.column("power_W")); }), Contains("no column 'power_W'"));

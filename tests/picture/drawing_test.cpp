@@ -81,7 +81,7 @@ TEST_CASE("a cell lies where its axes say, with its colour, square, and cells wi
 TEST_CASE("signed values are centred at zero, others start there") {
   const host_test::Temporary folder;
   MapPicture map = empty_map();
-  for (int i = 0; i < 100; ++i) map.value.values[static_cast<std::size_t>(i)] = i < 50 ? -1 : 3;
+  for (int i = 0; i < 100; ++i) map.value.values[i] = i < 50 ? -1 : 3;
   draw_map(map, folder.path() / "signed");
   const Raster raster = read_png(folder.path() / "signed.png");
   CHECK(raster.find(to_pixel(diverging_color((-1.0 + 3) / 6))).count > 600 * 290);
@@ -157,7 +157,7 @@ TEST_CASE("a curve without a value has a gap, not a zero") {
     return read_png(folder.path() / (std::string(name) + ".png")).find(to_pixel(distinct_color(0)));
   };
   const Raster::Spot whole = blue("whole");
-  for (int i = 3; i < 7; ++i) picture.curves[0].value[static_cast<std::size_t>(i)] = kNone;
+  for (int i = 3; i < 7; ++i) picture.curves[0].value[i] = kNone;
   const Raster::Spot broken = blue("broken");
   CHECK(broken.count < 0.7 * whole.count);
   CHECK(broken.bottom == whole.bottom);

@@ -76,7 +76,7 @@ TEST_CASE("a pair parameter fills its column and keeps its history") {
   b.history[0] = history.data();
   b.restitution = restitution.data();
   table.evaluate(slide.get(), &b);
-  for (int s = 0; s < kLanes; ++s) CHECK(restitution[static_cast<std::size_t>(s)] == 0.25);
+  for (int s = 0; s < kLanes; ++s) CHECK(restitution[s] == 0.25);
   CHECK(history[0] == 3.0);
 }
 

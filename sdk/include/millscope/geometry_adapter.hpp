@@ -83,7 +83,7 @@ void find_contacts(const void* self, const GeometryQuery* query, GeometryContact
     }
     WallContacts found(query->reach);
     wall.touch({{beads.position[0][i], beads.position[1][i], beads.position[2][i]}, beads.radius[i], query->reach},
-               query->candidates + begin, static_cast<std::size_t>(end - begin), found);
+               query->candidates + begin, end - begin, found);
     append_contacts(found, i, out);
   }
 }

@@ -60,7 +60,7 @@ constexpr std::array<Term, 7> kTerms = {{
 struct Rows {
   Eigen::MatrixXd term;     // [2 cells, terms]
   Eigen::VectorXd missing;  // [2 cells]
-  std::size_t cells() const { return static_cast<std::size_t>(missing.size()) / 2; }
+  std::size_t cells() const { return missing.size() / 2; }
 };
 
 double sem_of(const base::Interval90& i) { return i.standard_error(); }
@@ -157,7 +157,7 @@ TermOffer offer_terms(const std::vector<MissingForce>& missing) {
   std::vector<Eigen::Index> chosen;
   while (chosen.size() < kMostTerms) {
     const Vote votes = vote(rows, chosen);
-    const auto best = static_cast<std::size_t>(std::max_element(votes.chosen.begin(), votes.chosen.end()) - votes.chosen.begin());
+    const auto best = std::max_element(votes.chosen.begin(), votes.chosen.end()) - votes.chosen.begin();
     const double share = static_cast<double>(votes.chosen[best]) / kHalves;
     if (share < kStable || votes.helps[best] < kGain * votes.chosen[best]) break;
     chosen.push_back(static_cast<Eigen::Index>(best));
