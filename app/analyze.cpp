@@ -104,12 +104,12 @@ void prepare(const fs::path& output, bool force) {
 }
 
 /// Draws every curve and map; what has no picture, and why the mill lacks its lifters, becomes a note of the report.
-std::vector<std::string> draw(const studies::ResultSet& results, const fs::path& output, const host::Registry& registry) {
+std::vector<std::string> draw(const analysis::ResultSet& results, const fs::path& output, const host::Registry& registry) {
   std::string why;
-  const studies::MillOutline mill = studies::outline_of(results, registry, why);
+  const picture::MillOutline mill = picture::outline_of(results, registry, why);
   std::vector<std::string> notes;
   if (!why.empty()) notes.push_back("the pictures show the shell without lifters: " + why);
-  const studies::DrawnPictures drawn = studies::draw_results(results, output / "pictures", mill);
+  const picture::DrawnPictures drawn = picture::draw_results(results, output / "pictures", mill);
   if (!drawn.left_out.empty()) {
     notes.push_back(fmt::format("{} results have no picture, {}{}", drawn.left_out.size(), drawn.left_out.front(),
                                 drawn.left_out.size() > 1 ? ", …" : ""));
@@ -117,15 +117,15 @@ std::vector<std::string> draw(const studies::ResultSet& results, const fs::path&
   return notes;
 }
 
-void print_report(const studies::ResultSet& results, const fs::path& output, bool all) {
-  const studies::ResultMeta& meta = results.meta;
+void print_report(const analysis::ResultSet& results, const fs::path& output, bool all) {
+  const analysis::ResultMeta& meta = results.meta;
   fmt::print("{}\n{} block{} of {:.3g} s, {} resamples; intervals hold with 90 %\n", meta.description, meta.blocks.size(),
              meta.blocks.size() == 1 ? "" : "s", meta.block_duration, meta.draws);
   // One figure for "how many": of x, which the power goes with.
   if (!meta.times.empty() && meta.times.front().independent > 0)
     fmt::print("N_eff {:.0f}: the mean x rests on so many independent values, (sigma/sem)^2 over the blocks\n",
                meta.times.front().independent);
-  fmt::print("\n{}\n", studies::number_table(results, all ? results.arrays.size() : kShownNumbers));
+  fmt::print("\n{}\n", analysis::number_table(results, all ? results.arrays.size() : kShownNumbers));
   for (const std::string& note : meta.notes) fmt::print("note: {}\n", note);
   for (const std::string& reason : meta.left_out) fmt::print("left out: {}\n", reason);
   fmt::print("joint covariance of {} values, rank {}\n", results.covariance_entries.size(), results.covariance_rank);
@@ -157,7 +157,7 @@ int analyze(const Arguments& arguments) {
   options.with_plugins();
   if (!options.parse(arguments)) return kDone;
 
-  studies::AnalysisRequest request;
+  analysis::AnalysisRequest request;
   request.path = options.text("SOURCE");
   request.overrides = options.list("set");
   if (options.has("tracer")) request.tracers = split(options.text("tracer"));
@@ -178,15 +178,15 @@ int analyze(const Arguments& arguments) {
   Line line(quiet);
   request.progress = [&line](const char* doing, double fraction) { line.update(doing, fraction); };
   const host::Registry registry = options.registry();
-  studies::ResultSet results = studies::analyze(request, registry);
+  analysis::ResultSet results = analysis::analyze(request, registry);
   prepare(output, force);
   if (!options.has("no-pictures")) {
     line.update("drawing", 0);
     for (std::string& note : draw(results, output, registry)) results.meta.notes.push_back(std::move(note));
   }
-  studies::write_tables(output / "tables", results);
-  output::write_json(output / "results.json", studies::summary_json(results));
-  studies::write_results(output / "results.h5", results, force);
+  analysis::write_tables(output / "tables", results);
+  output::write_json(output / "results.json", analysis::summary_json(results));
+  analysis::write_results(output / "results.h5", results, force);
   line.clear();
   if (!quiet) print_report(results, output, options.has("all"));
   return kDone;

@@ -19,12 +19,12 @@ using base::UserError;
 
 constexpr std::size_t kRows = 20, kGiven = 6;
 
-void print_sources(const studies::Comparison& c) {
+void print_sources(const compare::Comparison& c) {
   fmt::print("A: {}\nB: {}\n", c.a.meta.description, c.b.meta.description);
   for (const std::string& note : c.notes) fmt::print("note: {}\n", note);
 }
 
-void print_rest(const studies::Comparison& c) {
+void print_rest(const compare::Comparison& c) {
   for (std::size_t i = 0; i < std::min(kGiven, c.given.size()); ++i) fmt::print("given quantity that differs: {}\n", c.given[i]);
   if (c.given.size() > kGiven) fmt::print("… and {} more given quantities (comparison.json lists all)\n", c.given.size() - kGiven);
   if (c.not_judged.empty()) return;
@@ -46,12 +46,12 @@ void remove_earlier_pictures(const fs::path& output) {
   }
 }
 
-void write_output(const studies::Comparison& c, const fs::path& output, const host::Registry& registry, bool quiet) {
+void write_output(const compare::Comparison& c, const fs::path& output, const host::Registry& registry, bool quiet) {
   remove_earlier_pictures(output);
-  studies::write_comparison(c, output);
+  compare::write_comparison(c, output);
   std::string lacking;
-  const studies::MillOutline mill = studies::outline_of(c.a, registry, lacking);
-  const auto pictures = studies::draw_comparison(c, output / "pictures", mill);
+  const picture::MillOutline mill = picture::outline_of(c.a, registry, lacking);
+  const auto pictures = compare::draw_comparison(c, output / "pictures", mill);
   if (quiet) return;
   if (!lacking.empty()) fmt::print("note: the pictures show the shell without lifters: {}\n", lacking);
   fmt::print("written to {}: comparison.json, observables.csv, elements.csv, {} pictures\n", output.string(), pictures.size());
@@ -85,20 +85,20 @@ int compare(const Arguments& arguments) {
   options.add()("quiet,q", "print the verdict only");
   options.with_plugins();
   if (!options.parse(arguments)) return kDone;
-  const studies::CompareOptions choice{options.list("only"), options.list("without"), percent(options, "level", 0.05)};
+  const compare::CompareOptions choice{options.list("only"), options.list("without"), percent(options, "level", 0.05)};
   const fs::path output = options.has("output") ? fs::path(options.text("output")) : fs::path();
   if (!output.empty() && !options.has("force")) output::refuse_existing(output / "comparison.json");  // before the work begins
-  const studies::ResultSet a = studies::read_results(options.text("A")), b = studies::read_results(options.text("B"));
-  const studies::Comparison c = studies::compare(a, b, choice);
+  const analysis::ResultSet a = analysis::read_results(options.text("A")), b = analysis::read_results(options.text("B"));
+  const compare::Comparison c = compare::compare(a, b, choice);
   const bool json = options.has("json"), quiet = options.has("quiet") || json;
   if (!quiet) {
     print_sources(c);
-    fmt::print("\n{}", studies::comparison_table(c, kRows));
+    fmt::print("\n{}", compare::comparison_table(c, kRows));
     print_rest(c);
   }
   if (!output.empty()) write_output(c, output, options.registry(), quiet);
   if (json) {
-    fmt::print("{}\n", studies::comparison_json(c).dump(2));
+    fmt::print("{}\n", compare::comparison_json(c).dump(2));
   } else {
     fmt::print("{}{}\n", quiet ? "" : "\n", c.verdict);
   }

@@ -22,8 +22,8 @@ int inspect(const Arguments& arguments) {
   options.positional("FILE", "a recording (.a, .csv, .tsv, .txt, .gz of one) or a recording.yaml with several");
   options.add()("json", "print JSON; units are in the names of the keys");
   if (!options.parse(arguments)) return kDone;
-  const studies::Inspection inspection = studies::inspect(studies::read_recording(options.text("FILE")));
-  fmt::print("{}", options.has("json") ? studies::inspection_json(inspection).dump(2) + "\n" : studies::inspection_text(inspection));
+  const inspect::Inspection inspection = inspect::inspect(recording::read_recording(options.text("FILE")));
+  fmt::print("{}", options.has("json") ? inspect::inspection_json(inspection).dump(2) + "\n" : inspect::inspection_text(inspection));
   return kDone;
 }
 
@@ -39,10 +39,10 @@ int convert(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
   const std::string file = options.text("output");
   if (!options.has("force")) output::refuse_existing(file);
-  const studies::Recording recording = studies::read_recording(options.text("RECORDING"));
-  studies::write_tracks(recording, file);
+  const recording::Recording recording = recording::read_recording(options.text("RECORDING"));
+  recording::write_tracks(recording, file);
   std::size_t points = 0;
-  for (const studies::Run& run : recording.runs) points += run.size();
+  for (const recording::Run& run : recording.runs) points += run.size();
   fmt::print("wrote {} ({} points of {} run{})\n", file, points, recording.runs.size(), recording.runs.size() == 1 ? "" : "s");
   return kDone;
 }

@@ -13,7 +13,7 @@ namespace {
 namespace po = boost::program_options;
 
 std::string camera_of(const std::string& recording) {
-  return studies::camera_text(studies::estimate_camera(studies::read_recording(recording)), recording);
+  return camera::camera_text(camera::estimate_camera(recording::read_recording(recording)), recording);
 }
 
 /// Where an estimated camera is written: beside the file to be made.
@@ -22,21 +22,20 @@ std::filesystem::path camera_file(const std::filesystem::path& file) {
 }
 
 /// Before any work, and before any file is written.
-void refuse_targets(const Options& options, const studies::SimulatedBeads& beads, const studies::SynthesisRequest& request) {
+void refuse_targets(const Options& options, const camera::SimulatedBeads& beads, const camera::SynthesisRequest& request) {
   if (request.overwrite) return;
-  for (const std::filesystem::path& target : studies::synthesis_targets(beads, request)) output::refuse_existing(target);
+  for (const std::filesystem::path& target : camera::synthesis_targets(beads, request)) output::refuse_existing(target);
   if (options.has("like")) output::refuse_existing(camera_file(request.file));
 }
 
 /// The camera that the user names, or one that is estimated, with its text.
-studies::Camera chosen_camera(const Options& options, const host::Registry& registry, const std::filesystem::path& file,
-                              std::string& text) {
+camera::Camera chosen_camera(const Options& options, const host::Registry& registry, const std::filesystem::path& file, std::string& text) {
   if (options.has("camera") == options.has("like")) {
     throw base::UserError("give either --camera camera.yaml or --like RECORDING; configs/cameras holds examples");
   }
-  if (options.has("camera")) return studies::read_camera(options.text("camera"), registry, options.list("set"));
+  if (options.has("camera")) return camera::read_camera(options.text("camera"), registry, options.list("set"));
   text = camera_of(options.text("like"));
-  return studies::parse_camera(text, camera_file(file).string(), registry, options.list("set"));
+  return camera::parse_camera(text, camera_file(file).string(), registry, options.list("set"));
 }
 
 }  // namespace
@@ -61,8 +60,8 @@ int pept_synthesize(const Arguments& arguments) {
   options.with_plugins();
   if (!options.parse(arguments)) return kDone;
   const host::Registry registry = options.registry();
-  const studies::SimulatedBeads beads(options.text("OUT"), registry);
-  studies::SynthesisRequest request;
+  const camera::SimulatedBeads beads(options.text("OUT"), registry);
+  camera::SynthesisRequest request;
   request.file = options.text("output");
   request.seed = static_cast<std::uint64_t>(options.integer("seed"));
   request.overwrite = options.has("force");
@@ -78,8 +77,8 @@ int pept_synthesize(const Arguments& arguments) {
   }
   refuse_targets(options, beads, request);
   std::string estimated;
-  const studies::Camera camera = chosen_camera(options, registry, request.file, estimated);
-  const studies::Synthesis done = studies::synthesize(beads, camera, request);
+  const camera::Camera camera = chosen_camera(options, registry, request.file, estimated);
+  const camera::Synthesis done = camera::synthesize(beads, camera, request);
   if (!estimated.empty()) {
     output::write_file(camera_file(request.file), estimated, request.overwrite);
     fmt::print("wrote {}\n", camera_file(request.file).string());
@@ -100,9 +99,9 @@ int pept_camera(const Arguments& arguments) {
   options.add()("json", "JSON with all standard errors instead of YAML");
   options.add()("force", "overwrite the file");
   if (!options.parse(arguments)) return kDone;
-  const studies::CameraEstimate estimate = studies::estimate_camera(studies::read_recording(options.text("RECORDING")));
+  const camera::CameraEstimate estimate = camera::estimate_camera(recording::read_recording(options.text("RECORDING")));
   const std::string text =
-      options.has("json") ? studies::camera_json(estimate).dump(2) + "\n" : studies::camera_text(estimate, options.text("RECORDING"));
+      options.has("json") ? camera::camera_json(estimate).dump(2) + "\n" : camera::camera_text(estimate, options.text("RECORDING"));
   if (options.has("output")) {
     output::write_file(options.text("output"), text, options.has("force"));
   } else {

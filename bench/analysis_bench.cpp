@@ -18,7 +18,7 @@
 #include "millscope/observation_adapter.hpp"
 #include "studies/analysis/analysis.hpp"
 
-namespace millscope::studies {
+namespace millscope::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -78,13 +78,13 @@ int measure(const po::variables_map& options) {
   const fs::path directory = fs::path(options["directory"].as<std::string>()) / fmt::format("millscope-analysis-bench-{}", ::getpid());
   fs::create_directories(directory);
   write_frames(directory, beads, frames);
-  AnalysisRequest request;
+  analysis::AnalysisRequest request;
   request.path = directory;
   request.threads = options["threads"].as<int>();
   const host::Registry registry;
   const double megabytes = 36e-6 * static_cast<double>(beads * frames);
   const double wall = seconds(CLOCK_MONOTONIC), cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
-  const ResultSet results = analyze(request, registry);
+  const analysis::ResultSet results = analysis::analyze(request, registry);
   const double wall_used = seconds(CLOCK_MONOTONIC) - wall, cpu_used = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
   fs::remove_all(directory);
   std::size_t analyzers = 0;
@@ -112,11 +112,11 @@ int run(int count, char** words) {
 }
 
 }  // namespace
-}  // namespace millscope::studies
+}  // namespace millscope::bench
 
 int main(int count, char** words) {
   try {
-    return millscope::studies::run(count, words);
+    return millscope::bench::run(count, words);
   } catch (const std::exception& e) {
     fmt::print(stderr, "millscope_analysis_bench: {}\n", e.what());
     return 2;

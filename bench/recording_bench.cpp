@@ -18,7 +18,7 @@
 #include "kernel/output/track_reader.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
-namespace millscope::studies {
+namespace millscope::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -48,11 +48,11 @@ void write_points(const fs::path& file, std::size_t count) {
 }
 
 /// Time and momentum on 50 × 50 cells of x and y, as a map of occupancy and velocity needs.
-double grid(const Trajectory& trajectory) {
+double grid(const trajectory::Trajectory& trajectory) {
   constexpr int kCells = 50;
   constexpr double kHalf = 0.15;  // m
   std::vector<std::array<double, 4>> cells(kCells * kCells);
-  for (const Piece& piece : trajectory.pieces) {
+  for (const trajectory::Piece& piece : trajectory.pieces) {
     for (std::size_t k = 0; k < piece.size(); ++k) {
       const int i = static_cast<int>((piece.position[0][k] + kHalf) / (2 * kHalf) * kCells);
       const int j = static_cast<int>((piece.position[1][k] + kHalf) / (2 * kHalf) * kCells);
@@ -71,17 +71,18 @@ void time_points(std::size_t count) {
   const fs::path file = fs::temp_directory_path() / fmt::format("millscope_recording_bench_{}.a", ::getpid());
   write_points(file, count);
   std::cout << fmt::format("{} points, {} MB; CPU seconds on one core\n", count, fs::file_size(file) / 1000000);
-  for (const SplineKind kind : {SplineKind::smoothing, SplineKind::cubic}) {
+  for (const trajectory::SplineKind kind : {trajectory::SplineKind::smoothing, trajectory::SplineKind::cubic}) {
     const double start = cpu_seconds();
-    const Recording recording = read_recording(file);
+    const recording::Recording recording = recording::read_recording(file);
     const double read = cpu_seconds();
-    const Trajectory trajectory = fit_trajectory(recording.runs[0], {.kind = kind, .gap_limit = recording.gap_limit});
+    const trajectory::Trajectory trajectory =
+        trajectory::fit_trajectory(recording.runs[0], {.kind = kind, .gap_limit = recording.gap_limit});
     const double fitted = cpu_seconds();
     const double covered = grid(trajectory);
     const double end = cpu_seconds();
     std::cout << fmt::format("{:9}: read {:.2f}, spline {:.2f}, grid {:.2f}, together {:.2f} ({:.0f} s in samples of 1 ms)\n",
-                             kind == SplineKind::cubic ? "cubic" : "smoothing", read - start, fitted - read, end - fitted, end - start,
-                             covered);
+                             kind == trajectory::SplineKind::cubic ? "cubic" : "smoothing", read - start, fitted - read, end - fitted,
+                             end - start, covered);
   }
   fs::remove(file);
 }
@@ -114,11 +115,11 @@ struct Truth {
   double velocity(double t, std::size_t axis) const { return (position(t + 5e-4, axis) - position(t - 5e-4, axis)) / 1e-3; }
 };
 
-Run see(const Truth& truth, const Camera& camera, std::uint64_t seed) {
+recording::Run see(const Truth& truth, const Camera& camera, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   std::exponential_distribution<double> pause(camera.rate);
   std::normal_distribution<double> normal;
-  Run run;
+  recording::Run run;
   run.source = "simulated bead";
   std::array<double, 3> noise{normal(generator), normal(generator), normal(generator)};
   double t = truth.samples.time.front() + 2;  // the charge develops
@@ -135,7 +136,7 @@ Run see(const Truth& truth, const Camera& camera, std::uint64_t seed) {
 struct Score {
   double count = 0, position = 0, velocity = 0, position_error = 0, velocity_error = 0, speed = 0, true_speed = 0;
 
-  void add(const Piece& piece, std::size_t k, const Truth& truth) {
+  void add(const trajectory::Piece& piece, std::size_t k, const Truth& truth) {
     constexpr double kNinety = 1.6449 * 1.6449;
     const double t = piece.start + static_cast<double>(k) * piece.step;
     double squared = 0, true_squared = 0;
@@ -161,18 +162,18 @@ void score_tracks(const fs::path& file) {
       "{} beads of {}\nrate/s  noise/mm correlation | spline    | errors: mm   m/s    | 90 % hold: position velocity | speed\n",
       reader.tracks().size(), file.string());
   for (const Camera& camera : kCameras) {
-    for (const SplineKind kind : {SplineKind::smoothing, SplineKind::cubic}) {
+    for (const trajectory::SplineKind kind : {trajectory::SplineKind::smoothing, trajectory::SplineKind::cubic}) {
       Score s;
       for (std::size_t k = 0; k < reader.tracks().size(); ++k) {
         const Truth truth(reader.read(k));
-        const Trajectory trajectory =
-            fit_trajectory(see(truth, camera, k + 1), {.kind = kind, .gap_limit = std::min(0.1, 10 / camera.rate)});
-        for (const Piece& piece : trajectory.pieces) {
+        const trajectory::Trajectory trajectory =
+            trajectory::fit_trajectory(see(truth, camera, k + 1), {.kind = kind, .gap_limit = std::min(0.1, 10 / camera.rate)});
+        for (const trajectory::Piece& piece : trajectory.pieces) {
           for (std::size_t i = 0; i < piece.size(); ++i) s.add(piece, i, truth);
         }
       }
       std::cout << fmt::format("{:6.0f} {:9.2f} {:11.1f} | {:9} | {:10.2f} {:8.3f} | {:18.3f} {:8.3f} | {:+.1f} %\n", camera.rate,
-                               1e3 * camera.noise, camera.correlation, kind == SplineKind::cubic ? "cubic" : "smoothing",
+                               1e3 * camera.noise, camera.correlation, kind == trajectory::SplineKind::cubic ? "cubic" : "smoothing",
                                1e3 * std::sqrt(s.position_error / s.count), std::sqrt(s.velocity_error / s.count), s.position / s.count,
                                s.velocity / s.count, 100 * (s.speed / s.true_speed - 1));
     }
@@ -180,7 +181,7 @@ void score_tracks(const fs::path& file) {
 }
 
 }  // namespace
-}  // namespace millscope::studies
+}  // namespace millscope::bench
 
 int main(int argc, char** argv) {
   namespace po = boost::program_options;
@@ -190,8 +191,8 @@ int main(int argc, char** argv) {
   try {
     po::variables_map options;
     po::store(po::parse_command_line(argc, argv, description), options);
-    if (options.count("points") != 0) millscope::studies::time_points(options["points"].as<std::size_t>());
-    if (options.count("tracks") != 0) millscope::studies::score_tracks(options["tracks"].as<std::string>());
+    if (options.count("points") != 0) millscope::bench::time_points(options["points"].as<std::size_t>());
+    if (options.count("tracks") != 0) millscope::bench::score_tracks(options["tracks"].as<std::string>());
     if (options.count("points") + options.count("tracks") == 0) std::cout << description;
     return 0;
   } catch (const std::exception& error) {

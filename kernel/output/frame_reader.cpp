@@ -8,6 +8,7 @@
 #include "kernel/base/error.hpp"
 #include "kernel/output/frames.hpp"
 #include "kernel/output/reading.hpp"
+#include "millscope/element.hpp"
 
 namespace millscope::output {
 
@@ -119,7 +120,7 @@ void FrameReader::read(BeadField field, std::size_t first, std::size_t count, st
   if (first + count > frame_count() || values.size() != 3 * count * impl_->beads.size()) {
     throw std::logic_error("FrameReader: frames outside the file, or a buffer of another size");
   }
-  if (count > 0) hdf5::read_rows_raw(impl_->fields[field], first, count, H5T_IEEE_F32LE, values.data(), impl_->path);
+  if (count > 0) hdf5::read_rows_raw(element(impl_->fields, field), first, count, H5T_IEEE_F32LE, values.data(), impl_->path);
 }
 
 }  // namespace millscope::output

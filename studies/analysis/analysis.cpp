@@ -7,7 +7,7 @@
 #include "kernel/config/units.hpp"
 #include "kernel/output/summary.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -133,4 +133,4 @@ ResultSet analyze(const AnalysisRequest& request, const host::Registry& registry
   return results;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -16,7 +16,7 @@
 #include "studies/analysis/engine.hpp"
 #include "studies/analysis/open_source.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 struct AnalysisRequest {
   std::filesystem::path path;             ///< directory of a run, recording.yaml, file of locations
@@ -33,4 +33,4 @@ struct AnalysisRequest {
 /// Throws base::UserError.
 ResultSet analyze(const AnalysisRequest& request, const host::Registry& registry);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

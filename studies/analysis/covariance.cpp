@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 /// Draws of one value, centred; empty where one of them is undefined.
@@ -62,4 +62,4 @@ void add_covariance(ResultSet& results) {
   results.covariance_rank = rank_of(std::move(deviations));
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

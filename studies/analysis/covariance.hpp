@@ -3,11 +3,11 @@
 
 #include "studies/analysis/results.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 inline constexpr std::size_t kLongestCovarianceRow = 64;
 
 /// Fills entries, covariance and rank from the draws. The diagonal is sem².
 void add_covariance(ResultSet& results);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

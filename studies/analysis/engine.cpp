@@ -12,7 +12,7 @@
 #include "studies/analysis/sums.hpp"
 #include "studies/analysis/times.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 using base::UserError;
@@ -281,4 +281,4 @@ ResultSet run_analyzers(FrameSource& source, const std::vector<AnalyzerInstance>
   return results;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

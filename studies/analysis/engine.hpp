@@ -8,7 +8,7 @@
 #include "studies/analysis/results.hpp"
 #include "studies/analysis/source.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 struct EngineOptions {
   std::uint64_t seed = 1;
@@ -22,4 +22,4 @@ struct EngineOptions {
 /// plugin refuses.
 ResultSet run_analyzers(FrameSource& source, const std::vector<AnalyzerInstance>& instances, const EngineOptions& options);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

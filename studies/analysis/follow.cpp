@@ -7,7 +7,7 @@
 #include "kernel/base/error.hpp"
 #include "kernel/base/parallel.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 using base::UserError;
@@ -16,7 +16,7 @@ constexpr std::size_t kNamed = 3;  // runs that are named with their reason; the
 
 /// A trajectory, or why there is none.
 struct Outcome {
-  std::optional<Trajectory> trajectory;
+  std::optional<trajectory::Trajectory> trajectory;
   std::string reason;
 };
 
@@ -25,16 +25,16 @@ void wrap(std::vector<double>& z, double low, double period) {
 }
 
 Outcome follow_one(const BeadRun& bead, const FollowRequest& request) {
-  const Run& run = *bead.run;
+  const recording::Run& run = *bead.run;
   if (std::ssize(run.time) < bead.options.least_points)
     return {{}, fmt::format("{}: its {} points in the span asked for are too few; widen the span", run.source, run.size())};
   try {
-    Outcome outcome{fit_trajectory(run, bead.options), {}};
-    Trajectory& t = *outcome.trajectory;
+    Outcome outcome{trajectory::fit_trajectory(run, bead.options), {}};
+    trajectory::Trajectory& t = *outcome.trajectory;
     t.diameter = bead.diameter;
     t.density = bead.density;
     if (request.period > 0) {
-      for (Piece& piece : t.pieces) wrap(piece.position[2], request.mill.mill_low, request.period);
+      for (trajectory::Piece& piece : t.pieces) wrap(piece.position[2], request.mill.mill_low, request.period);
       wrap(t.location_position[2], request.mill.mill_low, request.period);
     }
     return outcome;
@@ -61,12 +61,12 @@ ShellMotion even_motion(double omega) {
   return {[omega](double) { return omega; }, {}};
 }
 
-std::vector<BeadRun> tracer_runs(const Recording& recording, const TrajectoryOptions& options) {
-  const Condition& c = recording.condition;
+std::vector<BeadRun> tracer_runs(const recording::Recording& recording, const trajectory::TrajectoryOptions& options) {
+  const recording::Condition& c = recording.condition;
   const double diameter = c.tracer.diameter.value_or(c.bead_diameter.value_or(0));
   const double density = c.tracer.density.value_or(c.bead_density.value_or(0));
   std::vector<BeadRun> runs;
-  for (const Run& run : recording.runs) runs.push_back({&run, options, diameter, density});
+  for (const recording::Run& run : recording.runs) runs.push_back({&run, options, diameter, density});
   return runs;
 }
 
@@ -75,11 +75,11 @@ Followed follow(std::span<const BeadRun> runs, FollowRequest request) {
   base::for_each_item(runs.size(), base::worker_count(request.threads, runs.size()),
                       [&](std::size_t i, std::size_t) { outcomes[i] = follow_one(runs[i], request); });
   Followed followed;
-  std::vector<Trajectory> trajectories;
+  std::vector<trajectory::Trajectory> trajectories;
   double seconds = 0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!outcomes[i].trajectory) continue;
-    Trajectory& t = *outcomes[i].trajectory;
+    trajectory::Trajectory& t = *outcomes[i].trajectory;
     t.id = runs[i].id.value_or(std::ssize(trajectories));
     seconds += t.covered;
     followed.points += runs[i].run->size();
@@ -100,4 +100,4 @@ Followed follow(std::span<const BeadRun> runs, FollowRequest request) {
   return followed;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -12,12 +12,12 @@
 #include "studies/analysis/trajectory_source.hpp"
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 /// The points of one bead, with what they do not tell themselves.
 struct BeadRun {
-  const Run* run = nullptr;
-  TrajectoryOptions options;
+  const recording::Run* run = nullptr;
+  trajectory::TrajectoryOptions options;
   double diameter = 0, density = 0;               ///< m, kg/m³; 0: unknown
   std::optional<std::int64_t> id = std::nullopt;  ///< of the bead; nothing: its number among those that are followed
 };
@@ -41,7 +41,7 @@ struct Followed {
 };
 
 /// The runs of a recording, all of its one kind of tracer. They point into it.
-std::vector<BeadRun> tracer_runs(const Recording& recording, const TrajectoryOptions& options);
+std::vector<BeadRun> tracer_runs(const recording::Recording& recording, const trajectory::TrajectoryOptions& options);
 
 /// A run of which no stretch is long enough between its gaps is left out and named: of many runs some are always short, and they must not
 /// take the others with them. Throws base::UserError, with the reason of the first, where nothing is left.
@@ -50,4 +50,4 @@ Followed follow(std::span<const BeadRun> runs, FollowRequest request);
 /// Ω as it is stated or found, the same at all times; unknown where it is 0.
 ShellMotion even_motion(double omega);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -12,7 +12,7 @@
 #include "kernel/base/statistics.hpp"
 #include "studies/analysis/times.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 using base::UserError;
@@ -255,4 +255,4 @@ std::string FramesSource::description() const {
                      context_.start, context_.end);
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -6,7 +6,7 @@
 #include "kernel/output/frame_reader.hpp"
 #include "studies/analysis/source.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 class FramesSource : public FrameSource {
  public:
@@ -48,4 +48,4 @@ class FramesSource : public FrameSource {
   std::vector<Chunk> chunks_;
 };
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

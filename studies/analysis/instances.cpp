@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 using base::UserError;
@@ -156,4 +156,4 @@ AnalyzerChoice choose_analyzers(const config::Node& settings, bool chosen_in_set
   return create_analyzers(read_analyzers(settings, chosen_in_settings, only, registry), context);
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

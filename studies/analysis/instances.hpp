@@ -13,7 +13,7 @@
 #include "kernel/config/values.hpp"
 #include "kernel/host/objects.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 /// An analyzer as settings ask for it. Nothing of the settings' document is needed any more, whose reading marks what was read: several
 /// sources may be analysed at once.
@@ -54,4 +54,4 @@ AnalyzerChoice choose_analyzers(const config::Node& settings, bool chosen_in_set
 /// Fields of FrameField as words, for messages: "velocity, spin".
 std::string field_names(std::uint64_t fields);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

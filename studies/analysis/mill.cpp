@@ -12,7 +12,7 @@
 #include "kernel/host/objects.hpp"
 #include "kernel/run/bodies.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 Interior interior_of(const config::GeometryCase& g, const host::Registry& registry) {
@@ -83,10 +83,10 @@ void know_charge(const config::Case& c, const std::optional<config::Vessel>& ves
 
 }  // namespace
 
-std::optional<Slice> slice_of(const MillOfCase& mill) {
+std::optional<recording::Slice> slice_of(const MillOfCase& mill) {
   if (!(mill.period > 0)) return std::nullopt;
   const double middle = 0.5 * (mill.context.mill_low + mill.context.mill_high);
-  return Slice{middle - 0.5 * mill.period, middle + 0.5 * mill.period};
+  return recording::Slice{middle - 0.5 * mill.period, middle + 0.5 * mill.period};
 }
 
 MillOfCase read_mill_of_case(const std::filesystem::path& case_file, const host::Registry& registry,
@@ -123,4 +123,4 @@ MillOfCase read_mill_of_case(const std::filesystem::path& case_file, const host:
   return mill;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

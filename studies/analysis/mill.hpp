@@ -11,7 +11,7 @@
 #include "millscope/analyzer.hpp"
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 struct MillOfCase {
   std::string name;
@@ -24,11 +24,11 @@ struct MillOfCase {
 };
 
 /// Where a slice that repeats along z begins and ends, m; nothing for a mill with ends.
-std::optional<Slice> slice_of(const MillOfCase& mill);
+std::optional<recording::Slice> slice_of(const MillOfCase& mill);
 
 /// Reads a case, or what `millscope run` left of it (case.resolved.yaml). Of the plugins only those of geometry and gravity are used.
 /// `settings`: as `--set`. Throws base::UserError.
 MillOfCase read_mill_of_case(const std::filesystem::path& case_file, const host::Registry& registry,
                              const std::vector<std::string>& settings = {});
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 /// Where the mirrored array takes element `i` from.
@@ -102,4 +102,4 @@ ResultSet mirrored(const ResultSet& results, std::vector<std::string>& done) {
   return out;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

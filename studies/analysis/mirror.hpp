@@ -13,7 +13,7 @@
 
 #include "studies/analysis/results.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 /// What happens to one result.
 struct MirrorRule {
@@ -29,4 +29,4 @@ MirrorRule mirror_rule(const ResultSet& results, const ResultArray& array);
 /// Mirrors all results; `done` receives one phrase for each kind of change that was made.
 ResultSet mirrored(const ResultSet& results, std::vector<std::string>& done);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -13,7 +13,7 @@
 #include "studies/analysis/tracks_source.hpp"
 #include "studies/recording/description.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,14 +98,15 @@ OpenedSource open_source(const SourceRequest& asked, const host::Registry& regis
   return opened;
 }
 
-TrajectoryOptions read_trajectory_options(const config::Node& section) {
+trajectory::TrajectoryOptions read_trajectory_options(const config::Node& section) {
   section.expect({"kind", "step", "gap_limit", "least_points", "noise", "noise_correlation", "low", "high"});
-  TrajectoryOptions options;
+  trajectory::TrajectoryOptions options;
   if (const auto node = section.find("kind"))
-    options.kind = config::read_choice(*node, "smoothing|cubic") == "cubic" ? SplineKind::cubic : SplineKind::smoothing;
+    options.kind =
+        config::read_choice(*node, "smoothing|cubic") == "cubic" ? trajectory::SplineKind::cubic : trajectory::SplineKind::smoothing;
   if (const auto node = section.find("step")) options.step = config::read_number(*node, "s", short_step());
   options.gap_limit = 0;  // 0: what the recording says
-  if (const auto node = section.find("gap_limit")) options.gap_limit = config::read_number(*node, "s", gap_limit_range());
+  if (const auto node = section.find("gap_limit")) options.gap_limit = config::read_number(*node, "s", recording::gap_limit_range());
   if (const auto node = section.find("least_points")) {
     options.least_points = static_cast<int>(config::read_integer(*node, config::between(4, 1e6, "a cubic needs four points")));
   }
@@ -142,4 +143,4 @@ std::string file_hash(const fs::path& file) {
   return hash.text();
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

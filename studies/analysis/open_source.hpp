@@ -12,15 +12,15 @@
 #include "studies/analysis/results.hpp"
 #include "studies/analysis/source.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 struct SourceRequest {
   std::filesystem::path path;
-  std::vector<std::string> tracers;  ///< ids of beads to follow instead of looking at all, or "all"; simulations only
-  std::optional<double> from, to;    ///< s
-  TrajectoryOptions trajectory;      ///< `axis`, and for simulated beads noise and kind, are set by the source
-  bool trajectory_given = false;     ///< the user has chosen them: also simulated beads go through them
-  int threads = 0;                   ///< 0: all cores; no influence on results
+  std::vector<std::string> tracers;          ///< ids of beads to follow instead of looking at all, or "all"; simulations only
+  std::optional<double> from, to;            ///< s
+  trajectory::TrajectoryOptions trajectory;  ///< `axis`, and for simulated beads noise and kind, are set by the source
+  bool trajectory_given = false;             ///< the user has chosen them: also simulated beads go through them
+  int threads = 0;                           ///< 0: all cores; no influence on results
 };
 
 struct OpenedSource {
@@ -33,9 +33,9 @@ OpenedSource open_source(const SourceRequest& request, const host::Registry& reg
 
 /// Reads `trajectory: {kind: cubic|smoothing, step, gap_limit, least_points, noise, noise_correlation, low, high}`
 /// of the settings.
-TrajectoryOptions read_trajectory_options(const config::Node& section);
+trajectory::TrajectoryOptions read_trajectory_options(const config::Node& section);
 
 /// FNV-1a of a file's bytes, hexadecimal; of a file above 64 MiB its size and 64 MiB of it, one in each even part.
 std::string file_hash(const std::filesystem::path& file);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -8,7 +8,7 @@
 #include "kernel/base/error.hpp"
 #include "studies/inspect/mill_motion.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 using base::UserError;
@@ -16,8 +16,8 @@ using base::UserError;
 constexpr double kRpm = 30 / std::numbers::pi;
 
 /// What recording.yaml and the geometry say; 0 where they say nothing.
-AnalyzerContext stated(const Recording& recording, const std::optional<MillOfCase>& mill) {
-  const Condition& c = recording.condition;
+AnalyzerContext stated(const recording::Recording& recording, const std::optional<MillOfCase>& mill) {
+  const recording::Condition& c = recording.condition;
   AnalyzerContext context{};
   context.is_recording = 1;
   context.gravity = 9.81;
@@ -45,7 +45,7 @@ AnalyzerContext stated(const Recording& recording, const std::optional<MillOfCas
 }
 
 /// M = (1 − φ) J V ρ (Chagas 2015, Eq. 4.1), V of the bare shell.
-void weigh_charge(const Condition& c, AnalyzerContext& context) {
+void weigh_charge(const recording::Condition& c, AnalyzerContext& context) {
   const double length = context.mill_length;
   if (!c.filling || !c.porosity || !(context.mill_radius > 0) || !(length > 0) || !(context.bead_density > 0)) return;
   const double solids = (1 - *c.porosity) * *c.filling * std::numbers::pi * context.mill_radius * context.mill_radius * length;
@@ -54,15 +54,15 @@ void weigh_charge(const Condition& c, AnalyzerContext& context) {
   if (bead > 0) context.charge_count = solids / bead;
 }
 
-std::string interval_text(const Finding& finding, double factor) {
+std::string interval_text(const inspect::Finding& finding, double factor) {
   const base::Interval90& e = *finding.estimate;
-  if (finding.bound == Bound::at_least) return fmt::format("{:.4g} (at least {:.4g})", factor * e.value, factor * e.low);
+  if (finding.bound == inspect::Bound::at_least) return fmt::format("{:.4g} (at least {:.4g})", factor * e.value, factor * e.low);
   return fmt::format("{:.4g} [{:.4g}, {:.4g}]", factor * e.value, factor * e.low, factor * e.high);
 }
 
 const char* sense_text(double omega) { return omega > 0 ? "counter-clockwise" : "clockwise"; }
 
-void find_axis(const Recording& recording, const MillMotion& motion, RecordedMill& known) {
+void find_axis(const recording::Recording& recording, const inspect::MillMotion& motion, RecordedMill& known) {
   if (motion.sense == 0 || !motion.axis[0].estimate || !motion.axis[1].estimate) {
     throw UserError(fmt::format(
         "{}: the mill's axis is neither given nor to be found ({}); write it into a recording.yaml, e.g. 'frame: {{axis: [0, 0, mm]}}'",
@@ -73,7 +73,7 @@ void find_axis(const Recording& recording, const MillMotion& motion, RecordedMil
                                     interval_text(motion.axis[0], 1e3), interval_text(motion.axis[1], 1e3)));
 }
 
-void find_speed(const Recording& recording, const MillMotion& motion, RecordedMill& known) {
+void find_speed(const recording::Recording& recording, const inspect::MillMotion& motion, RecordedMill& known) {
   const std::optional<double>& speed = recording.condition.speed;
   if (motion.sense == 0 || (!speed && !motion.speed.estimate)) {
     known.notes.push_back(
@@ -86,26 +86,26 @@ void find_speed(const Recording& recording, const MillMotion& motion, RecordedMi
 }
 
 /// Holds the speed that is stated against the one found. Refuses what rides along the shell contradict, notes the rest.
-void check_speed(const Recording& recording, const MillMotion& motion, RecordedMill& known) {
-  const Agreement agreement = compare_speed(recording.condition, motion);
-  if (agreement == Agreement::unknown || agreement == Agreement::within) return;
+void check_speed(const recording::Recording& recording, const inspect::MillMotion& motion, RecordedMill& known) {
+  const inspect::Agreement agreement = inspect::compare_speed(recording.condition, motion);
+  if (agreement == inspect::Agreement::unknown || agreement == inspect::Agreement::within) return;
   const double stated = *recording.condition.speed * kRpm;
   std::string what;
-  if (agreement == Agreement::opposite) {
+  if (agreement == inspect::Agreement::opposite) {
     what = fmt::format(
         "the mill is stated to turn {}, but the tracer moves along its shell {}; check the axes of recording.yaml, or its "
         "direction",
         sense_text(*recording.condition.angular_velocity), sense_text(motion.sense));
   } else {
     what = fmt::format("the mill is stated to turn at {:.4g} rpm, but {} rpm was found ({}){}", stated, interval_text(motion.speed, kRpm),
-                       motion.speed.note, agreement == Agreement::far ? "; check the speed and its unit, or leave it out" : "");
+                       motion.speed.note, agreement == inspect::Agreement::far ? "; check the speed and its unit, or leave it out" : "");
   }
-  const bool sure = agreement == Agreement::far || (agreement == Agreement::opposite && motion.rides > 0);
+  const bool sure = agreement == inspect::Agreement::far || (agreement == inspect::Agreement::opposite && motion.rides > 0);
   if (sure) throw UserError(fmt::format("{}: {}", recording.file.string(), what));
   known.notes.push_back(what);
 }
 
-void find_radius(const MillMotion& motion, RecordedMill& known) {
+void find_radius(const inspect::MillMotion& motion, RecordedMill& known) {
   if (!motion.path_radius.estimate) {
     known.notes.push_back(fmt::format("the radius of the mill is neither given nor to be found ({})", motion.path_radius.note));
     return;
@@ -119,7 +119,7 @@ void find_radius(const MillMotion& motion, RecordedMill& known) {
 
 }  // namespace
 
-RecordedMill stated_mill(const Recording& recording, const std::optional<MillOfCase>& mill) {
+RecordedMill stated_mill(const recording::Recording& recording, const std::optional<MillOfCase>& mill) {
   RecordedMill known;
   known.context = stated(recording, mill);
   if (recording.frame) known.axis = recording.frame->axis;
@@ -127,11 +127,11 @@ RecordedMill stated_mill(const Recording& recording, const std::optional<MillOfC
   return known;
 }
 
-RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCase>& mill) {
-  return know_mill(recording, mill, estimate_motion(recording));
+RecordedMill know_mill(const recording::Recording& recording, const std::optional<MillOfCase>& mill) {
+  return know_mill(recording, mill, inspect::estimate_motion(recording));
 }
 
-RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCase>& mill, const MillMotion& motion) {
+RecordedMill know_mill(const recording::Recording& recording, const std::optional<MillOfCase>& mill, const inspect::MillMotion& motion) {
   RecordedMill known = stated_mill(recording, mill);
   if (!recording.frame) find_axis(recording, motion, known);
   check_speed(recording, motion, known);
@@ -144,4 +144,4 @@ RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCas
   return known;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

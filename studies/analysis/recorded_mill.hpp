@@ -8,9 +8,11 @@
 #include "studies/analysis/mill.hpp"
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
-
+namespace millscope::inspect {
 struct MillMotion;  // studies/inspect/mill_motion.hpp
+}
+
+namespace millscope::analysis {
 
 struct RecordedMill {
   std::array<double, 2> axis{0, 0};  ///< x, y in the frame of the file, m
@@ -20,11 +22,11 @@ struct RecordedMill {
 
 /// `mill`: of the geometry that the condition names. Throws base::UserError where the axis is neither given nor to be found, and where
 /// the tracer contradicts the speed or the sense that are stated.
-RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCase>& mill);
+RecordedMill know_mill(const recording::Recording& recording, const std::optional<MillOfCase>& mill);
 /// The same where the recording's motion is known already.
-RecordedMill know_mill(const Recording& recording, const std::optional<MillOfCase>& mill, const MillMotion& motion);
+RecordedMill know_mill(const recording::Recording& recording, const std::optional<MillOfCase>& mill, const inspect::MillMotion& motion);
 
 /// What is stated, taken as it stands and held against nothing: for the film of a simulation, whose mill is known.
-RecordedMill stated_mill(const Recording& recording, const std::optional<MillOfCase>& mill);
+RecordedMill stated_mill(const recording::Recording& recording, const std::optional<MillOfCase>& mill);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -7,11 +7,11 @@
 #include "studies/analysis/follow.hpp"
 #include "studies/analysis/recorded_mill.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 namespace fs = std::filesystem;
-void cut(Run& run, const SourceRequest& request) {
+void cut(recording::Run& run, const SourceRequest& request) {
   if (!request.from && !request.to) return;
   const auto begin = run.time.begin();
   const auto first = request.from ? std::lower_bound(begin, run.time.end(), *request.from) - begin : 0;
@@ -28,8 +28,8 @@ void cut(Run& run, const SourceRequest& request) {
 using Json = nlohmann::ordered_json;
 
 /// What of a file is used, and by which rules the rest was set aside.
-Json run_json(const Run& run) {
-  const RunReport& r = run.report;
+Json run_json(const recording::Run& run) {
+  const recording::RunReport& r = run.report;
   return {{"name", run.name},
           {"file", run.source},
           {"format", run.format},
@@ -48,15 +48,15 @@ Json run_json(const Run& run) {
 }
 
 /// One note for a run of which rows were set aside or out of order; none else.
-std::vector<std::string> row_notes(const Recording& recording) {
+std::vector<std::string> row_notes(const recording::Recording& recording) {
   std::vector<std::string> notes;
   std::string format;
-  for (const Run& run : recording.runs) {
+  for (const recording::Run& run : recording.runs) {
     if (run.format != format) notes.push_back(fmt::format("{}{} read as {}", run.name, format.empty() ? "" : " and on", run.format));
     format = run.format;
   }
-  for (const Run& run : recording.runs) {
-    const RunReport& r = run.report;
+  for (const recording::Run& run : recording.runs) {
+    const recording::RunReport& r = run.report;
     std::string counts;
     const auto add = [&](std::uint64_t count, const char* words) {
       if (count > 0) counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, words);
@@ -77,7 +77,7 @@ std::vector<std::string> row_notes(const Recording& recording) {
 }  // namespace
 
 OpenedSource open_recording(const SourceRequest& request, const host::Registry& registry) {
-  Recording recording = read_recording(request.path);
+  recording::Recording recording = recording::read_recording(request.path);
   OpenedSource opened;
   std::optional<MillOfCase> mill;
   if (const fs::path& geometry = recording.condition.geometry; !geometry.empty()) {
@@ -87,11 +87,11 @@ OpenedSource open_recording(const SourceRequest& request, const host::Registry& 
   const RecordedMill known = know_mill(recording, mill);
   opened.meta.notes = known.notes;
   for (std::string& note : row_notes(recording)) opened.meta.notes.push_back(std::move(note));
-  for (const Run& run : recording.runs) opened.meta.runs.push_back(run_json(run));
-  TrajectoryOptions options = request.trajectory;
+  for (const recording::Run& run : recording.runs) opened.meta.runs.push_back(run_json(run));
+  trajectory::TrajectoryOptions options = request.trajectory;
   options.axis = known.axis;
   if (!(options.gap_limit > 0)) options.gap_limit = recording.gap_limit;
-  for (Run& run : recording.runs) cut(run, request);
+  for (recording::Run& run : recording.runs) cut(run, request);
   Followed followed =
       follow(tracer_runs(recording, options),
              {.of = request.path.string(), .mill = known.context, .motion = even_motion(known.context.omega), .threads = request.threads});
@@ -112,4 +112,4 @@ OpenedSource open_recording(const SourceRequest& request, const host::Registry& 
   return opened;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -8,7 +8,7 @@
 #include "millscope/observation_adapter.hpp"
 #include "studies/analysis/results.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 constexpr double kReliableBlocks = 10;
@@ -138,4 +138,4 @@ Uncertainty uncertainty(double value, std::span<const float> draws, std::span<co
   return u;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

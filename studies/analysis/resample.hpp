@@ -18,7 +18,7 @@
 #include <span>
 #include <vector>
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();  ///< what the data leave undefined
 
@@ -43,4 +43,4 @@ std::vector<float> influence_draws(std::span<const float> left_out, std::span<co
 /// NaN where undefined.
 Uncertainty uncertainty(double value, std::span<const float> draws, std::span<const float> left_out, std::span<const std::uint8_t> follows);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 const ResultArray* ResultSet::find(const std::string& analyzer, const std::string& name) const {
   const auto found =
@@ -23,4 +23,4 @@ std::string entry_name(const ResultSet& results, const CovarianceEntry& entry) {
   return array.shape.empty() ? name : fmt::format("{}[{}]", name, entry.element);
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

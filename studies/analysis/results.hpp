@@ -15,7 +15,7 @@
 
 #include "millscope/analyzer.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 inline constexpr std::uint32_t kResultsSchema = 2;
 
@@ -124,4 +124,4 @@ void write_results(const std::filesystem::path& file, const ResultSet& results, 
 /// Reads a results.h5, or that of an output directory. Throws base::UserError.
 ResultSet read_results(const std::filesystem::path& file_or_directory);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -8,7 +8,7 @@
 
 #include "studies/analysis/results.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 inline constexpr const char* kResultsFormat = "millscope results";
 
@@ -37,4 +37,4 @@ inline constexpr std::array<ContextField, 14> kContextFields{{{"mill_radius", "m
 nlohmann::ordered_json meta_json(const ResultMeta& meta);
 void read_meta_json(const nlohmann::ordered_json& json, ResultMeta& meta);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -2,7 +2,7 @@
 
 #include "studies/analysis/results_file.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 using Json = nlohmann::ordered_json;
 
@@ -62,4 +62,4 @@ void read_meta_json(const Json& j, ResultMeta& meta) {
   meta.provenance = j.at("provenance");
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

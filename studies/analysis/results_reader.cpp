@@ -6,7 +6,7 @@
 #include "kernel/output/reading.hpp"
 #include "studies/analysis/results_file.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -166,4 +166,4 @@ ResultSet read_results(const fs::path& file_or_directory) {
   return results;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

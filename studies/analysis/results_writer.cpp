@@ -7,7 +7,7 @@
 #include "kernel/output/hdf5_tools.hpp"
 #include "studies/analysis/results_file.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -158,4 +158,4 @@ void write_results(const fs::path& file, const ResultSet& results, bool overwrit
   }
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -9,7 +9,7 @@
 #include "millscope/analyzer.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 struct BasicSeries;  // times.hpp
 
@@ -42,4 +42,4 @@ class FrameSource {
   virtual void want(std::uint64_t fields) = 0;
 };
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -11,7 +11,7 @@
 #include "kernel/base/parallel.hpp"
 #include "millscope/analyzer_adapter.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 using base::UserError;
@@ -199,4 +199,4 @@ void finish_values(const AnalyzerInstance& instance, const SumLayout::Part& part
   if (filler.differs) blame(instance, "gives results of other shapes for other sums: shapes must not depend on the data");
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

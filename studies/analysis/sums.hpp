@@ -9,7 +9,7 @@
 #include "studies/analysis/results.hpp"
 #include "studies/analysis/source.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 using Row = std::vector<double>;
 
@@ -47,4 +47,4 @@ std::vector<ResultArray> finish_arrays(const AnalyzerInstance& instance, const S
 void finish_values(const AnalyzerInstance& instance, const SumLayout::Part& part, const double* sums, const std::vector<ResultArray>& like,
                    std::span<double> values);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -11,7 +11,7 @@
 #include "kernel/output/file.hpp"
 #include "studies/analysis/results_file.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -201,4 +201,4 @@ std::string number_table(const ResultSet& results, std::size_t most) {
   return page;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

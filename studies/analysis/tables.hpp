@@ -9,7 +9,7 @@
 
 #include "studies/analysis/results.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 /// Writes DIRECTORY/numbers.csv (all single numbers) and one table for each set of axes of an analyzer, ANALYZER.AXES.csv: a row for each
 /// cell with the bounds of its axes, then value, _sem, _low and _high of each result. Returns the files. Throws base::UserError.
@@ -25,4 +25,4 @@ std::string number_table(const ResultSet& results, std::size_t most);
 /// "few blocks, correlated"; "" when nothing is doubtful.
 std::string flag_text(std::uint8_t flags);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

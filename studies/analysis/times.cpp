@@ -9,7 +9,7 @@
 #include "kernel/base/statistics.hpp"
 #include "studies/analysis/resample.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 /// Mean and variance of all values.
@@ -257,4 +257,4 @@ BlockRule block_rule(const std::vector<BasicSeries>& stretches, bool one_bead) {
   return rule;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -8,7 +8,7 @@
 #include "millscope/analyzer.hpp"
 #include "studies/analysis/results.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 inline constexpr std::size_t kBasics = 5;
 inline constexpr std::array<const char*, kBasics> kBasicNames{"x", "y", "radius", "z", "speed"};
@@ -59,4 +59,4 @@ struct BlockRule {
 /// `one_bead`: the series follow a single bead, so that circulations are seen.
 BlockRule block_rule(const std::vector<BasicSeries>& stretches, bool one_bead);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

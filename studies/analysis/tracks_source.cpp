@@ -9,7 +9,7 @@
 #include "kernel/output/track_reader.hpp"
 #include "studies/analysis/follow.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,9 +39,9 @@ std::vector<std::size_t> pick(const output::TrackReader& reader, const std::vect
   return {picked.begin(), picked.end()};
 }
 
-Run run_of(const output::TrackReader& reader, std::size_t track, const SourceRequest& request, double period) {
+recording::Run run_of(const output::TrackReader& reader, std::size_t track, const SourceRequest& request, double period) {
   output::TrackSamples samples = reader.read(track);
-  Run run;
+  recording::Run run;
   run.name = reader.tracks()[track].name;
   run.source = reader.path().string();
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -59,11 +59,11 @@ Run run_of(const output::TrackReader& reader, std::size_t track, const SourceReq
 }
 
 /// Exact positions need no smoothing; the even step is no finer than theirs.
-TrajectoryOptions options_for(const Run& run, const SourceRequest& request) {
-  TrajectoryOptions options = request.trajectory;
+trajectory::TrajectoryOptions options_for(const recording::Run& run, const SourceRequest& request) {
+  trajectory::TrajectoryOptions options = request.trajectory;
   const double interval = (run.time.back() - run.time.front()) / static_cast<double>(run.size() - 1);
   if (!request.trajectory_given) {
-    options.kind = SplineKind::cubic;
+    options.kind = trajectory::SplineKind::cubic;
     options.noise.fill(1e-9);  // what a double leaves of a position
     options.noise_correlation = 0;
     options.step = std::max(options.step, interval);
@@ -90,7 +90,7 @@ OpenedSource open_tracks(const SourceRequest& request, MillOfCase mill) {
   }
   OpenedSource opened;
   const std::vector<std::size_t> tracks = pick(reader, request.tracers);
-  std::vector<Run> runs;
+  std::vector<recording::Run> runs;
   for (const std::size_t track : tracks) runs.push_back(run_of(reader, track, request, mill.period));
   std::vector<BeadRun> beads;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -112,4 +112,4 @@ OpenedSource open_tracks(const SourceRequest& request, MillOfCase mill) {
   return opened;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -4,7 +4,7 @@
 #include "studies/analysis/mill.hpp"
 #include "studies/analysis/open_source.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 /// The tracks that `request` names, or all. Throws base::UserError.
 OpenedSource open_tracks(const SourceRequest& request, MillOfCase mill);
@@ -12,4 +12,4 @@ OpenedSource open_tracks(const SourceRequest& request, MillOfCase mill);
 /// The shell's turning speed and angle as functions of time; empty for a mill at rest.
 struct ShellMotion shell_motion(const dem::Motion& motion);
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -11,16 +11,16 @@
 #include "kernel/base/error.hpp"
 #include "studies/analysis/times.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 namespace {
 
 struct TrajectoryScratch : FrameSource::Scratch {
   FrameBlock block{};
 };
 
-double covered(const Trajectory& t) {
+double covered(const trajectory::Trajectory& t) {
   double sum = 0;
-  for (const Piece& piece : t.pieces) sum += std::accumulate(piece.weight.begin(), piece.weight.end(), 0.0);
+  for (const trajectory::Piece& piece : t.pieces) sum += std::accumulate(piece.weight.begin(), piece.weight.end(), 0.0);
   return sum;
 }
 
@@ -31,7 +31,7 @@ std::size_t parts_of(double own, double total, double duration, std::size_t most
   return static_cast<std::size_t>(std::max(1.0, std::min(fair, fit)));
 }
 
-double mass_of(const Trajectory& t) { return t.density * std::numbers::pi / 6 * t.diameter * t.diameter * t.diameter; }
+double mass_of(const trajectory::Trajectory& t) { return t.density * std::numbers::pi / 6 * t.diameter * t.diameter * t.diameter; }
 
 }  // namespace
 
@@ -43,7 +43,7 @@ struct TrajectorySource::Arrays {
   std::vector<std::int64_t> location_id;
 
   std::size_t size() const { return time.size(); }
-  void add(const Piece& from, std::size_t k, std::int32_t number, double sample_weight) {
+  void add(const trajectory::Piece& from, std::size_t k, std::int32_t number, double sample_weight) {
     time.push_back(from.start + static_cast<double>(k) * from.step);
     piece.push_back(number);
     weight.push_back(sample_weight);
@@ -56,8 +56,8 @@ struct TrajectorySource::Arrays {
   }
 };
 
-TrajectorySource::TrajectorySource(std::vector<Trajectory> trajectories, AnalyzerContext context, ShellMotion motion, bool exact,
-                                   std::string description)
+TrajectorySource::TrajectorySource(std::vector<trajectory::Trajectory> trajectories, AnalyzerContext context, ShellMotion motion,
+                                   bool exact, std::string description)
     : trajectories_(std::move(trajectories)),
       context_(context),
       motion_(std::move(motion)),
@@ -70,9 +70,9 @@ TrajectorySource::TrajectorySource(std::vector<Trajectory> trajectories, Analyze
   context_.largest_id = 0;
   context_.start = std::numeric_limits<double>::infinity();
   context_.end = -context_.start;
-  for (const Trajectory& t : trajectories_) {
+  for (const trajectory::Trajectory& t : trajectories_) {
     context_.largest_id = std::max(context_.largest_id, t.id);
-    for (const Piece& piece : t.pieces) {
+    for (const trajectory::Piece& piece : t.pieces) {
       context_.start = std::min(context_.start, piece.start);
       context_.end = std::max(context_.end, piece.start + static_cast<double>(piece.size() - 1) * piece.step);
     }
@@ -85,13 +85,13 @@ TrajectorySource::~TrajectorySource() = default;
 void TrajectorySource::tell_trimmed() {
   double trimmed = 0, kept = 0;
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Trajectory& t : trajectories_) {
+  for (const trajectory::Trajectory& t : trajectories_) {
     trimmed += static_cast<double>(t.samples_trimmed);
-    for (const Piece& piece : t.pieces) kept += static_cast<double>(piece.size());
+    for (const trajectory::Piece& piece : t.pieces) kept += static_cast<double>(piece.size());
     for (const double z : t.location_position[2]) low = std::min(low, z), high = std::max(high, z);
   }
   if (trimmed == 0) return;
-  const auto outside = std::erase_if(trajectories_, [](const Trajectory& t) { return t.pieces.empty(); });
+  const auto outside = std::erase_if(trajectories_, [](const trajectory::Trajectory& t) { return t.pieces.empty(); });
   if (trajectories_.empty()) {
     throw base::UserError(
         fmt::format("{}: nothing lies between trajectory.low and trajectory.high: z goes from {:.4g} m to {:.4g} m; give a range within "
@@ -118,7 +118,7 @@ void TrajectorySource::cut(double duration, std::size_t most) {
   chunks_.clear();
   std::size_t longest = 0;
   std::vector<double> own;
-  for (const Trajectory& t : trajectories_) own.push_back(covered(t));
+  for (const trajectory::Trajectory& t : trajectories_) own.push_back(covered(t));
   const double total = std::accumulate(own.begin(), own.end(), 0.0);
   for (std::size_t k = 0; k < trajectories_.size(); ++k) {
     lay_out(k, parts_of(own[k], total, duration, most));
@@ -129,14 +129,14 @@ void TrajectorySource::cut(double duration, std::size_t most) {
 }
 
 void TrajectorySource::lay_out(std::size_t number, std::size_t parts) {
-  const Trajectory& t = trajectories_[number];
+  const trajectory::Trajectory& t = trajectories_[number];
   auto arrays = std::make_unique<Arrays>();
   const double total = covered(t);
   double before = 0;
   std::size_t part = 0;
   chunks_.push_back({number, 0, 0, 0, 0, 0});
   for (std::size_t p = 0; p < t.pieces.size(); ++p) {
-    const Piece& piece = t.pieces[p];
+    const trajectory::Piece& piece = t.pieces[p];
     const auto label = static_cast<std::int32_t>(p);
     for (std::size_t k = 0; k < piece.size(); ++k) {
       const double middle = before + 0.5 * piece.weight[k];
@@ -180,7 +180,7 @@ const FrameBlock& TrajectorySource::load(std::size_t number, Scratch& scratch) c
   FrameBlock& block = static_cast<TrajectoryScratch&>(scratch).block;
   const Chunk& chunk = chunks_.at(number);
   const Arrays& a = *arrays_[chunk.stretch];
-  const Trajectory& t = trajectories_[chunk.stretch];
+  const trajectory::Trajectory& t = trajectories_[chunk.stretch];
   const std::size_t from = chunk.first;
   block = {};
   block.has = context_.has;
@@ -209,4 +209,4 @@ const FrameBlock& TrajectorySource::load(std::size_t number, Scratch& scratch) c
   return block;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

@@ -5,7 +5,7 @@
 
 #include "studies/analysis/source.hpp"
 
-namespace millscope::studies {
+namespace millscope::analysis {
 
 /// What is known of the mill's motion at a time.
 struct ShellMotion {
@@ -17,7 +17,8 @@ class TrajectorySource : public FrameSource {
  public:
   /// `context.has`, `largest_id`, `start` and `end` are set here. `exact`: positions without noise, so that no variance is given.
   /// Trajectories without a piece, all of whose samples were trimmed, are left out; throws base::UserError when none remains.
-  TrajectorySource(std::vector<Trajectory> trajectories, AnalyzerContext context, ShellMotion motion, bool exact, std::string description);
+  TrajectorySource(std::vector<trajectory::Trajectory> trajectories, AnalyzerContext context, ShellMotion motion, bool exact,
+                   std::string description);
   ~TrajectorySource() override;
 
   const AnalyzerContext& context() const override { return context_; }
@@ -42,7 +43,7 @@ class TrajectorySource : public FrameSource {
   void tell_trimmed();
   void lay_out(std::size_t trajectory, std::size_t parts);
 
-  std::vector<Trajectory> trajectories_;
+  std::vector<trajectory::Trajectory> trajectories_;
   AnalyzerContext context_;
   ShellMotion motion_;
   bool exact_;
@@ -53,4 +54,4 @@ class TrajectorySource : public FrameSource {
   std::vector<std::int64_t> first_;  ///< 0, 1, 2, …: one sample per frame
 };
 
-}  // namespace millscope::studies
+}  // namespace millscope::analysis

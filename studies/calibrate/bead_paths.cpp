@@ -43,7 +43,7 @@ double lever_ratio(const output::FrameBeads& beads, const config::Case& c, const
 }  // namespace
 
 BeadPaths::BeadPaths(const std::filesystem::path& run, int beads, const AxialPlace& place, const host::Registry& registry)
-    : case_file_(run / "case.resolved.yaml"), mill_(studies::read_mill_of_case(case_file_, registry)), place_(place) {
+    : case_file_(run / "case.resolved.yaml"), mill_(analysis::read_mill_of_case(case_file_, registry)), place_(place) {
   const output::FrameReader reader(run / "frames.h5");
   const config::Case c = config::read_case(case_file_.string());
   const double from = c.time.analyze_from;
@@ -109,7 +109,7 @@ output::TrackSamples BeadPaths::path(std::size_t i) const {
 TrackContext BeadPaths::context(std::size_t i, std::uint64_t seed) const {
   const bool part = mill_.period > 0 && place_.high - place_.low > mill_.period;
   TrackContext context{};
-  context.seed = studies::bead_seed(seed, ids_[i]);
+  context.seed = camera::bead_seed(seed, ids_[i]);
   context.bead_radius = radius_[i];
   context.mill_radius = mill_.context.mill_radius;
   const double half = 0.5 * (place_.high - place_.low);

@@ -33,7 +33,7 @@ class BeadPaths {
 
   std::size_t size() const { return ids_.size(); }
   std::uint32_t id(std::size_t i) const { return ids_[i]; }
-  const studies::MillOfCase& mill() const { return mill_; }
+  const analysis::MillOfCase& mill() const { return mill_; }
   const std::filesystem::path& case_file() const { return case_file_; }
   /// The power of the charge without unlike tracers, all N beads like the others, over that of the run: 1 where no class is set apart.
   double power_ratio() const { return lever_ratio_; }
@@ -44,7 +44,7 @@ class BeadPaths {
 
  private:
   std::filesystem::path case_file_;
-  studies::MillOfCase mill_;
+  analysis::MillOfCase mill_;
   AxialPlace place_;
   double lever_ratio_ = 1;
   std::vector<std::uint32_t> ids_;

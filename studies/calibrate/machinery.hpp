@@ -21,8 +21,8 @@ struct Machinery {
   std::function<Observation(std::size_t condition, const campaign::Outcome&, const std::string& camera)> observe;
   /// Results of other analyzers (as in analysis.yaml), of the recording where the outcome has no folder; not set: nothing is looked at
   /// again.
-  std::function<studies::ResultSet(std::size_t condition, const campaign::Outcome&, const std::string& analyzers,
-                                   const std::string& camera)>
+  std::function<analysis::ResultSet(std::size_t condition, const campaign::Outcome&, const std::string& analyzers,
+                                    const std::string& camera)>
       results;
   std::function<void(const std::string&)> progress;  ///< one line; may be empty
   int slots = 1;                                     ///< simulations at once, for the wall budget

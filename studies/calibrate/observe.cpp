@@ -22,18 +22,18 @@ using base::UserError;
 constexpr std::size_t kLeastPoints = 30;  // of a bead that the camera saw too little of
 
 /// The frame of a simulation is known: a link that shifts it is left out, as a recording's shift is taken off.
-studies::Camera without_frame(const studies::Camera& camera) {
-  std::vector<studies::CameraLink> links;
-  for (const studies::CameraLink& link : camera.links()) {
+camera::Camera without_frame(const camera::Camera& camera) {
+  std::vector<camera::CameraLink> links;
+  for (const camera::CameraLink& link : camera.links()) {
     if (link.plugin.name() != "frame_error") links.push_back(link);
   }
-  return studies::Camera(std::move(links));
+  return camera::Camera(std::move(links));
 }
 
-studies::Condition condition_of(const BeadPaths& paths) {
-  const studies::MillOfCase& mill = paths.mill();
+recording::Condition condition_of(const BeadPaths& paths) {
+  const analysis::MillOfCase& mill = paths.mill();
   const AnalyzerContext& c = mill.context;
-  studies::Condition condition;
+  recording::Condition condition;
   condition.angular_velocity = c.omega;
   condition.speed = std::fabs(c.omega);
   if (c.filling > 0) condition.filling = c.filling, condition.porosity = c.porosity;
@@ -51,19 +51,19 @@ std::uint64_t camera_seed(const std::string& key) { return std::stoull(hash_of({
 
 /// How one run is filmed.
 struct Film {
-  studies::Camera camera;
+  camera::Camera camera;
   std::uint64_t seed = 0;
   double gap_limit = 0;  ///< s, by which it is cleaned
 };
 
 /// What the camera makes of the beads, as it would be read from files and cleaned by the recording's own gap limit.
-studies::Recording film(const BeadPaths& paths, const Film& how, int threads) {
-  std::vector<studies::Run> seen(paths.size());
+recording::Recording film(const BeadPaths& paths, const Film& how, int threads) {
+  std::vector<recording::Run> seen(paths.size());
   base::for_each_item(paths.size(), base::worker_count(threads, paths.size()), [&](std::size_t i, std::size_t) {
-    const studies::Run run = studies::observe(paths.path(i), how.camera, paths.context(i, how.seed));
-    if (run.size() >= kLeastPoints) seen[i] = studies::as_written(run);
+    const recording::Run run = camera::observe(paths.path(i), how.camera, paths.context(i, how.seed));
+    if (run.size() >= kLeastPoints) seen[i] = camera::as_written(run);
   });
-  studies::Recording recording;
+  recording::Recording recording;
   recording.file = paths.case_file();
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (seen[i].size() == 0) continue;
@@ -74,9 +74,9 @@ studies::Recording film(const BeadPaths& paths, const Film& how, int threads) {
   if (recording.runs.empty())
     throw UserError(fmt::format("{}: the camera saw none of the beads for long enough; loosen it", paths.case_file().string()));
   recording.condition = condition_of(paths);
-  recording.frame = studies::MillFrame{};
+  recording.frame = recording::MillFrame{};
   recording.gap_limit = how.gap_limit;
-  return studies::clean_recording(std::move(recording));
+  return recording::clean_recording(std::move(recording));
 }
 
 /// At a finished run. `camera`: text of links before those of the recording's camera; may be empty.
@@ -92,8 +92,8 @@ struct Observer::Impl {
   fs::path cache;
   Recordings recordings;
   std::vector<RecordedCondition> recorded = {};
-  std::vector<studies::Camera> camera = {};  ///< of each condition; of a profile: none
-  std::vector<AnalyzerContext> mill = {};    ///< of the study's case in each condition
+  std::vector<camera::Camera> camera = {};  ///< of each condition; of a profile: none
+  std::vector<AnalyzerContext> mill = {};   ///< of the study's case in each condition
 
   /// A slice is scaled to the recorded mill; a run whose filling is varied keeps what that does to the power, one of another length does
   /// not.
@@ -104,16 +104,16 @@ struct Observer::Impl {
   }
 
   /// The run's beads through the recording's camera and the same processing, turned to the recording's sense.
-  studies::ResultSet seen(std::size_t condition, const BeadPaths& paths, const Look& look, const Processing& processing) const {
+  analysis::ResultSet seen(std::size_t condition, const BeadPaths& paths, const Look& look, const Processing& processing) const {
     const RecordedCondition& r = recorded[condition];
     const std::string name = "camera of condition '" + how.study.conditions[condition].name + "'";
-    const studies::Camera first = look.camera.empty() ? studies::Camera() : studies::parse_camera(look.camera, name, how.registry);
-    const studies::Recording recording =
+    const camera::Camera first = look.camera.empty() ? camera::Camera() : camera::parse_camera(look.camera, name, how.registry);
+    const recording::Recording recording =
         film(paths, {first.before(camera[condition]), camera_seed(look.run.key), r.smoothing.gap_limit}, how.threads);
-    const studies::ResultSet results =
-        process({recording, studies::stated_mill(recording, paths.mill()), Side::simulated}, r.smoothing, processing);
+    const analysis::ResultSet results =
+        process({recording, analysis::stated_mill(recording, paths.mill()), Side::simulated}, r.smoothing, processing);
     std::vector<std::string> done;
-    return paths.mill().context.omega * r.omega < 0 ? studies::mirrored(results, done) : results;
+    return paths.mill().context.omega * r.omega < 0 ? analysis::mirrored(results, done) : results;
   }
 
   /// The charge as a whole, without a camera.
@@ -128,7 +128,7 @@ struct Observer::Impl {
     const fs::path& run = look.run.folder;
     if (!r.analyzers.empty()) return profile(r, run);
     const BeadPaths paths(run, how.study.observing.beads, r.place, how.registry);
-    const studies::ResultSet results = seen(condition, paths, look, how);
+    const analysis::ResultSet results = seen(condition, paths, look, how);
     Observation o = summarise(results, r.summaries);
     o.bead_seconds = paths.seconds() * static_cast<double>(paths.size());
     if (r.measured_power)
@@ -149,9 +149,9 @@ Observer::Observer(const Study& study, const host::Registry& registry, Recording
     const Recorded& recorded = *impl_->recordings[c];
     impl_->recorded.push_back(look_at_recording(c, recorded, impl_->how, impl_->cache));
     const std::string where = study.observing.camera_is_file() ? study.observing.camera : fmt::format("camera of condition '{}'", name);
-    impl_->camera.push_back(recorded.of_tracks() ? without_frame(studies::parse_camera(impl_->recorded[c].camera, where, registry))
-                                                 : studies::Camera());
-    impl_->mill.push_back(studies::read_mill_of_case(study.base, registry, study.conditions[c].settings).context);
+    impl_->camera.push_back(recorded.of_tracks() ? without_frame(camera::parse_camera(impl_->recorded[c].camera, where, registry))
+                                                 : camera::Camera());
+    impl_->mill.push_back(analysis::read_mill_of_case(study.base, registry, study.conditions[c].settings).context);
   }
 }
 
@@ -175,8 +175,8 @@ Observation Observer::simulated(std::size_t condition, const campaign::Outcome& 
   return o;
 }
 
-studies::ResultSet Observer::results(std::size_t condition, const campaign::Outcome& run, const std::string& analyzers,
-                                     const std::string& camera) const {
+analysis::ResultSet Observer::results(std::size_t condition, const campaign::Outcome& run, const std::string& analyzers,
+                                      const std::string& camera) const {
   Processing how = impl_->how;
   how.analyzers = analyzers_of(analyzers, how.registry);
   const RecordedCondition& r = impl_->recorded[condition];

@@ -43,8 +43,8 @@ class Observer {
   Observation simulated(std::size_t condition, const campaign::Outcome& run, const std::string& camera = {}) const;
   /// Results of other analyzers (as in analysis.yaml): of the recording where the run has no folder, else of a finished run seen in the
   /// same way.
-  studies::ResultSet results(std::size_t condition, const campaign::Outcome& run, const std::string& analyzers,
-                             const std::string& camera = {}) const;
+  analysis::ResultSet results(std::size_t condition, const campaign::Outcome& run, const std::string& analyzers,
+                              const std::string& camera = {}) const;
 
  private:
   struct Impl;

@@ -12,9 +12,9 @@ namespace millscope::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
-using studies::Curve;
-using studies::CurvePicture;
-using studies::MapPicture;
+using picture::Curve;
+using picture::CurvePicture;
+using picture::MapPicture;
 
 constexpr int kCells = 40;  // of surface and posterior, along each side
 using base::kNormal90;
@@ -40,11 +40,11 @@ struct Drawer {
   std::vector<fs::path> files;
 
   void curves(const CurvePicture& picture, const std::string& name) {
-    studies::draw_curves(picture, folder / name);
+    picture::draw_curves(picture, folder / name);
     files.push_back(folder / (name + ".svg"));
   }
   void map(const MapPicture& picture, const std::string& name) {
-    studies::draw_map(picture, folder / name);
+    picture::draw_map(picture, folder / name);
     files.push_back(folder / (name + ".svg"));
   }
 };
@@ -102,7 +102,7 @@ void pairs(const Study& study, const emulate::Posterior& posterior, Drawer& draw
         };
         m.value.values[cell(b, y) * kCells + cell(a, x)] += 100.0 / static_cast<double>(posterior.samples.rows());
       }
-      m.scale = studies::ColorScale::sequential;
+      m.scale = picture::ColorScale::sequential;
       m.blank = "practically excluded";
       drawer.map(m, fmt::format("posterior_{}_{}", file_name(x.name), file_name(y.name)));
     }
@@ -127,7 +127,7 @@ void surface(const Composite& c, Drawer& drawer) {
       m.value.values.push_back(doe::value_at(s, at));
     }
   }
-  m.scale = studies::ColorScale::sequential;
+  m.scale = picture::ColorScale::sequential;
   if (s.stationary && s.stationary->inside) m.marks = {{"stationary point", s.stationary->natural[0], s.stationary->natural[1]}};
   drawer.map(m, "surface");
 }

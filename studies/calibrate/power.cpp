@@ -15,8 +15,8 @@ constexpr double kLeastPowerError = 1e-6;  // of a power: an exact one must not 
 
 }  // namespace
 
-PowerFigure beads_power(const studies::ResultSet& results, double mass, std::string how) {
-  const studies::ResultArray* specific = results.find("power", "specific_power_gravity");
+PowerFigure beads_power(const analysis::ResultSet& results, double mass, std::string how) {
+  const analysis::ResultArray* specific = results.find("power", "specific_power_gravity");
   return {mass * specific->value.at(0), mass * specific->sem.at(0), std::move(how)};
 }
 

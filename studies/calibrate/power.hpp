@@ -13,7 +13,7 @@
 namespace millscope::calibrate {
 
 /// M g <x> Ω of the beads behind the results. `mass`: kg, of the recorded charge.
-PowerFigure beads_power(const studies::ResultSet& results, double mass, std::string how);
+PowerFigure beads_power(const analysis::ResultSet& results, double mass, std::string how);
 
 /// Power of the whole simulated charge over the analysed time, from the run's own summary, times `factor`. Throws base::UserError where
 /// the run has not come to its end.

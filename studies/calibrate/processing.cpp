@@ -21,13 +21,13 @@ std::string as_yaml(std::span<const UsedAnalyzer> analyzers) {
 
 }  // namespace
 
-Smoothing smoothing_of(const studies::Recording& recording) {
-  const studies::NoiseEstimate noise = studies::estimate_noise_model(recording.runs, recording.gap_limit);
+Smoothing smoothing_of(const recording::Recording& recording) {
+  const trajectory::NoiseEstimate noise = trajectory::estimate_noise_model(recording.runs, recording.gap_limit);
   return {noise.standard_deviation, noise.correlation, recording.gap_limit};
 }
 
-studies::TrajectoryOptions trajectory_options(Side side, const Smoothing& smoothing, const Observing& observing) {
-  studies::TrajectoryOptions options;
+trajectory::TrajectoryOptions trajectory_options(Side side, const Smoothing& smoothing, const Observing& observing) {
+  trajectory::TrajectoryOptions options;
   options.step = kEvenStep;
   options.gap_limit = smoothing.gap_limit;
   options.noise = smoothing.noise;
@@ -37,21 +37,22 @@ studies::TrajectoryOptions trajectory_options(Side side, const Smoothing& smooth
   return options;
 }
 
-studies::ResultSet process(const Tracks& tracks, const Smoothing& smoothing, const Processing& how) {
-  studies::TrajectoryOptions options = trajectory_options(tracks.side, smoothing, how.study.observing);
+analysis::ResultSet process(const Tracks& tracks, const Smoothing& smoothing, const Processing& how) {
+  trajectory::TrajectoryOptions options = trajectory_options(tracks.side, smoothing, how.study.observing);
   options.axis = tracks.mill.axis;
-  const studies::Followed followed =
-      studies::follow(studies::tracer_runs(tracks.recording, options), {.of = tracks.recording.file.string(),
-                                                                        .one = "track",
-                                                                        .many = "tracks",
-                                                                        .mill = tracks.mill.context,
-                                                                        .motion = studies::even_motion(tracks.mill.context.omega),
-                                                                        .threads = how.threads});
-  studies::FrameSource& source = *followed.source;
-  studies::EngineOptions engine;
+  const analysis::Followed followed =
+      analysis::follow(analysis::tracer_runs(tracks.recording, options), {.of = tracks.recording.file.string(),
+                                                                          .one = "track",
+                                                                          .many = "tracks",
+                                                                          .mill = tracks.mill.context,
+                                                                          .motion = analysis::even_motion(tracks.mill.context.omega),
+                                                                          .threads = how.threads});
+  analysis::FrameSource& source = *followed.source;
+  analysis::EngineOptions engine;
   engine.draws = how.study.observing.draws;
   engine.threads = how.threads;
-  studies::ResultSet results = studies::run_analyzers(source, studies::create_analyzers(how.analyzers, source.context()).instances, engine);
+  analysis::ResultSet results =
+      analysis::run_analyzers(source, analysis::create_analyzers(how.analyzers, source.context()).instances, engine);
   results.meta.context = source.context();
   results.meta.description = source.description();
   std::vector<std::string>& notes = results.meta.notes;
@@ -60,16 +61,16 @@ studies::ResultSet process(const Tracks& tracks, const Smoothing& smoothing, con
   return results;
 }
 
-std::vector<studies::AskedAnalyzer> analyzers_of(const std::string& text, const host::Registry& registry) {
-  return studies::read_analyzers(config::parse_document(text, "calibrate"), true, {}, registry);
+std::vector<analysis::AskedAnalyzer> analyzers_of(const std::string& text, const host::Registry& registry) {
+  return analysis::read_analyzers(config::parse_document(text, "calibrate"), true, {}, registry);
 }
 
-std::vector<studies::AskedAnalyzer> analyzers_of(const Study& study, const host::Registry& registry) {
-  std::vector<studies::AskedAnalyzer> all = analyzers_of(as_yaml(kUsedAnalyzers), registry);
+std::vector<analysis::AskedAnalyzer> analyzers_of(const Study& study, const host::Registry& registry) {
+  std::vector<analysis::AskedAnalyzer> all = analyzers_of(as_yaml(kUsedAnalyzers), registry);
   const auto section = study.root.valid() ? study.root.find("analyzers") : std::nullopt;
   if (!section) return all;
-  for (studies::AskedAnalyzer& more : studies::read_analyzers(study.root, true, {}, registry)) {
-    if (std::any_of(all.begin(), all.end(), [&](const studies::AskedAnalyzer& known) { return known.name == more.name; }))
+  for (analysis::AskedAnalyzer& more : analysis::read_analyzers(study.root, true, {}, registry)) {
+    if (std::any_of(all.begin(), all.end(), [&](const analysis::AskedAnalyzer& known) { return known.name == more.name; }))
       section->fail(fmt::format("'{}' is the name of an analyzer that calibrate uses itself; give yours another, with 'kind: {}'",
                                 more.name, more.name));
     all.push_back(std::move(more));

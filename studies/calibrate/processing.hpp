@@ -22,19 +22,19 @@ struct Smoothing {
   double gap_limit = 0;           ///< s
   bool operator==(const Smoothing&) const = default;
 };
-Smoothing smoothing_of(const studies::Recording& recording);
+Smoothing smoothing_of(const recording::Recording& recording);
 
 /// Which side of the comparison a track is on.
 enum class Side { recorded, simulated };
 
 /// The options by which each track of a condition is followed. The sides differ in two things alone: `z_low` and `z_high` are places along
 /// the recorded mill, and beads that no camera has seen (camera: exact) have none of the recording's noise, each track tells its own.
-studies::TrajectoryOptions trajectory_options(Side side, const Smoothing& smoothing, const Observing& observing);
+trajectory::TrajectoryOptions trajectory_options(Side side, const Smoothing& smoothing, const Observing& observing);
 
 /// Tracks of a condition with the mill that they were made in.
 struct Tracks {
-  const studies::Recording& recording;
-  studies::RecordedMill mill;
+  const recording::Recording& recording;
+  analysis::RecordedMill mill;
   Side side = Side::recorded;
 };
 
@@ -43,11 +43,11 @@ struct Processing {
   const host::Registry& registry;
   int threads = 0;
   /// Read beforehand: what reads the study's file must not be done by several threads.
-  std::vector<studies::AskedAnalyzer> analyzers = {};
+  std::vector<analysis::AskedAnalyzer> analyzers = {};
 };
 
 /// Tracks through spline and analyzers. Those that cannot be followed are left out, and `notes` of the results' meta names them.
-studies::ResultSet process(const Tracks& tracks, const Smoothing& smoothing, const Processing& how);
+analysis::ResultSet process(const Tracks& tracks, const Smoothing& smoothing, const Processing& how);
 
 /// An analyzer that the observables rest on, with its parameters as in analysis.yaml.
 struct UsedAnalyzer {
@@ -58,8 +58,8 @@ inline constexpr std::array<UsedAnalyzer, 3> kUsedAnalyzers{
     {kDistributions, {"power", "{cells_x: 25, cells_y: 25}"}, {"pept_grid", "{cells_x: 24, cells_y: 24}"}}};
 
 /// Those behind the observables, and those of the study's own section `analyzers`. Throws base::UserError.
-std::vector<studies::AskedAnalyzer> analyzers_of(const Study& study, const host::Registry& registry);
+std::vector<analysis::AskedAnalyzer> analyzers_of(const Study& study, const host::Registry& registry);
 /// Those of a text as in analysis.yaml, alone.
-std::vector<studies::AskedAnalyzer> analyzers_of(const std::string& text, const host::Registry& registry);
+std::vector<analysis::AskedAnalyzer> analyzers_of(const std::string& text, const host::Registry& registry);
 
 }  // namespace millscope::calibrate

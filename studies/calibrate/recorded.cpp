@@ -37,10 +37,10 @@ void add_axis_error(const Recorded& recorded, RecordedCondition& r) {
 }
 
 /// The charge's mass: as recorded; where the recording does not tell, that of the case.
-double charge_mass(const studies::ResultSet& results, const Processing& how, std::size_t condition, Observation& o) {
+double charge_mass(const analysis::ResultSet& results, const Processing& how, std::size_t condition, Observation& o) {
   if (results.meta.context.charge_mass > 0) return results.meta.context.charge_mass;
   const double mass =
-      studies::read_mill_of_case(how.study.base, how.registry, how.study.conditions[condition].settings).context.charge_mass;
+      analysis::read_mill_of_case(how.study.base, how.registry, how.study.conditions[condition].settings).context.charge_mass;
   o.notes.push_back(
       fmt::format("the recording does not tell the mass of its charge (filling, porosity, density, length): powers are those of the "
                   "simulated {:.4g} kg",
@@ -50,10 +50,10 @@ double charge_mass(const studies::ResultSet& results, const Processing& how, std
 
 /// Nine tenths of the locations along the axis, and the middle from which the camera's noise is counted; of a slice that repeats all of it,
 /// as its beads are where their nearest image is.
-AxialPlace place_of(const studies::Recording& recording, const Observing& observing) {
+AxialPlace place_of(const recording::Recording& recording, const Observing& observing) {
   if (const auto& slice = recording.condition.slice) return {slice->low, slice->high, slice->middle()};
   std::vector<double> z;
-  for (const studies::Run& run : recording.runs) {
+  for (const recording::Run& run : recording.runs) {
     for (const double value : run.position[2]) {
       if (!observing.z_low || (value >= *observing.z_low && value <= *observing.z_high)) z.push_back(value);
     }
@@ -67,12 +67,12 @@ AxialPlace place_of(const studies::Recording& recording, const Observing& observ
 
 RecordedCondition look(const Recorded& recorded, std::size_t condition, const Processing& how) {
   RecordedCondition r;
-  const studies::Recording& recording = recorded.tracks();
+  const recording::Recording& recording = recorded.tracks();
   const Observing& observing = how.study.observing;
   const RecordingCamera camera = camera_of(recorded, how.study);
   r.camera = camera.text;
   r.smoothing = smoothing_of(recording);
-  const studies::ResultSet results = results_of_recording(recorded, r, how);
+  const analysis::ResultSet results = results_of_recording(recorded, r, how);
   r.place = place_of(recording, observing);
   r.omega = results.meta.context.omega;
   r.measured_power = recording.condition.power.has_value();
@@ -83,12 +83,12 @@ RecordedCondition look(const Recorded& recorded, std::size_t condition, const Pr
   r.observation = summarise(results, r.summaries);
   require_defined(r.observation);
   r.observation.notes = notes;
-  for (const studies::ResultBlock& block : results.meta.blocks) r.observation.bead_seconds += block.duration;
+  for (const analysis::ResultBlock& block : results.meta.blocks) r.observation.bead_seconds += block.duration;
   if (r.measured_power)
     set_metered_power(r.observation, {recording.condition.power->value, recording.condition.power->sem, "measured"});
   else
     r.observation.power = beads_power(results, r.mass, "M g <x> Omega of the tracer");
-  const std::string losses = studies::losses_text(camera.loss, std::fabs(r.omega) * results.meta.context.mill_radius);
+  const std::string losses = camera::losses_text(camera.loss, std::fabs(r.omega) * results.meta.context.mill_radius);
   if (!losses.empty()) r.observation.notes.push_back(losses + "; simulated beads are seen with the same loss");
   add_axis_error(recorded, r);
   return r;
@@ -96,11 +96,11 @@ RecordedCondition look(const Recorded& recorded, std::size_t condition, const Pr
 
 }  // namespace
 
-studies::ResultSet results_of_recording(const Recorded& recorded, const RecordedCondition& known, const Processing& how) {
-  const studies::Recording& tracks = recorded.tracks();
-  std::optional<studies::MillOfCase> mill;
-  if (!tracks.condition.geometry.empty()) mill = studies::read_mill_of_case(tracks.condition.geometry, how.registry);
-  return process({tracks, studies::know_mill(tracks, mill, recorded.motion()), Side::recorded}, known.smoothing, how);
+analysis::ResultSet results_of_recording(const Recorded& recorded, const RecordedCondition& known, const Processing& how) {
+  const recording::Recording& tracks = recorded.tracks();
+  std::optional<analysis::MillOfCase> mill;
+  if (!tracks.condition.geometry.empty()) mill = analysis::read_mill_of_case(tracks.condition.geometry, how.registry);
+  return process({tracks, analysis::know_mill(tracks, mill, recorded.motion()), Side::recorded}, known.smoothing, how);
 }
 
 RecordedCondition look_at_recording(std::size_t condition, const Recorded& recorded, const Processing& how,

@@ -33,6 +33,6 @@ RecordedCondition look_at_recording(std::size_t condition, const Recorded& recor
                                     const std::filesystem::path& cache);
 
 /// The recording again, through the analyzers of `how`.
-studies::ResultSet results_of_recording(const Recorded& recorded, const RecordedCondition& known, const Processing& how);
+analysis::ResultSet results_of_recording(const Recorded& recorded, const RecordedCondition& known, const Processing& how);
 
 }  // namespace millscope::calibrate

@@ -15,14 +15,14 @@ constexpr const char* kExactCamera = "schema_version: 1\nobservations: {rate: {k
 }  // namespace
 
 RecordingCamera camera_of(const Recorded& recorded, const Study& study) {
-  const studies::Recording& recording = recorded.tracks();
+  const recording::Recording& recording = recorded.tracks();
   if (study.observing.camera == "exact") return {kExactCamera, {}};
   if (study.observing.camera != "recording") return {base::text_of(study.observing.camera), {}};
   try {
-    studies::EstimateOptions options;
+    camera::EstimateOptions options;
     if (!recording.frame) options.motion = &recorded.motion();
-    const studies::CameraEstimate estimate = studies::estimate_camera(recording, options);
-    std::string text = studies::camera_text(estimate, recording.file.string());
+    const camera::CameraEstimate estimate = camera::estimate_camera(recording, options);
+    std::string text = camera::camera_text(estimate, recording.file.string());
     // No recording tells its location window; about one over the rate is usual, and nearer to the truth than none.
     if (const std::size_t blur = text.find("# blur: {"); blur != std::string::npos) text.erase(blur, 2);
     return {text, estimate.loss};

@@ -11,8 +11,8 @@ namespace millscope::calibrate {
 class Recorded;
 
 struct RecordingCamera {
-  std::string text;            ///< as in a camera file
-  studies::CameraLosses loss;  ///< what the recording shows it to lose; nothing of a camera that is given
+  std::string text;           ///< as in a camera file
+  camera::CameraLosses loss;  ///< what the recording shows it to lose; nothing of a camera that is given
 };
 
 /// As the study says: estimated from the tracks, exact, or a file. Throws base::UserError.

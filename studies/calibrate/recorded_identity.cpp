@@ -25,15 +25,15 @@ std::string observing_program() {
   return text;
 }
 
-std::string identity_of(const studies::Recording& recording, const Processing& how, std::size_t condition) {
+std::string identity_of(const recording::Recording& recording, const Processing& how, std::size_t condition) {
   const Study& study = how.study;
   std::vector<std::string> parts{observing_program(), std::to_string(study.observing.draws), std::to_string(study.observing.beads),
                                  study.observing.camera};
   for (const UsedAnalyzer& a : kUsedAnalyzers) parts.push_back(fmt::format("{}: {}", a.plugin, a.parameters));
   if (study.observing.camera_is_file()) parts.push_back(base::text_of(study.observing.camera));
   if (study.observing.z_low) parts.push_back(fmt::format("{:.17g} {:.17g}", *study.observing.z_low, *study.observing.z_high));
-  parts.push_back(studies::file_hash(study.base) + studies::file_hash(recording.file));
-  for (const studies::Run& run : recording.runs) parts.push_back(run.name + studies::file_hash(run.source));
+  parts.push_back(analysis::file_hash(study.base) + analysis::file_hash(recording.file));
+  for (const recording::Run& run : recording.runs) parts.push_back(run.name + analysis::file_hash(run.source));
   for (const ObservableKind kind : study.objective.without) parts.push_back(fmt::format("without {}", name_of(kind)));
   for (const Term& term : study.objective.terms) parts.push_back(term.name());
   if (const auto own = study.root.valid() ? study.root.find("analyzers") : std::nullopt) parts.push_back(dump(*own));

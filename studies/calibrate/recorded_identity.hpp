@@ -13,7 +13,7 @@ namespace millscope::calibrate {
 std::string observing_program();
 
 /// Of everything that the results of a recording depend on.
-std::string identity_of(const studies::Recording& recording, const Processing& how, std::size_t condition);
+std::string identity_of(const recording::Recording& recording, const Processing& how, std::size_t condition);
 
 /// FNV-1a over texts.
 std::string hash_of(const std::vector<std::string>& texts);

@@ -37,8 +37,8 @@ void check_recorded(const Study& study, const Condition& condition, const Record
                     fmt::format("condition '{}': {} is a velocity profile, and chagas2015 compares tracks; take 'objective: "
                                 "likelihood'",
                                 condition.name, condition.recording.string()));
-  const AnalyzerContext c = studies::read_mill_of_case(study.base, registry, condition.settings).context;
-  const studies::Condition& stated = recorded.stated();
+  const AnalyzerContext c = analysis::read_mill_of_case(study.base, registry, condition.settings).context;
+  const recording::Condition& stated = recorded.stated();
   constexpr double kRpm = 30 / std::numbers::pi;
   compare(study, condition, {"mill diameter", stated.mill_diameter.value_or(0), 2 * c.mill_radius, 0.005, 1e3, "mm"});
   compare(study, condition, {"bead size", stated.bead_diameter.value_or(0), 2 * c.bead_radius, 0.01, 1e3, "mm"});
@@ -48,14 +48,14 @@ void check_recorded(const Study& study, const Condition& condition, const Record
 
 }  // namespace
 
-const studies::MillMotion& Recorded::motion() const {
-  std::call_once(motion_asked_, [this] { motion_ = studies::estimate_motion(tracks()); });
+const inspect::MillMotion& Recorded::motion() const {
+  std::call_once(motion_asked_, [this] { motion_ = inspect::estimate_motion(tracks()); });
   return motion_;
 }
 
 std::shared_ptr<const Recorded> read_recorded(const std::filesystem::path& recording) {
   if (auto profile = read_profile(recording)) return std::make_shared<const Recorded>(*std::move(profile));
-  return std::make_shared<const Recorded>(studies::read_recording(recording));
+  return std::make_shared<const Recorded>(recording::read_recording(recording));
 }
 
 Recordings read_recordings(const Study& study) {

@@ -16,22 +16,22 @@ namespace millscope::calibrate {
 /// What was recorded in a condition: tracks, or a velocity profile. May be looked at by several threads.
 class Recorded {
  public:
-  explicit Recorded(studies::Recording tracks) : tracks_(std::move(tracks)) {}
+  explicit Recorded(recording::Recording tracks) : tracks_(std::move(tracks)) {}
   explicit Recorded(VelocityProfile profile) : profile_(std::move(profile)) {}
 
   bool of_tracks() const { return tracks_.has_value(); }
-  const studies::Recording& tracks() const { return tracks_.value(); }
+  const recording::Recording& tracks() const { return tracks_.value(); }
   const VelocityProfile& profile() const { return profile_.value(); }
   /// What is stated of the mill.
-  const studies::Condition& stated() const { return tracks_ ? tracks_->condition : profile_->condition; }
+  const recording::Condition& stated() const { return tracks_ ? tracks_->condition : profile_->condition; }
   /// Where the axis stands and how the mill turns, by the tracks; estimated when it is asked for first.
-  const studies::MillMotion& motion() const;
+  const inspect::MillMotion& motion() const;
 
  private:
-  std::optional<studies::Recording> tracks_;
+  std::optional<recording::Recording> tracks_;
   std::optional<VelocityProfile> profile_;
   mutable std::once_flag motion_asked_;
-  mutable studies::MillMotion motion_;
+  mutable inspect::MillMotion motion_;
 };
 
 /// One for each condition of a study.

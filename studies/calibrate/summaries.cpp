@@ -16,9 +16,9 @@
 namespace millscope::calibrate {
 namespace {
 
+using analysis::ResultArray;
+using analysis::ResultSet;
 using base::UserError;
-using studies::ResultArray;
-using studies::ResultSet;
 
 constexpr double kShare = 12.5;           // % of the time in a group of bins
 constexpr std::size_t kRegions = 6;       // most visited ones
@@ -83,7 +83,7 @@ double between(const std::vector<double>& axis, const ResultArray& values, const
   if (above == axis.end() || (above == axis.begin() && place < axis.front())) return std::numeric_limits<double>::quiet_NaN();
   const auto k = above - axis.begin();
   const auto known = [&](std::size_t i) {
-    const bool vague = i < values.flags.size() && (values.flags[i] & (studies::kOftenUndefined | studies::kNoUncertainty)) != 0;
+    const bool vague = i < values.flags.size() && (values.flags[i] & (analysis::kOftenUndefined | analysis::kNoUncertainty)) != 0;
     return vague ? std::numeric_limits<double>::quiet_NaN() : at(values, i);
   };
   if (axis[k] == place) return known(k);

@@ -31,10 +31,10 @@ struct SummaryChoice {
 
 /// The summaries that a recording's results support: groups of bins that hold an eighth of the time each (the last of each distribution
 /// follows from the others and is left out), the most visited regions, the terms of the study.
-std::vector<Summary> choose_summaries(const studies::ResultSet& recorded, const Study& study, const SummaryChoice& choice);
+std::vector<Summary> choose_summaries(const analysis::ResultSet& recorded, const Study& study, const SummaryChoice& choice);
 
 /// The same summaries of other results, with covariance. A mean over cells in which nothing was seen is NaN; throws base::UserError where
 /// the results lack a summary or another value is undefined.
-Observation summarise(const studies::ResultSet& results, const std::vector<Summary>& summaries);
+Observation summarise(const analysis::ResultSet& results, const std::vector<Summary>& summaries);
 
 }  // namespace millscope::calibrate

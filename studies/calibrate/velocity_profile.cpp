@@ -144,7 +144,7 @@ Eigen::MatrixXd covariance_of(const VelocityProfile& p, const std::vector<Value>
 }
 
 /// The part of the length that is looked at. A slice stands for every part of a long mill: there it is none.
-std::string range_text(const VelocityProfile& p, const Condition& c, const studies::MillOfCase& mill, Observation& o) {
+std::string range_text(const VelocityProfile& p, const Condition& c, const analysis::MillOfCase& mill, Observation& o) {
   if (!p.z_low) return "";
   if (mill.period > 0) {
     o.notes.push_back("the case is periodic along z: 'z' of the profile is left out");
@@ -161,8 +161,8 @@ std::string range_text(const VelocityProfile& p, const Condition& c, const studi
 
 std::string identity(const VelocityProfile& profile, const Processing& how, std::size_t condition) {
   const Condition& c = how.study.conditions[condition];
-  std::vector<std::string> parts{observing_program(), std::to_string(how.study.observing.draws), studies::file_hash(how.study.base),
-                                 studies::file_hash(c.recording), studies::file_hash(profile.points)};
+  std::vector<std::string> parts{observing_program(), std::to_string(how.study.observing.draws), analysis::file_hash(how.study.base),
+                                 analysis::file_hash(c.recording), analysis::file_hash(profile.points)};
   parts.insert(parts.end(), c.settings.begin(), c.settings.end());
   for (const host::PluginRecord& r : how.registry.records()) {
     if (r.kind == "analyzer") parts.push_back(r.name + r.code_hash);
@@ -177,14 +177,14 @@ std::optional<VelocityProfile> read_profile(const fs::path& recording) {
   const Node root = config::load_document(recording.string());
   root.expect({"profile", "condition"});
   VelocityProfile profile = read_section(root.at("profile"));
-  if (const auto node = root.find("condition")) profile.condition = studies::read_condition(*node);
+  if (const auto node = root.find("condition")) profile.condition = recording::read_condition(*node);
   root.finish();
   return profile;
 }
 
 RecordedCondition look_at_profile(const VelocityProfile& profile, std::size_t condition, const Processing& how) {
   const Condition& c = how.study.conditions[condition];
-  const studies::MillOfCase mill = studies::read_mill_of_case(how.study.base, how.registry, c.settings);
+  const analysis::MillOfCase mill = analysis::read_mill_of_case(how.study.base, how.registry, c.settings);
   const double radius = mill.context.mill_radius, farthest = std::max(-profile.position.front(), profile.position.back());
   if (farthest >= radius)
     throw UserError(c.where,
@@ -217,16 +217,16 @@ RecordedCondition look_at_profile(const VelocityProfile& profile, std::size_t co
   return r;
 }
 
-studies::ResultSet profile_of_run(const fs::path& run, const RecordedCondition& recorded, const Processing& how) {
+analysis::ResultSet profile_of_run(const fs::path& run, const RecordedCondition& recorded, const Processing& how) {
   const fs::path case_file = run / "case.resolved.yaml";
-  const studies::MillOfCase mill = studies::read_mill_of_case(case_file, how.registry);
-  studies::FramesSource source(output::FrameReader(run / "frames.h5"), mill.context,
-                               config::read_case(case_file.string()).time.analyze_from, std::nullopt);
-  studies::EngineOptions engine;
+  const analysis::MillOfCase mill = analysis::read_mill_of_case(case_file, how.registry);
+  analysis::FramesSource source(output::FrameReader(run / "frames.h5"), mill.context,
+                                config::read_case(case_file.string()).time.analyze_from, std::nullopt);
+  analysis::EngineOptions engine;
   engine.draws = how.study.observing.draws;
   engine.threads = 1;  // several runs are looked at at once
-  const std::vector<studies::AskedAnalyzer> analyzers = analyzers_of(recorded.analyzers, how.registry);
-  studies::ResultSet results = studies::run_analyzers(source, studies::create_analyzers(analyzers, source.context()).instances, engine);
+  const std::vector<analysis::AskedAnalyzer> analyzers = analyzers_of(recorded.analyzers, how.registry);
+  analysis::ResultSet results = analysis::run_analyzers(source, analysis::create_analyzers(analyzers, source.context()).instances, engine);
   results.meta.context = source.context();
   results.meta.description = run.string();
   return results;

@@ -27,7 +27,7 @@ namespace millscope::calibrate {
 /// Points by position, SI.
 struct VelocityProfile {
   std::filesystem::path points;  ///< the file of numbers
-  studies::Condition condition;
+  recording::Condition condition;
   std::vector<double> position, velocity;
   double position_error = 0, velocity_error = 0, origin_error = 0;
   std::optional<double> z_low, z_high;
@@ -40,6 +40,6 @@ std::optional<VelocityProfile> read_profile(const std::filesystem::path& recordi
 RecordedCondition look_at_profile(const VelocityProfile& profile, std::size_t condition, const Processing& how);
 
 /// What a finished run shows of it.
-studies::ResultSet profile_of_run(const std::filesystem::path& run, const RecordedCondition& recorded, const Processing& how);
+analysis::ResultSet profile_of_run(const std::filesystem::path& run, const RecordedCondition& recorded, const Processing& how);
 
 }  // namespace millscope::calibrate

@@ -11,7 +11,7 @@
 #include "kernel/config/values.hpp"
 #include "millscope/observation_adapter.hpp"
 
-namespace millscope::studies {
+namespace millscope::camera {
 namespace {
 
 using base::UserError;
@@ -108,11 +108,11 @@ Camera parse_camera(const std::string& text, const std::string& name, const host
   return camera_of(config::parse_document(text, name, overrides), registry);
 }
 
-Run observe(const output::TrackSamples& track, const Camera& camera, const TrackContext& context) {
+recording::Run observe(const output::TrackSamples& track, const Camera& camera, const TrackContext& context) {
   Samples samples{track.time, std::vector<double>(track.size(), 1.0), track.position, std::vector<std::uint32_t>(track.size(), 1)};
   for (const CameraLink& link : camera.links()) samples = pass(link, samples, context);
   constexpr double kSpreadOfFullConfidence = 1e-3;  // m
-  Run run;
+  recording::Run run;
   bool judged = false;
   for (std::size_t i = 0; i < samples.time.size(); ++i) {
     if (samples.visible[i] == 0) continue;
@@ -128,4 +128,4 @@ Run observe(const output::TrackSamples& track, const Camera& camera, const Track
 
 std::uint64_t bead_seed(std::uint64_t seed, std::int64_t id) { return mixed(seed, static_cast<std::uint64_t>(id) + 1); }
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera

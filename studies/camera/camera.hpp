@@ -22,7 +22,7 @@
 #include "kernel/output/track_reader.hpp"
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::camera {
 
 /// A named link of the chain.
 struct CameraLink {
@@ -55,9 +55,9 @@ Camera parse_camera(const std::string& text, const std::string& name, const host
 
 /// What the camera makes of a bead's true path (s, m, in the mill's frame). `spread` is filled where a link lowered the confidence of
 /// locations: 1 mm divided by the confidence. Throws UserError when a plugin refuses, or makes times that do not increase.
-Run observe(const output::TrackSamples& track, const Camera& camera, const TrackContext& context);
+recording::Run observe(const output::TrackSamples& track, const Camera& camera, const TrackContext& context);
 
 /// A seed for bead `id` of a run, as different as can be from those of its neighbours.
 std::uint64_t bead_seed(std::uint64_t seed, std::int64_t id);
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera

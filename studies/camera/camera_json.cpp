@@ -3,7 +3,7 @@
 
 #include "studies/camera/estimate_camera.hpp"
 
-namespace millscope::studies {
+namespace millscope::camera {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -51,4 +51,4 @@ Json camera_json(const CameraEstimate& e) {
   return out;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera

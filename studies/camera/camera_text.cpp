@@ -5,7 +5,7 @@
 
 #include "studies/camera/estimate_camera.hpp"
 
-namespace millscope::studies {
+namespace millscope::camera {
 namespace {
 
 std::string text(const Estimated& e, double unit = 1) { return fmt::format("{:.3g} ± {:.2g}", e.value / unit, e.error / unit); }
@@ -99,4 +99,4 @@ std::string camera_text(const CameraEstimate& e, const std::string& source) {
   return out;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera

@@ -8,7 +8,7 @@
 
 #include "kernel/config/units.hpp"
 
-namespace millscope::studies {
+namespace millscope::camera {
 namespace {
 
 constexpr const char* kHeader = "\n\nSeparation=\n\nf(opt) :  0.500      \n\n\nFixed slices:    250 events/slice,    1 locations/slice\n\n";
@@ -18,7 +18,7 @@ std::string quoted(const std::string& text) { return nlohmann::json(text).dump()
 
 }  // namespace
 
-std::string ctrack_text(const Run& run) {
+std::string ctrack_text(const recording::Run& run) {
   std::string out = kHeader;
   for (std::size_t i = 0; i < run.size(); ++i) {
     const double u = run.spread.empty() ? 0.0 : run.spread[i];
@@ -29,7 +29,7 @@ std::string ctrack_text(const Run& run) {
   return out;
 }
 
-Run as_written(Run run) {
+recording::Run as_written(recording::Run run) {
   const auto round_to = [](std::vector<double>& values, double digits) {  // in ms or mm
     for (double& value : values) value = std::nearbyint(1e3 * value * digits) / digits / 1e3;
   };
@@ -42,7 +42,7 @@ Run as_written(Run run) {
   return run;
 }
 
-std::string recording_text(const std::vector<std::string>& files, const Condition& c, const std::string& note) {
+std::string recording_text(const std::vector<std::string>& files, const recording::Condition& c, const std::string& note) {
   std::string out = fmt::format("# {}\nfiles:\n", note);
   for (const std::string& file : files) out += fmt::format("  - {}\n", quoted(file));
   out += "format: ctrack\n";
@@ -71,4 +71,4 @@ std::string recording_text(const std::vector<std::string>& files, const Conditio
   return condition.empty() ? out : out + "condition:\n" + condition;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera

@@ -6,16 +6,16 @@
 
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::camera {
 
 /// Text of the file. Times to 0.1 µs and lengths to 1 µm, finer than real files, so that nothing is lost; u and the number of events
 /// are 0 where the run has none.
-std::string ctrack_text(const Run& run);
+std::string ctrack_text(const recording::Run& run);
 
 /// The run with the digits that ctrack_text() writes; order and duplicates are clean_recording's.
-Run as_written(Run run);
+recording::Run as_written(recording::Run run);
 
 /// recording.yaml for files that lie beside it, with what is known of the mill. `note`: a comment line, without '#'.
-std::string recording_text(const std::vector<std::string>& files, const Condition& condition, const std::string& note);
+std::string recording_text(const std::vector<std::string>& files, const recording::Condition& condition, const std::string& note);
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera

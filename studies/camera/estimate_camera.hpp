@@ -12,7 +12,11 @@
 
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
+struct MillMotion;  // studies/inspect/mill_motion.hpp
+}
+
+namespace millscope::camera {
 
 /// A value and its standard error.
 struct Estimated {
@@ -68,16 +72,14 @@ struct CameraEstimate {
   std::size_t locations = 0;
 };
 
-struct MillMotion;  // studies/inspect/mill_motion.hpp
-
 struct EstimateOptions {
-  std::optional<MillFrame> frame;      ///< where the mill stands; default: the recording's, else what its rides along the shell say
-  std::size_t most_stretches = 300;    ///< for the noise: more cost more time
-  const MillMotion* motion = nullptr;  ///< of this recording, where it is known already
+  std::optional<recording::MillFrame> frame;  ///< where the mill stands; default: the recording's, else what its rides along the shell say
+  std::size_t most_stretches = 300;           ///< for the noise: more cost more time
+  const inspect::MillMotion* motion = nullptr;  ///< of this recording, where it is known already
 };
 
 /// Throws base::UserError when the recording is too short or sparse (fewer than 200 locations or 20 unbroken stretches of 24).
-CameraEstimate estimate_camera(const Recording& recording, const EstimateOptions& options = {});
+CameraEstimate estimate_camera(const recording::Recording& recording, const EstimateOptions& options = {});
 
 /// The estimate with its standard errors; units are in the names of the keys, numbers that are not finite are null.
 nlohmann::ordered_json camera_json(const CameraEstimate& estimate);
@@ -89,4 +91,4 @@ std::string losses_text(const CameraLosses& loss, double speed);
 /// The camera as YAML to be edited by hand, every value with its standard error in a comment.
 std::string camera_text(const CameraEstimate& estimate, const std::string& source);
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera

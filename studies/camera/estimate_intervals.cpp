@@ -8,15 +8,15 @@
 #include "studies/camera/estimate_parts.hpp"
 #include "studies/camera/maximise.hpp"
 
-namespace millscope::studies::camera {
+namespace millscope::camera {
 namespace {
 
 constexpr std::size_t kMostIntervals = 4000;
 constexpr double kCoarsestClock = 1.5e-4;  // s
 
-std::vector<double> intervals_of(const Recording& recording) {
+std::vector<double> intervals_of(const recording::Recording& recording) {
   std::vector<double> result;
-  for (const Run& run : recording.runs) {
+  for (const recording::Run& run : recording.runs) {
     for (std::size_t i = 1; i < run.size(); ++i) result.push_back(run.time[i] - run.time[i - 1]);
   }
   return result;
@@ -69,7 +69,7 @@ double reach_of(const IntervalLikelihood& likelihood, const Fit& fit) {
 
 }  // namespace
 
-CameraGaps estimate_gaps(const Recording& recording, double limit) {
+CameraGaps estimate_gaps(const recording::Recording& recording, double limit) {
   CameraGaps gaps;
   gaps.limit = limit;
   double live = 0, beyond = 0;
@@ -92,7 +92,7 @@ CameraGaps estimate_gaps(const Recording& recording, double limit) {
   return gaps;
 }
 
-void estimate_intervals(CameraSampling& sampling, const Recording& recording, const RateModel& model, double pause) {
+void estimate_intervals(CameraSampling& sampling, const recording::Recording& recording, const RateModel& model, double pause) {
   std::vector<double> all;
   for (const double d : intervals_of(recording)) {
     if (d <= pause) all.push_back(d);
@@ -113,4 +113,4 @@ void estimate_intervals(CameraSampling& sampling, const Recording& recording, co
   sampling.dead_time = dead > std::max(chance, kCoarsestClock) ? dead : 0.0;
 }
 
-}  // namespace millscope::studies::camera
+}  // namespace millscope::camera

@@ -13,7 +13,7 @@
 #include "studies/camera/maximise.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
-namespace millscope::studies::camera {
+namespace millscope::camera {
 namespace {
 
 constexpr double kWindow = 0.02;  // s
@@ -26,7 +26,7 @@ constexpr double kTellingError = 0.25;  // relative, of the rate
 
 double normal_share(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
-void add_windows(const Piece& piece, const std::vector<double>& times, const Middle& middle, std::size_t& group,
+void add_windows(const trajectory::Piece& piece, const std::vector<double>& times, const Middle& middle, std::size_t& group,
                  std::vector<RateWindow>& out) {
   const auto per_window = std::lround(kWindow / piece.step);
   const auto windows_in_group = std::lround(kGroup / kWindow);
@@ -73,14 +73,14 @@ class Counts {
 
 }  // namespace
 
-std::vector<RateWindow> rate_windows(const Recording& recording, const Middle& middle, double pause) {
+std::vector<RateWindow> rate_windows(const recording::Recording& recording, const Middle& middle, double pause) {
   std::vector<RateWindow> windows;
   std::size_t group = 0;
-  for (const Run& run : recording.runs) {
-    TrajectoryOptions options;
+  for (const recording::Run& run : recording.runs) {
+    trajectory::TrajectoryOptions options;
     options.gap_limit = pause;
-    const Trajectory trajectory = fit_trajectory(run, options);
-    for (const Piece& piece : trajectory.pieces) add_windows(piece, trajectory.location_time, middle, group, windows);
+    const trajectory::Trajectory trajectory = trajectory::fit_trajectory(run, options);
+    for (const trajectory::Piece& piece : trajectory.pieces) add_windows(piece, trajectory.location_time, middle, group, windows);
   }
   if (windows.empty()) {
     throw base::UserError(
@@ -128,10 +128,11 @@ RateModel estimate_rate(const std::vector<RateWindow>& windows) {
   return model;
 }
 
-void express_as_cut(CameraLosses& loss, const Recording& recording, const Middle& middle, const std::vector<RateWindow>& windows) {
+void express_as_cut(CameraLosses& loss, const recording::Recording& recording, const Middle& middle,
+                    const std::vector<RateWindow>& windows) {
   if (!loss.found) return;
   double highest = 0, sum = 0, number = 0, margin = 0, weight = 0;
-  for (const Run& run : recording.runs) {
+  for (const recording::Run& run : recording.runs) {
     for (const double u : run.spread) highest = std::max(highest, u);
     for (std::size_t i = 0; i < run.spread.size(); ++i) {
       if (middle.distance(run, i) > 2 * loss.typical_distance) continue;
@@ -156,4 +157,4 @@ void express_as_cut(CameraLosses& loss, const Recording& recording, const Middle
   loss.spread_per_speed = loss.scatter * loss.per_speed.value;
 }
 
-}  // namespace millscope::studies::camera
+}  // namespace millscope::camera

@@ -9,7 +9,7 @@
 #include "studies/camera/maximise.hpp"
 #include "studies/camera/stretches.hpp"
 
-namespace millscope::studies::camera {
+namespace millscope::camera {
 namespace {
 
 constexpr double kLengthScale = 0.1;    // m, makes the growth a number of order one
@@ -149,7 +149,7 @@ CameraNoise result_of(const Estimator& e) {
 
 }  // namespace
 
-CameraNoise estimate_camera_noise(const Recording& recording, const Middle& middle, double pause, std::size_t most_stretches) {
+CameraNoise estimate_camera_noise(const recording::Recording& recording, const Middle& middle, double pause, std::size_t most_stretches) {
   Estimator e{
       stretches_over(recording, middle, pause, most_stretches), quiet_stretches(recording, middle, pause, most_stretches), 0, {}, {}, {}};
   const std::vector<double>& times = e.all[e.all.size() / 2].time;
@@ -161,4 +161,4 @@ CameraNoise estimate_camera_noise(const Recording& recording, const Middle& midd
   return result_of(e);
 }
 
-}  // namespace millscope::studies::camera
+}  // namespace millscope::camera

@@ -6,7 +6,7 @@
 
 #include "studies/camera/estimate_camera.hpp"
 
-namespace millscope::studies::camera {
+namespace millscope::camera {
 
 /// Real motion is no Gaussian process, and distance and speed are known from noisy locations: over recordings synthesized from simulated
 /// beads the estimates of noise and losses scatter about the truth by one and a half times what the likelihood says
@@ -23,10 +23,12 @@ struct Middle {
     return std::hypot(x - at[0], y - at[1], period > 0 ? std::remainder(beside, period) : beside);
   }
   /// Of point i of a run.
-  double distance(const Run& run, std::size_t i) const { return distance(run.position[0][i], run.position[1][i], run.position[2][i]); }
+  double distance(const recording::Run& run, std::size_t i) const {
+    return distance(run.position[0][i], run.position[1][i], run.position[2][i]);
+  }
 };
 
-CameraNoise estimate_camera_noise(const Recording& recording, const Middle& middle, double pause, std::size_t most_stretches);
+CameraNoise estimate_camera_noise(const recording::Recording& recording, const Middle& middle, double pause, std::size_t most_stretches);
 
 /// A short span of a trajectory: how many locations came, and how far and fast the bead was.
 struct RateWindow {
@@ -44,13 +46,14 @@ struct RateModel {
 };
 
 /// Windows of all runs; pauses longer than `pause` are left out.
-std::vector<RateWindow> rate_windows(const Recording& recording, const Middle& middle, double pause);
+std::vector<RateWindow> rate_windows(const recording::Recording& recording, const Middle& middle, double pause);
 RateModel estimate_rate(const std::vector<RateWindow>& windows);
 /// Fills the parameters of the cut from the spreads that the recording has, or from a scale of its own.
-void express_as_cut(CameraLosses& loss, const Recording& recording, const Middle& middle, const std::vector<RateWindow>& windows);
+void express_as_cut(CameraLosses& loss, const recording::Recording& recording, const Middle& middle,
+                    const std::vector<RateWindow>& windows);
 
-CameraGaps estimate_gaps(const Recording& recording, double limit);
+CameraGaps estimate_gaps(const recording::Recording& recording, double limit);
 /// Evenness and dead time from the intervals shorter than `pause`, given the rate and the losses.
-void estimate_intervals(CameraSampling& sampling, const Recording& recording, const RateModel& model, double pause);
+void estimate_intervals(CameraSampling& sampling, const recording::Recording& recording, const RateModel& model, double pause);
 
-}  // namespace millscope::studies::camera
+}  // namespace millscope::camera

@@ -8,7 +8,7 @@
 #include <memory>
 #include <numeric>
 
-namespace millscope::studies::camera {
+namespace millscope::camera {
 namespace {
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
@@ -113,4 +113,4 @@ Fit maximise(const LogLikelihood& groups, const std::vector<FitParameter>& param
   return fit;
 }
 
-}  // namespace millscope::studies::camera
+}  // namespace millscope::camera

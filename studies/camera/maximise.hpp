@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace millscope::studies::camera {
+namespace millscope::camera {
 
 /// One parameter of a likelihood.
 struct FitParameter {
@@ -29,4 +29,4 @@ using LogLikelihood = std::function<std::vector<double>(const std::vector<double
 /// Σ g gᵀ over the groups' gradients (Huber 1967; White 1982). Parameters should be of order one (logarithms, scaled numbers).
 Fit maximise(const LogLikelihood& groups, const std::vector<FitParameter>& parameters);
 
-}  // namespace millscope::studies::camera
+}  // namespace millscope::camera

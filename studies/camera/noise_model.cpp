@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace millscope::studies::camera {
+namespace millscope::camera {
 namespace {
 
 /// From a bed turning as one body to impacts, in steps of a factor of two and a half, m/s^1.5.
@@ -144,4 +144,4 @@ std::vector<double> averaged_over_ladder(const std::vector<Rungs>& logs) {
   return result;
 }
 
-}  // namespace millscope::studies::camera
+}  // namespace millscope::camera

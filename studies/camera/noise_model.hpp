@@ -19,7 +19,7 @@
 #include <array>
 #include <vector>
 
-namespace millscope::studies::camera {
+namespace millscope::camera {
 
 /// Noise along one axis, in units of the factor.
 struct NoiseStrength {
@@ -56,4 +56,4 @@ Rungs rung_likelihoods(const Stretch& stretch, std::size_t axis, const Steps& st
 /// Log-likelihoods, one from those of each ladder: averaged with weights of the rungs that make all of them together likely.
 std::vector<double> averaged_over_ladder(const std::vector<Rungs>& logs);
 
-}  // namespace millscope::studies::camera
+}  // namespace millscope::camera

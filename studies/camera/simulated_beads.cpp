@@ -11,7 +11,7 @@
 #include "studies/analysis/mill.hpp"
 #include "studies/camera/camera.hpp"
 
-namespace millscope::studies {
+namespace millscope::camera {
 namespace {
 
 using base::UserError;
@@ -30,8 +30,8 @@ std::filesystem::path tracks_of(const std::filesystem::path& run) {
                               case_of(run).parent_path().string()));
 }
 
-Condition condition_of(const config::Case& c, const MillOfCase& mill, const std::filesystem::path& file) {
-  Condition condition;
+recording::Condition condition_of(const config::Case& c, const analysis::MillOfCase& mill, const std::filesystem::path& file) {
+  recording::Condition condition;
   const AnalyzerContext& context = mill.context;
   if (context.omega != 0) {
     condition.angular_velocity = context.omega;
@@ -43,17 +43,17 @@ Condition condition_of(const config::Case& c, const MillOfCase& mill, const std:
   condition.bead_density = context.bead_density;
   if (context.mill_radius > 0) condition.mill_diameter = 2 * context.mill_radius;
   if (mill.period == 0 && context.mill_high > context.mill_low) condition.mill_length = context.mill_high - context.mill_low;
-  condition.slice = slice_of(mill);
+  condition.slice = analysis::slice_of(mill);
   condition.geometry = file;
   return condition;
 }
 
-std::optional<MeasuredPower> power_of(const std::filesystem::path& summary) {
+std::optional<recording::MeasuredPower> power_of(const std::filesystem::path& summary) {
   const nlohmann::ordered_json j = output::read_json(summary);
   if (!j.is_object() || !j.contains("power_W")) return std::nullopt;
   const nlohmann::ordered_json &value = j["power_W"]["com"], &error = j["power_W"]["com_sem"];
   if (!value.is_number() || !error.is_number()) return std::nullopt;
-  return MeasuredPower{value.get<double>(), error.get<double>()};
+  return recording::MeasuredPower{value.get<double>(), error.get<double>()};
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ std::optional<MeasuredPower> power_of(const std::filesystem::path& summary) {
 SimulatedBeads::SimulatedBeads(std::filesystem::path run, const host::Registry& registry) : run_(std::move(run)), reader_(tracks_of(run_)) {
   const std::filesystem::path file = case_of(run_);
   const config::Case c = config::read_case(file.string());
-  const MillOfCase mill = read_mill_of_case(file, registry);
+  const analysis::MillOfCase mill = analysis::read_mill_of_case(file, registry);
   condition_ = condition_of(c, mill, file);
   condition_.power = power_of(run_ / "summary.json");
   context_ = {0, 0, mill.context.mill_radius, mill.context.mill_low, mill.context.mill_high, mill.context.omega, mill.period};
@@ -85,4 +85,4 @@ TrackContext SimulatedBeads::context(std::size_t i, std::uint64_t seed) const {
   return context;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera

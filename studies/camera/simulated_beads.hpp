@@ -10,7 +10,7 @@
 #include "millscope/observation.hpp"
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::camera {
 
 /// The directory of a run with tracks.h5.
 class SimulatedBeads {
@@ -22,7 +22,7 @@ class SimulatedBeads {
   const std::vector<output::TrackInfo>& tracks() const { return reader_.tracks(); }
   double analyze_from() const { return analyze_from_; }  ///< s: the charge is steady from here on, says the case
   /// As a recording of this very mill would say it; power by the centre of mass, from summary.json where the run has come to its end.
-  const Condition& condition() const { return condition_; }
+  const recording::Condition& condition() const { return condition_; }
 
   /// Path of track i from time `from` on; across a periodic boundary it goes on into the next image.
   output::TrackSamples path(std::size_t i, double from) const;
@@ -32,9 +32,9 @@ class SimulatedBeads {
  private:
   std::filesystem::path run_;
   output::TrackReader reader_;
-  Condition condition_;
+  recording::Condition condition_;
   TrackContext context_{};
   double analyze_from_ = 0, period_ = 0;
 };
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera

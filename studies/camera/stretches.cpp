@@ -11,16 +11,16 @@
 #include "kernel/base/error.hpp"
 #include "kernel/base/statistics.hpp"
 
-namespace millscope::studies::camera {
+namespace millscope::camera {
 namespace {
 
-constexpr std::size_t kLength = 24;   // locations in a stretch: some three to ten correlation times
-constexpr std::size_t kFewest = 20;   // stretches
-constexpr double kImpact = 8;         // contrasts beyond so many medians: an impact or a stray location
-constexpr std::size_t kStride = 4;    // between candidates for quiet stretches
-constexpr double kQuietShare = 0.10;  // of a recording: with 0.06 errors are a quarter larger, with 0.15 too small
+constexpr std::size_t kLength = 24;           // locations in a stretch: some three to ten correlation times
+constexpr std::size_t kFewestStretches = 20;  // stretches
+constexpr double kImpact = 8;                 // contrasts beyond so many medians: an impact or a stray location
+constexpr std::size_t kStride = 4;            // between candidates for quiet stretches
+constexpr double kQuietShare = 0.10;          // of a recording: with 0.06 errors are a quarter larger, with 0.15 too small
 
-Stretch stretch_of(const Run& run, std::size_t first, const Middle& middle) {
+Stretch stretch_of(const recording::Run& run, std::size_t first, const Middle& middle) {
   Stretch s;
   s.first = first;
   for (std::size_t i = first; i < first + kLength; ++i) {
@@ -44,10 +44,10 @@ double largest_bend(const Stretch& s) {
 }
 
 /// All unbroken stretches that begin `stride` locations apart, without those that hold an impact or a stray location.
-std::vector<Stretch> stretches_of(const Recording& recording, const Middle& middle, double pause, std::size_t stride) {
+std::vector<Stretch> stretches_of(const recording::Recording& recording, const Middle& middle, double pause, std::size_t stride) {
   std::vector<Stretch> all;
   for (std::size_t index = 0; index < recording.runs.size(); ++index) {
-    const Run& run = recording.runs[index];
+    const recording::Run& run = recording.runs[index];
     for (std::size_t first = 0; first + kLength <= run.size();) {
       std::size_t broken = first;
       for (std::size_t i = first + 1; i < first + kLength; ++i) {
@@ -60,10 +60,10 @@ std::vector<Stretch> stretches_of(const Recording& recording, const Middle& midd
       first = broken == first ? first + stride : broken;
     }
   }
-  if (all.size() < kFewest) {
+  if (all.size() < kFewestStretches) {
     throw base::UserError(
         fmt::format("{}: only {} stretches of {} locations without a pause of {:.3g} s; the noise needs {}; record for longer",
-                    recording.file.string(), all.size(), kLength, pause, kFewest));
+                    recording.file.string(), all.size(), kLength, pause, kFewestStretches));
   }
   std::vector<double> bends;
   for (const Stretch& s : all) bends.push_back(largest_bend(s));
@@ -96,7 +96,7 @@ double drift_of(const Stretch& s, const Middle& middle) {
 
 }  // namespace
 
-std::vector<Stretch> stretches_over(const Recording& recording, const Middle& middle, double pause, std::size_t most) {
+std::vector<Stretch> stretches_over(const recording::Recording& recording, const Middle& middle, double pause, std::size_t most) {
   const std::vector<Stretch> all = stretches_of(recording, middle, pause, kLength);
   const std::size_t count = std::min(most, all.size());
   std::vector<Stretch> chosen;
@@ -104,7 +104,7 @@ std::vector<Stretch> stretches_over(const Recording& recording, const Middle& mi
   return chosen;
 }
 
-std::vector<Stretch> quiet_stretches(const Recording& recording, const Middle& middle, double pause, std::size_t most) {
+std::vector<Stretch> quiet_stretches(const recording::Recording& recording, const Middle& middle, double pause, std::size_t most) {
   const std::vector<Stretch> candidates = stretches_of(recording, middle, pause, kStride);
   std::vector<std::pair<double, std::size_t>> drifts;
   for (std::size_t i = 0; i < candidates.size(); ++i) drifts.emplace_back(drift_of(candidates[i], middle), i);
@@ -112,11 +112,11 @@ std::vector<Stretch> quiet_stretches(const Recording& recording, const Middle& m
   std::vector<Stretch> quiet;
   const auto wanted = static_cast<std::size_t>(kQuietShare * static_cast<double>(candidates.size() * kStride) / kLength);
   for (const auto& [drift, index] : drifts) {
-    if (quiet.size() >= std::min(most, std::max(kFewest, wanted))) break;
+    if (quiet.size() >= std::min(most, std::max(kFewestStretches, wanted))) break;
     const Stretch& s = candidates[index];
     if (std::none_of(quiet.begin(), quiet.end(), [&](const Stretch& other) { return overlap(s, other); })) quiet.push_back(s);
   }
   return quiet;
 }
 
-}  // namespace millscope::studies::camera
+}  // namespace millscope::camera

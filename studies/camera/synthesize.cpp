@@ -7,7 +7,7 @@
 #include "kernel/output/file.hpp"
 #include "studies/camera/ctrack_writer.hpp"
 
-namespace millscope::studies {
+namespace millscope::camera {
 namespace {
 
 using base::UserError;
@@ -65,7 +65,7 @@ Synthesis synthesize(const SimulatedBeads& beads, const Camera& camera, const Sy
       throw UserError(fmt::format("{}: {} has no sample after {} s; choose an earlier --from", beads.directory().string(), name, from));
     const double span = path.time.back() - path.time.front();
     coarsest = std::max(coarsest, span / static_cast<double>(path.size() - 1));
-    const Run run = observe(path, camera, beads.context(chosen[k], request.seed));
+    const recording::Run run = observe(path, camera, beads.context(chosen[k], request.seed));
     if (run.size() == 0)
       throw UserError(
           fmt::format("{}: the camera saw nothing of {} in {:.3g} s; loosen its cut or its gaps", beads.directory().string(), name, span));
@@ -81,7 +81,7 @@ Synthesis synthesize(const SimulatedBeads& beads, const Camera& camera, const Sy
         1e3 * coarsest));
   }
   result.recording = targets.back();
-  Condition condition = beads.condition();
+  recording::Condition condition = beads.condition();
   condition.tracer = {beads.tracks()[chosen[0]].diameter, beads.tracks()[chosen[0]].density};
   condition.geometry = fs::absolute(condition.geometry).lexically_proximate(fs::absolute(result.recording).parent_path());
   for (std::size_t k = 0; k < texts.size(); ++k) output::write_file(result.files[k], texts[k], request.overwrite);
@@ -92,4 +92,4 @@ Synthesis synthesize(const SimulatedBeads& beads, const Camera& camera, const Sy
   return result;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera

@@ -10,7 +10,7 @@
 #include "studies/camera/camera.hpp"
 #include "studies/camera/simulated_beads.hpp"
 
-namespace millscope::studies {
+namespace millscope::camera {
 
 struct SynthesisRequest {
   std::filesystem::path file;       ///< what to write: x.a, with several beads x_1.a, x_2.a, …; beside them x.yaml
@@ -35,4 +35,4 @@ std::vector<std::filesystem::path> synthesis_targets(const SimulatedBeads& beads
 /// that exists, a disk that is full.
 Synthesis synthesize(const SimulatedBeads& beads, const Camera& camera, const SynthesisRequest& request);
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera

@@ -109,7 +109,7 @@ void Entry::write(const TaskRecord& record) const {
   json["schema_version"] = 1;
   json["key"] = folder_.filename().string();
   json["label"] = record.label;
-  json["state"] = kStages[record.stage];
+  json["state"] = kStages[static_cast<std::size_t>(record.stage)];
   if (!record.message.empty()) json["message"] = record.message;
   json["attempts"] = record.attempts;
   if (record.stage == Stage::done) json["wall_s"] = record.wall_s;

@@ -45,7 +45,7 @@ struct Maker {
   const diagnose::Question& question;
   const host::Registry& registry;
   const fs::path& output;
-  studies::Camera camera;
+  camera::Camera camera;
 
   /// One condition of a set: what the camera and the meter make of the truth.
   Json record(const Truth& truth, std::size_t condition, const campaign::Outcome& outcome, const fs::path& folder) const {
@@ -56,7 +56,7 @@ struct Maker {
     const double measured = power.value * (1 + question.study.power_error * random.normal());
     RecordingOf what{outcome.folder, folder, "r_" + question.study.conditions[condition].name, believed(question, condition, registry),
                      camera_seed};
-    what.condition.power = studies::MeasuredPower{measured, power.sem};
+    what.condition.power = recording::MeasuredPower{measured, power.sem};
     write_recording(what, camera, registry);
     return {{"power_W", power.value}, {"measured_power_W", measured}, {"camera_seed", camera_seed}, {"run", outcome.key}};
   }
@@ -78,7 +78,7 @@ void make(const Challenge& challenge, const diagnose::Question& question, const 
   };
   if (fs::exists(options.output / "manifest.json"))
     throw UserError(fmt::format("{}: holds sealed sets already; choose another folder", options.output.string()));
-  const Maker maker{challenge, question, registry, options.output, studies::read_camera(challenge.camera, registry)};
+  const Maker maker{challenge, question, registry, options.output, camera::read_camera(challenge.camera, registry)};
   const std::vector<Truth> truths = draw_truths(challenge, question);
   const std::size_t conditions = question.study.conditions.size();
   std::vector<campaign::Simulation> simulations;

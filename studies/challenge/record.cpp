@@ -26,21 +26,21 @@ constexpr std::size_t kLeastPoints = 30;  // of a bead that the camera saw too l
 
 }  // namespace
 
-studies::Condition believed(const diagnose::Question& q, std::size_t condition, const host::Registry& registry) {
+recording::Condition believed(const diagnose::Question& q, std::size_t condition, const host::Registry& registry) {
   std::vector<std::string> settings = q.study.conditions[condition].settings;
   for (const diagnose::Nuisance& n : q.nuisances) {
     if (!n.usual) settings.push_back(fmt::format("{}={:.6g}", n.path, n.mean));
   }
-  const studies::MillOfCase mill = studies::read_mill_of_case(q.study.base, registry, settings);
+  const analysis::MillOfCase mill = analysis::read_mill_of_case(q.study.base, registry, settings);
   const AnalyzerContext& c = mill.context;
-  studies::Condition out;
+  recording::Condition out;
   if (c.omega != 0) out.angular_velocity = c.omega, out.speed = std::fabs(c.omega);
   if (c.filling > 0) out.filling = c.filling, out.porosity = c.porosity;
   out.bead_diameter = 2 * c.bead_radius;
   out.bead_density = c.bead_density;
   if (c.mill_radius > 0) out.mill_diameter = 2 * c.mill_radius;
   if (mill.period == 0 && c.mill_length > 0) out.mill_length = c.mill_length;
-  out.slice = studies::slice_of(mill);
+  out.slice = analysis::slice_of(mill);
   return out;
 }
 
@@ -55,13 +55,13 @@ PowerOfRun power_of(const fs::path& run, const host::Registry& registry) {
   return {ratio * power["com"].get<double>(), ratio * sem};
 }
 
-void write_recording(const RecordingOf& what, const studies::Camera& camera, const host::Registry& registry) {
-  const studies::SimulatedBeads beads(what.run, registry);
+void write_recording(const RecordingOf& what, const camera::Camera& camera, const host::Registry& registry) {
+  const camera::SimulatedBeads beads(what.run, registry);
   const std::size_t count = beads.tracks().size();
   std::vector<std::string> texts(count);
   base::for_each_item(count, base::worker_count(0, count), [&](std::size_t i, std::size_t) {
-    const studies::Run run = studies::observe(beads.path(i, beads.analyze_from()), camera, beads.context(i, what.seed));
-    if (run.size() >= kLeastPoints) texts[i] = studies::ctrack_text(run);
+    const recording::Run run = camera::observe(beads.path(i, beads.analyze_from()), camera, beads.context(i, what.seed));
+    if (run.size() >= kLeastPoints) texts[i] = camera::ctrack_text(run);
   });
   std::vector<std::string> names;
   for (const std::string& text : texts) {
@@ -72,8 +72,8 @@ void write_recording(const RecordingOf& what, const studies::Camera& camera, con
   if (names.empty())
     throw UserError(fmt::format("{}: the camera saw none of the beads for long enough; loosen it, or give more seconds", what.name));
   const fs::path file = what.folder / (what.name + ".yaml");
-  output::write_file(file, studies::recording_text(names, what.condition, "Tracers in one state of a mill, and what is known of it."));
-  studies::read_recording(file);  // throws for a mill that no recording may be of: better now than when all sets are sealed
+  output::write_file(file, camera::recording_text(names, what.condition, "Tracers in one state of a mill, and what is known of it."));
+  recording::read_recording(file);  // throws for a mill that no recording may be of: better now than when all sets are sealed
 }
 
 }  // namespace millscope::challenge

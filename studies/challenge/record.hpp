@@ -12,7 +12,7 @@ namespace millscope::challenge {
 
 /// What the user believes of a condition: the base case with the nuisances at their prior means, those apart as they are in the case. It
 /// names no case file.
-studies::Condition believed(const diagnose::Question& question, std::size_t condition, const host::Registry& registry);
+recording::Condition believed(const diagnose::Question& question, std::size_t condition, const host::Registry& registry);
 
 struct PowerOfRun {
   double value = 0, sem = 0;  ///< W, of the whole charge; without unlike tracers, all beads like the others, where the case sets some apart
@@ -23,11 +23,11 @@ struct RecordingOf {
   std::filesystem::path run;     ///< of the truth
   std::filesystem::path folder;  ///< of the set
   std::string name;              ///< "r_speed75": NAME.yaml, NAME_1.a, NAME_2.a, …
-  studies::Condition condition;
+  recording::Condition condition;
   std::uint64_t seed = 1;  ///< of the camera
 };
 
 /// Passes the run's beads through the camera. Throws base::UserError when it saw none for long enough.
-void write_recording(const RecordingOf& what, const studies::Camera& camera, const host::Registry& registry);
+void write_recording(const RecordingOf& what, const camera::Camera& camera, const host::Registry& registry);
 
 }  // namespace millscope::challenge

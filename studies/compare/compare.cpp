@@ -11,7 +11,7 @@
 #include "studies/picture/results_pictures.hpp"
 #include "studies/picture/scale.hpp"
 
-namespace millscope::studies {
+namespace millscope::compare {
 namespace {
 
 void align_senses(Comparison& c) {
@@ -22,7 +22,7 @@ void align_senses(Comparison& c) {
   }
   if ((a > 0) == (b > 0)) return;
   std::vector<std::string> done;
-  c.b = mirrored(c.b, done);
+  c.b = analysis::mirrored(c.b, done);
   c.notes.push_back(fmt::format("A turns {}, B {}: B is mirrored; {}", a > 0 ? "counter-clockwise" : "clockwise",
                                 a > 0 ? "clockwise" : "counter-clockwise",
                                 done.empty() ? "no result depends on it" : fmt::format("{}", fmt::join(done, "; "))));
@@ -31,17 +31,18 @@ void align_senses(Comparison& c) {
 /// A quantity without uncertainty: equal, or told.
 void tell_given(Comparison& c, const PreparedObservable& prepared) {
   if (prepared.exact_differences == 0 || !prepared.compared.elements.empty() || prepared.compared.too_few > 0) return;
-  const ResultArray &a = c.a.arrays[prepared.compared.array_a], &b = c.b.arrays[prepared.compared.array_b];
+  const analysis::ResultArray &a = c.a.arrays[prepared.compared.array_a], &b = c.b.arrays[prepared.compared.array_b];
   const std::string unit = a.unit == "1" ? "" : " " + a.unit;
-  c.given.push_back(a.shape.empty() ? fmt::format("{}: {}{} in A, {}{} in B", prepared.compared.name, significant_text(a.value[0], 5), unit,
-                                                  significant_text(b.value[0], 5), unit)
-                                    : fmt::format("{}: {} of {} values differ and have no uncertainty", prepared.compared.name,
-                                                  prepared.exact_differences, a.size()));
+  c.given.push_back(a.shape.empty()
+                        ? fmt::format("{}: {}{} in A, {}{} in B", prepared.compared.name, picture::significant_text(a.value[0], 5), unit,
+                                      picture::significant_text(b.value[0], 5), unit)
+                        : fmt::format("{}: {} of {} values differ and have no uncertainty", prepared.compared.name,
+                                      prepared.exact_differences, a.size()));
 }
 
 /// How much data there are, and how sure something is: told when it differs, never judged.
 void tell_bookkeeping(Comparison& c, const ResultPair& pair) {
-  const ResultArray &a = c.a.arrays[pair.a], &b = c.b.arrays[pair.b];
+  const analysis::ResultArray &a = c.a.arrays[pair.a], &b = c.b.arrays[pair.b];
   const std::string name = a.analyzer + "." + a.name, unit = a.unit == "1" ? "" : " " + a.unit;
   const auto same = [](double x, double y) {
     return (std::isnan(x) && std::isnan(y)) || std::abs(x - y) <= 1e-9 * std::max(std::abs(x), std::abs(y));
@@ -51,18 +52,18 @@ void tell_bookkeeping(Comparison& c, const ResultPair& pair) {
   if (other == 0) return;
   c.given.push_back(a.shape.empty() && b.shape.empty()
                         ? fmt::format("{}: {}{} in A, {}{} in B (says how much data there are, or how sure something is)", name,
-                                      significant_text(a.value[0], 5), unit, significant_text(b.value[0], 5), unit)
+                                      picture::significant_text(a.value[0], 5), unit, picture::significant_text(b.value[0], 5), unit)
                         : fmt::format("{}: {} of {} values differ (says how much data there are, or how sure something is)", name, other,
                                       std::max(a.size(), b.size())));
 }
 
 void tell_unjudged(Comparison& c, const PreparedObservable& prepared) {
   const ComparedObservable& o = prepared.compared;
-  if (!category_names(c.a.arrays[o.array_a]).empty()) c.not_judged.push_back(o.name + ": names, not numbers");
+  if (!picture::category_names(c.a.arrays[o.array_a]).empty()) c.not_judged.push_back(o.name + ": names, not numbers");
   if (!o.elements.empty() || o.too_few == 0) return;
-  const ResultArray& array = c.a.arrays[o.array_a];
-  c.not_judged.push_back(array.draws.empty() && array.size() > kMostDrawnValues
-                             ? fmt::format("{}: more than {} values, for which no resamples are kept", o.name, kMostDrawnValues)
+  const analysis::ResultArray& array = c.a.arrays[o.array_a];
+  c.not_judged.push_back(array.draws.empty() && array.size() > analysis::kMostDrawnValues
+                             ? fmt::format("{}: more than {} values, for which no resamples are kept", o.name, analysis::kMostDrawnValues)
                              : fmt::format("{}: rests on fewer than 10 independent blocks", o.name));
 }
 
@@ -83,7 +84,7 @@ void judge_all(Comparison& c, std::vector<PreparedObservable>& prepared) {
   });
 }
 
-std::string level_text(double level) { return fmt::format("{} %", significant_text(100 * level, 1)); }
+std::string level_text(double level) { return fmt::format("{} %", picture::significant_text(100 * level, 1)); }
 
 void conclude(Comparison& c) {
   const std::size_t all = c.observables.size();
@@ -110,7 +111,7 @@ void conclude(Comparison& c) {
 
 }  // namespace
 
-Comparison compare(const ResultSet& a, const ResultSet& b, const CompareOptions& options) {
+Comparison compare(const analysis::ResultSet& a, const analysis::ResultSet& b, const CompareOptions& options) {
   Comparison c;
   c.a = a, c.b = b, c.options = options;
   align_senses(c);
@@ -136,4 +137,4 @@ Comparison compare(const ResultSet& a, const ResultSet& b, const CompareOptions&
   return c;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::compare

@@ -10,7 +10,7 @@
 #include "studies/analysis/results.hpp"
 #include "studies/compare/family_test.hpp"
 
-namespace millscope::studies {
+namespace millscope::compare {
 
 struct CompareOptions {
   std::vector<std::string> only = {};     ///< analyzers ("pept_grid") or results ("pept_grid.speed"); empty: all
@@ -40,7 +40,7 @@ struct ComparedObservable {
 enum class Verdict { no_difference, differ, cannot_tell };
 
 struct Comparison {
-  ResultSet a, b;  ///< b mirrored where that was needed
+  analysis::ResultSet a, b;  ///< b mirrored where that was needed
   CompareOptions options;
   Verdict verdict_kind = Verdict::cannot_tell;
   std::string verdict;                          ///< one line
@@ -52,6 +52,6 @@ struct Comparison {
 };
 
 /// B less A. Throws base::UserError where grids or units differ, or nothing can be compared.
-Comparison compare(const ResultSet& a, const ResultSet& b, const CompareOptions& options);
+Comparison compare(const analysis::ResultSet& a, const analysis::ResultSet& b, const CompareOptions& options);
 
-}  // namespace millscope::studies
+}  // namespace millscope::compare

@@ -10,7 +10,7 @@
 #include "studies/picture/results_pictures.hpp"
 #include "studies/picture/scale.hpp"
 
-namespace millscope::studies {
+namespace millscope::compare {
 namespace {
 
 constexpr std::size_t kFewestCells = 4;  // of a region
@@ -18,20 +18,20 @@ constexpr double kFewestBlocks = 10;     // effective ones that a single number 
 constexpr double kFewestOfMany = 10;     // and a value among many, whose error the others support
 constexpr double kRounding = 1e-12;      // fractions and percents below it are zero
 
-std::uint8_t flags_of(const ResultArray& array, std::size_t i) {
-  return i < array.flags.size() ? array.flags[i] : static_cast<std::uint8_t>(kNoUncertainty);
+std::uint8_t flags_of(const analysis::ResultArray& array, std::size_t i) {
+  return i < array.flags.size() ? array.flags[i] : static_cast<std::uint8_t>(analysis::kNoUncertainty);
 }
-double error_of(const ResultArray& array, std::size_t i) { return i < array.sem.size() ? array.sem[i] : 0; }
-bool is_exact(const ResultArray& array, std::size_t i) { return error_of(array, i) == 0; }
+double error_of(const analysis::ResultArray& array, std::size_t i) { return i < array.sem.size() ? array.sem[i] : 0; }
+bool is_exact(const analysis::ResultArray& array, std::size_t i) { return error_of(array, i) == 0; }
 /// The same in every block.
-bool is_the_same(const ResultArray& array, std::size_t i) { return (flags_of(array, i) & kNoUncertainty) != 0; }
+bool is_the_same(const analysis::ResultArray& array, std::size_t i) { return (flags_of(array, i) & analysis::kNoUncertainty) != 0; }
 
 /// Rounding errors are no differences.
 double cleaned(double value, const std::string& unit) { return (unit == "1" || unit == "%") && std::abs(value) < kRounding ? 0 : value; }
 
 bool shows_motion(const std::string& unit) { return unit == "m/s" || unit == "rad/s" || unit == "m^2/s^2" || unit == "m/s^2"; }
 
-void append_draws(std::vector<std::vector<float>>& columns, const ResultArray& array, std::size_t i) {
+void append_draws(std::vector<std::vector<float>>& columns, const analysis::ResultArray& array, std::size_t i) {
   std::vector<float> column;
   const std::size_t n = array.size();
   for (std::size_t r = 0; r < array.draws.size() / n; ++r) column.push_back(array.draws[r * n + i]);
@@ -49,13 +49,13 @@ std::vector<float> draw_major(const std::vector<std::vector<float>>& columns) {
 /// Builds one observable, element by element.
 class Builder {
  public:
-  Builder(const ResultSet& a, const ResultSet& b, const ResultPair& pair)
+  Builder(const analysis::ResultSet& a, const analysis::ResultSet& b, const ResultPair& pair)
       : results_(a), pair_(pair), a_(a.arrays[pair.a]), b_(b.arrays[pair.b]), mill_(mill_place(a)) {
     begin();
   }
 
   PreparedObservable build() {
-    if (category_names(a_).empty()) {
+    if (picture::category_names(a_).empty()) {
       for (std::size_t i = 0; i < a_.size(); ++i) add_value(i);
     }
     return finished();
@@ -101,9 +101,9 @@ class Builder {
         {error_of(b_, i), b_.effective_blocks[i]});
   }
 
-  bool is_fit(const ResultArray& array, std::size_t i) const {
+  bool is_fit(const analysis::ResultArray& array, std::size_t i) const {
     // Exact on one side only (no visit in any block, all visits alike) is no knowledge, but a visit that did not come.
-    const bool unusable = (flags_of(array, i) & (kOftenUndefined | kNoUncertainty)) != 0 || !(error_of(array, i) > 0);
+    const bool unusable = (flags_of(array, i) & (analysis::kOftenUndefined | analysis::kNoUncertainty)) != 0 || !(error_of(array, i) > 0);
     return !array.draws.empty() && !unusable && array.effective_blocks[i] >= (array.size() < kMany ? kFewestBlocks : kFewestOfMany);
   }
 
@@ -126,8 +126,8 @@ class Builder {
   };
 
   void add_regions(const Cells& cells) {
-    const CellAxis y = cell_axis(results_, a_, 0), x = cell_axis(results_, a_, 1);
-    if (!is_cross_section(y, x)) return;
+    const picture::CellAxis y = picture::cell_axis(results_, a_, 0), x = picture::cell_axis(results_, a_, 1);
+    if (!picture::is_cross_section(y, x)) return;
     std::vector<std::size_t> place(a_.size(), cells.elements.size());  // of each cell among the elements
     for (std::size_t k = 0; k < cells.elements.size(); ++k) place[cells.elements[k].index] = k;
     const std::vector<base::Region> regions = base::regions_of(y.edges, x.edges, mill_);
@@ -174,40 +174,41 @@ class Builder {
     return std::sqrt(squares / static_cast<double>(draws.size() - 1));
   }
 
-  const ResultSet& results_;
+  const analysis::ResultSet& results_;
   ResultPair pair_;
-  const ResultArray &a_, &b_;
+  const analysis::ResultArray &a_, &b_;
   base::MillPlace mill_;
   std::vector<std::vector<float>> draws_a_, draws_b_;
   PreparedObservable out_;
 };
 
-std::string along(const CellAxis& axis, std::size_t i) {
+std::string along(const picture::CellAxis& axis, std::size_t i) {
   const double low = axis.edges[i], high = axis.edges[i + 1];
-  const DisplayUnit unit = display_unit(axis.unit, std::max(std::abs(axis.edges.front()), std::abs(axis.edges.back())));
+  const picture::DisplayUnit unit = picture::display_unit(axis.unit, std::max(std::abs(axis.edges.front()), std::abs(axis.edges.back())));
   if (axis.label == "number") return fmt::format("number {}", i + 1);
-  return fmt::format("{} {}{}{}", axis.label, significant_text(unit.factor * std::midpoint(low, high), 3), unit.text.empty() ? "" : " ",
-                     unit.text);
+  return fmt::format("{} {}{}{}", axis.label, picture::significant_text(unit.factor * std::midpoint(low, high), 3),
+                     unit.text.empty() ? "" : " ", unit.text);
 }
 
 }  // namespace
 
-base::MillPlace mill_place(const ResultSet& results) {
+base::MillPlace mill_place(const analysis::ResultSet& results) {
   return base::mill_place(results.meta.context.mill_radius, results.meta.context.omega);
 }
 
 std::string place_text(double x, double y, const base::MillPlace& mill) {
-  const std::string place = fmt::format("x {} mm, y {} mm", number_text(1e3 * x, 1), number_text(1e3 * y, 1));
+  const std::string place = fmt::format("x {} mm, y {} mm", picture::number_text(1e3 * x, 1), picture::number_text(1e3 * y, 1));
   return mill.known() ? fmt::format("{} ({})", place, base::place_in_mill(x, y, mill)) : place;
 }
 
-std::string where_text(const ResultSet& results, const ResultArray& array, std::size_t index, const base::MillPlace& mill) {
+std::string where_text(const analysis::ResultSet& results, const analysis::ResultArray& array, std::size_t index,
+                       const base::MillPlace& mill) {
   if (array.shape.empty()) return "";
-  std::vector<CellAxis> axes;
-  for (std::size_t d = 0; d < array.shape.size(); ++d) axes.push_back(cell_axis(results, array, d));
+  std::vector<picture::CellAxis> axes;
+  for (std::size_t d = 0; d < array.shape.size(); ++d) axes.push_back(picture::cell_axis(results, array, d));
   std::vector<std::size_t> at(axes.size());
   for (std::size_t d = axes.size(); d-- > 0; index /= array.shape[d]) at[d] = index % array.shape[d];
-  if (axes.size() == 2 && is_cross_section(axes[0], axes[1])) {
+  if (axes.size() == 2 && picture::is_cross_section(axes[0], axes[1])) {
     const auto middle = [&](std::size_t d) { return std::midpoint(axes[d].edges[at[d]], axes[d].edges[at[d] + 1]); };
     return place_text(middle(1), middle(0), mill);
   }
@@ -216,12 +217,12 @@ std::string where_text(const ResultSet& results, const ResultArray& array, std::
   return text;
 }
 
-PreparedObservable prepare_observable(const ResultSet& a, const ResultSet& b, const ResultPair& pair) {
+PreparedObservable prepare_observable(const analysis::ResultSet& a, const analysis::ResultSet& b, const ResultPair& pair) {
   return Builder(a, b, pair).build();
 }
 
-PreparedObservable prepare_regions(const ResultSet& a, const ResultSet& b, const ResultPair& pair) {
+PreparedObservable prepare_regions(const analysis::ResultSet& a, const analysis::ResultSet& b, const ResultPair& pair) {
   return Builder(a, b, pair).build_regions();
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::compare

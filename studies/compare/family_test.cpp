@@ -9,7 +9,7 @@
 
 #include "kernel/base/statistics.hpp"
 
-namespace millscope::studies {
+namespace millscope::compare {
 namespace {
 
 constexpr std::size_t kForTail = 2000;  // pairs that give an element's weight
@@ -225,4 +225,4 @@ std::vector<ObservableVerdict> judge(const std::vector<TestedObservable>& observ
   return verdicts;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::compare

@@ -21,7 +21,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace millscope::studies {
+namespace millscope::compare {
 
 inline constexpr std::size_t kMany = 8;  ///< elements from which on errors are held against each other
 
@@ -65,4 +65,4 @@ double degrees_of_freedom(double error_a, double blocks_a, double error_b, doubl
 /// The normal deviate that is as improbable, on both sides together, as `t` at `freedom` degrees of freedom.
 double normal_deviate(double t, double freedom);
 
-}  // namespace millscope::studies
+}  // namespace millscope::compare

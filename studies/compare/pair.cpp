@@ -8,45 +8,45 @@
 #include "kernel/base/error.hpp"
 #include "studies/picture/scale.hpp"
 
-namespace millscope::studies {
+namespace millscope::compare {
 namespace {
 
 using base::UserError;
 
 constexpr double kSameGrid = 1e-6;  // of the axis's span
 
-std::string full_name(const ResultArray& array) { return array.analyzer + "." + array.name; }
+std::string full_name(const analysis::ResultArray& array) { return array.analyzer + "." + array.name; }
 
-bool names(const std::vector<std::string>& list, const ResultArray& array) {
+bool names(const std::vector<std::string>& list, const analysis::ResultArray& array) {
   return std::any_of(list.begin(), list.end(), [&](const std::string& n) { return n == array.analyzer || n == full_name(array); });
 }
 
-bool is_chosen(const CompareOptions& options, const ResultArray& array) {
+bool is_chosen(const CompareOptions& options, const analysis::ResultArray& array) {
   return !array.is_axis && (options.only.empty() || names(options.only, array)) && !names(options.without, array);
 }
 
 /// A name that selects nothing is a slip of the pen.
-void require_known(const std::vector<std::string>& list, const char* option, const ResultSet& a, const ResultSet& b) {
+void require_known(const std::vector<std::string>& list, const char* option, const analysis::ResultSet& a, const analysis::ResultSet& b) {
   for (const std::string& name : list) {
-    const auto has = [&](const ResultSet& r) {
+    const auto has = [&](const analysis::ResultSet& r) {
       return std::any_of(r.arrays.begin(), r.arrays.end(),
-                         [&](const ResultArray& x) { return x.analyzer == name || full_name(x) == name; });
+                         [&](const analysis::ResultArray& x) { return x.analyzer == name || full_name(x) == name; });
     };
     if (!has(a) && !has(b))
       throw UserError(fmt::format("--{} {}: neither of the results has it; name an analyzer or ANALYZER.RESULT", option, name));
   }
 }
 
-std::string shape_text(const ResultArray& array) {
+std::string shape_text(const analysis::ResultArray& array) {
   return array.shape.empty() ? "one number" : fmt::format("{} values", fmt::join(array.shape, " × "));
 }
 
-std::string range_text(const ResultArray& axis) {
-  return fmt::format("{} from {} to {} {}", shape_text(axis), significant_text(axis.value.front(), 4),
-                     significant_text(axis.value.back(), 4), axis.unit);
+std::string range_text(const analysis::ResultArray& axis) {
+  return fmt::format("{} from {} to {} {}", shape_text(axis), picture::significant_text(axis.value.front(), 4),
+                     picture::significant_text(axis.value.back(), 4), axis.unit);
 }
 
-void require_same_axis(const ResultArray& array, const ResultArray* a, const ResultArray* b) {
+void require_same_axis(const analysis::ResultArray& array, const analysis::ResultArray* a, const analysis::ResultArray* b) {
   if (a == nullptr && b == nullptr) return;
   const std::string remedy =
       fmt::format("analyse both with the same settings of '{}', or leave it out with --without {}", array.analyzer, array.analyzer);
@@ -60,8 +60,8 @@ void require_same_axis(const ResultArray& array, const ResultArray* a, const Res
                                 range_text(*b), remedy));
 }
 
-void require_comparable(const ResultSet& a, const ResultSet& b, const ResultPair& pair) {
-  const ResultArray &of_a = a.arrays[pair.a], &of_b = b.arrays[pair.b];
+void require_comparable(const analysis::ResultSet& a, const analysis::ResultSet& b, const ResultPair& pair) {
+  const analysis::ResultArray &of_a = a.arrays[pair.a], &of_b = b.arrays[pair.b];
   if (of_a.unit != of_b.unit) {
     throw UserError(fmt::format("{}: the units differ: {} in A, {} in B; analyse both with one version and the same settings",
                                 full_name(of_a), of_a.unit, of_b.unit));
@@ -81,10 +81,11 @@ const char* kind_text(const std::string& source) {
 
 void note_number(std::vector<std::string>& notes, const char* what, double a, double b, const char* unit) {
   if (a == 0 || b == 0 || std::abs(a - b) <= 1e-3 * std::max(std::abs(a), std::abs(b))) return;
-  notes.push_back(fmt::format("{} is {} {} in A and {} {} in B", what, significant_text(a, 4), unit, significant_text(b, 4), unit));
+  notes.push_back(
+      fmt::format("{} is {} {} in A and {} {} in B", what, picture::significant_text(a, 4), unit, picture::significant_text(b, 4), unit));
 }
 
-nlohmann::ordered_json options_of(const ResultSet& results, const std::string& analyzer) {
+nlohmann::ordered_json options_of(const analysis::ResultSet& results, const std::string& analyzer) {
   const auto& p = results.meta.provenance;
   if (!p.is_object() || !p.contains("analyzers") || !p["analyzers"].contains(analyzer)) return {};
   return p["analyzers"][analyzer];
@@ -92,17 +93,17 @@ nlohmann::ordered_json options_of(const ResultSet& results, const std::string& a
 
 }  // namespace
 
-bool is_bookkeeping(const ResultSet& a, const ResultSet& b, const ResultPair& pair) {
+bool is_bookkeeping(const analysis::ResultSet& a, const analysis::ResultSet& b, const ResultPair& pair) {
   return a.arrays[pair.a].has(kBookkeeping) || b.arrays[pair.b].has(kBookkeeping);
 }
 
-std::vector<ResultPair> pair_results(const ResultSet& a, const ResultSet& b, const CompareOptions& options,
+std::vector<ResultPair> pair_results(const analysis::ResultSet& a, const analysis::ResultSet& b, const CompareOptions& options,
                                      std::vector<std::string>& alone) {
   require_known(options.only, "only", a, b);
   require_known(options.without, "without", a, b);
   std::vector<ResultPair> pairs;
-  const auto find = [](const ResultSet& results, const ResultArray& like) {
-    const auto same = [&](const ResultArray& x) { return x.analyzer == like.analyzer && x.name == like.name; };
+  const auto find = [](const analysis::ResultSet& results, const analysis::ResultArray& like) {
+    const auto same = [&](const analysis::ResultArray& x) { return x.analyzer == like.analyzer && x.name == like.name; };
     return std::find_if(results.arrays.begin(), results.arrays.end(), same) - results.arrays.begin();
   };
   for (std::size_t i = 0; i < a.arrays.size(); ++i) {
@@ -115,14 +116,14 @@ std::vector<ResultPair> pair_results(const ResultSet& a, const ResultSet& b, con
     pairs.push_back({i, j});
     if (!is_bookkeeping(a, b, pairs.back())) require_comparable(a, b, pairs.back());
   }
-  for (const ResultArray& array : b.arrays) {
+  for (const analysis::ResultArray& array : b.arrays) {
     if (is_chosen(options, array) && find(a, array) == a.arrays.size()) alone.push_back(full_name(array) + ": only in B");
   }
   if (pairs.empty()) throw UserError("the two results have nothing in common that was asked for; analyse both with the same analyzers");
   return pairs;
 }
 
-std::vector<std::string> condition_notes(const ResultSet& a, const ResultSet& b) {
+std::vector<std::string> condition_notes(const analysis::ResultSet& a, const analysis::ResultSet& b) {
   std::vector<std::string> notes;
   const AnalyzerContext &of_a = a.meta.context, &of_b = b.meta.context;
   constexpr double kRpm = 9.549296585513721;
@@ -137,7 +138,7 @@ std::vector<std::string> condition_notes(const ResultSet& a, const ResultSet& b)
                     kind_text(a.meta.source), kind_text(b.meta.source)));
   }
   std::vector<std::string> seen;
-  for (const ResultArray& array : a.arrays) {
+  for (const analysis::ResultArray& array : a.arrays) {
     if (std::find(seen.begin(), seen.end(), array.analyzer) != seen.end()) continue;
     seen.push_back(array.analyzer);
     const auto options_a = options_of(a, array.analyzer), options_b = options_of(b, array.analyzer);
@@ -147,4 +148,4 @@ std::vector<std::string> condition_notes(const ResultSet& a, const ResultSet& b)
   return notes;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::compare

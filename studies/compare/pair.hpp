@@ -6,21 +6,21 @@
 
 #include "studies/compare/compare.hpp"
 
-namespace millscope::studies {
+namespace millscope::compare {
 
 struct ResultPair {
   std::size_t a, b;  ///< indices of arrays
 };
 
 /// Whether a pair says how much data there are, or how sure something is: it differs between any two results of unequal length.
-bool is_bookkeeping(const ResultSet& a, const ResultSet& b, const ResultPair& pair);
+bool is_bookkeeping(const analysis::ResultSet& a, const analysis::ResultSet& b, const ResultPair& pair);
 
 /// Pairs results of the same analyzer and name. `alone` receives those that only one has. Throws base::UserError for other units, shapes
 /// or axes, with the remedy; not for bookkeeping.
-std::vector<ResultPair> pair_results(const ResultSet& a, const ResultSet& b, const CompareOptions& options,
+std::vector<ResultPair> pair_results(const analysis::ResultSet& a, const analysis::ResultSet& b, const CompareOptions& options,
                                      std::vector<std::string>& alone);
 
 /// Sentences on conditions that differ: speed, mill, kind of source, options of analyzers.
-std::vector<std::string> condition_notes(const ResultSet& a, const ResultSet& b);
+std::vector<std::string> condition_notes(const analysis::ResultSet& a, const analysis::ResultSet& b);
 
-}  // namespace millscope::studies
+}  // namespace millscope::compare

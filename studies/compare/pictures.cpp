@@ -9,14 +9,16 @@
 #include "studies/picture/results_pictures.hpp"
 #include "studies/picture/scale.hpp"
 
-namespace millscope::studies {
+namespace millscope::compare {
 namespace {
 
-std::string name_of(const ResultSet& results, const char* letter) {
+std::string name_of(const analysis::ResultSet& results, const char* letter) {
   return results.meta.name.empty() ? letter : fmt::format("{}: {}", letter, results.meta.name);
 }
 
-std::string sources(const Comparison& c) { return fmt::format("A: {} · B: {}", source_line(c.a.meta), source_line(c.b.meta)); }
+std::string sources(const Comparison& c) {
+  return fmt::format("A: {} · B: {}", picture::source_line(c.a.meta), picture::source_line(c.b.meta));
+}
 
 std::string p_words(const ComparedObservable& o, double level) {
   const std::string p = o.adjusted_p < 0.001 ? "below 0.001" : fmt::format("{:.3f}", o.adjusted_p);
@@ -31,7 +33,8 @@ const ComparedObservable* regions_for(const Comparison& c, const ComparedObserva
 }
 
 /// Borders of the regions of this map that differ.
-std::vector<Outline> differing_regions(const Comparison& c, const ComparedObservable& by_region, const CellAxis& y, const CellAxis& x) {
+std::vector<picture::Outline> differing_regions(const Comparison& c, const ComparedObservable& by_region, const picture::CellAxis& y,
+                                                const picture::CellAxis& x) {
   const std::vector<base::Region> regions = base::regions_of(y.edges, x.edges, mill_place(c.a));
   std::vector<bool> chosen(regions.size(), false);
   for (const ComparedElement& e : by_region.elements) chosen[e.index] = e.test.adjusted_p <= c.options.level;
@@ -49,9 +52,10 @@ std::string map_note(const Comparison& c, const ComparedObservable& cells, const
   return note;
 }
 
-void draw_difference(const Comparison& c, const ComparedObservable& o, const MillOutline& mill, const std::filesystem::path& stem) {
-  const ResultArray& a = c.a.arrays[o.array_a];
-  const CellAxis y = cell_axis(c.a, a, 0), x = cell_axis(c.a, a, 1);
+void draw_difference(const Comparison& c, const ComparedObservable& o, const picture::MillOutline& mill,
+                     const std::filesystem::path& stem) {
+  const analysis::ResultArray& a = c.a.arrays[o.array_a];
+  const picture::CellAxis y = picture::cell_axis(c.a, a, 0), x = picture::cell_axis(c.a, a, 1);
   std::vector<double> difference(a.size(), std::numeric_limits<double>::quiet_NaN());
   std::vector<std::uint8_t> framed(a.size(), 0);
   bool any = false;
@@ -61,40 +65,42 @@ void draw_difference(const Comparison& c, const ComparedObservable& o, const Mil
     any = any || framed[e.index] != 0;
   }
   const ComparedObservable* const by_region = regions_for(c, o);
-  draw_map({.title = title_of(a.name) + ": B less A",
-            .subtitle = sources(c),
-            .x = x,
-            .y = y,
-            .value = {"difference of " + words_of(a.name), a.unit, std::move(difference)},
-            .mill = is_cross_section(y, x) ? mill : MillOutline{},
-            .scale = ColorScale::diverging,
-            .framed = std::move(framed),
-            .outlines = by_region != nullptr ? differing_regions(c, *by_region, y, x) : std::vector<Outline>{},
-            .blank = o.too_few > 0 ? fmt::format("no data, or ({} cells) too few independent blocks to judge", o.too_few) : "no data",
-            .note = map_note(c, o, by_region, any)},
-           stem);
+  picture::draw_map(
+      {.title = picture::title_of(a.name) + ": B less A",
+       .subtitle = sources(c),
+       .x = x,
+       .y = y,
+       .value = {"difference of " + picture::words_of(a.name), a.unit, std::move(difference)},
+       .mill = picture::is_cross_section(y, x) ? mill : picture::MillOutline{},
+       .scale = picture::ColorScale::diverging,
+       .framed = std::move(framed),
+       .outlines = by_region != nullptr ? differing_regions(c, *by_region, y, x) : std::vector<picture::Outline>{},
+       .blank = o.too_few > 0 ? fmt::format("no data, or ({} cells) too few independent blocks to judge", o.too_few) : "no data",
+       .note = map_note(c, o, by_region, any)},
+      stem);
 }
 
 void draw_overlay(const Comparison& c, const ComparedObservable& o, const std::filesystem::path& stem) {
-  const ResultArray &a = c.a.arrays[o.array_a], &b = c.b.arrays[o.array_b];
-  const CellAxis axis = cell_axis(c.a, a, 0);
+  const analysis::ResultArray &a = c.a.arrays[o.array_a], &b = c.b.arrays[o.array_b];
+  const picture::CellAxis axis = picture::cell_axis(c.a, a, 0);
   const ComparedElement& first = o.elements[o.strongest];
-  draw_curves({.title = title_of(a.name),
-               .subtitle = sources(c),
-               .x_label = axis.label,
-               .x_unit = axis.unit,
-               .value_label = words_of(a.name),
-               .value_unit = a.unit,
-               .curves = {curve_of(c.a, a, name_of(c.a, "A")), curve_of(c.b, b, name_of(c.b, "B"))},
-               .band = fmt::format("{:.0f} % intervals, each for itself", 100 * c.a.meta.confidence),
-               .points = axis.label == "number",
-               .note = fmt::format("B less A: {} Strongest: {}.", p_words(o, c.options.level), first.where)},
-              stem);
+  picture::draw_curves({.title = picture::title_of(a.name),
+                        .subtitle = sources(c),
+                        .x_label = axis.label,
+                        .x_unit = axis.unit,
+                        .value_label = picture::words_of(a.name),
+                        .value_unit = a.unit,
+                        .curves = {picture::curve_of(c.a, a, name_of(c.a, "A")), picture::curve_of(c.b, b, name_of(c.b, "B"))},
+                        .band = fmt::format("{:.0f} % intervals, each for itself", 100 * c.a.meta.confidence),
+                        .points = axis.label == "number",
+                        .note = fmt::format("B less A: {} Strongest: {}.", p_words(o, c.options.level), first.where)},
+                       stem);
 }
 
 }  // namespace
 
-std::vector<std::filesystem::path> draw_comparison(const Comparison& c, const std::filesystem::path& directory, const MillOutline& mill) {
+std::vector<std::filesystem::path> draw_comparison(const Comparison& c, const std::filesystem::path& directory,
+                                                   const picture::MillOutline& mill) {
   std::filesystem::create_directories(directory);
   std::vector<std::filesystem::path> drawn;
   for (const ComparedObservable& o : c.observables) {
@@ -112,4 +118,4 @@ std::vector<std::filesystem::path> draw_comparison(const Comparison& c, const st
   return drawn;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::compare

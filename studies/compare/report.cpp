@@ -9,7 +9,7 @@
 #include "studies/picture/results_pictures.hpp"
 #include "studies/picture/scale.hpp"
 
-namespace millscope::studies {
+namespace millscope::compare {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -29,12 +29,12 @@ std::string padded(const std::string& text, std::size_t width) {
 /// Values of one observable in one unit.
 class Numbers {
  public:
-  Numbers(const std::string& unit, double largest) : unit_(display_unit(unit, largest)) {}
-  std::string operator()(double value) const { return significant_text(value * unit_.factor, 3); }
+  Numbers(const std::string& unit, double largest) : unit_(picture::display_unit(unit, largest)) {}
+  std::string operator()(double value) const { return picture::significant_text(value * unit_.factor, 3); }
   const std::string& unit() const { return unit_.text; }
 
  private:
-  DisplayUnit unit_;
+  picture::DisplayUnit unit_;
 };
 
 using Row = std::vector<std::string>;
@@ -63,7 +63,7 @@ std::string aligned(const std::vector<Row>& rows) {
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json source_json(const ResultSet& results) {
+Json source_json(const analysis::ResultSet& results) {
   return {{"name", results.meta.name},
           {"source", results.meta.source},
           {"description", results.meta.description},
@@ -152,4 +152,4 @@ void write_comparison(const Comparison& c, const std::filesystem::path& director
   output::write_file(directory / "comparison.json", comparison_json(c).dump(2) + "\n");
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::compare

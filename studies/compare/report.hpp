@@ -8,7 +8,7 @@
 #include "studies/compare/compare.hpp"
 #include "studies/picture/picture.hpp"
 
-namespace millscope::studies {
+namespace millscope::compare {
 
 /// The ranked table as text, at most `rows` observables: where, A, B, B − A with interval, adjusted p.
 std::string comparison_table(const Comparison& comparison, std::size_t rows);
@@ -22,6 +22,6 @@ void write_comparison(const Comparison& comparison, const std::filesystem::path&
 
 /// A difference map with the differing cells framed for every map, both curves for every curve. Returns what was written, without ending.
 std::vector<std::filesystem::path> draw_comparison(const Comparison& comparison, const std::filesystem::path& directory,
-                                                   const MillOutline& mill);
+                                                   const picture::MillOutline& mill);
 
-}  // namespace millscope::studies
+}  // namespace millscope::compare

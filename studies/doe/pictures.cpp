@@ -19,7 +19,7 @@ constexpr int kCells = 80;
 /// Effects with their intervals, pooled ones without.
 void draw(const Anova& anova, const std::string& response, const TableAnalysis& analysis, const std::filesystem::path& stem) {
   const double quantile = anova.residual.df > 0 ? t_quantile(1 - analysis.confidence, anova.residual.df) : kUndefined;
-  studies::Curve curve{.label = "effect", .x = {}, .value = {}};
+  picture::Curve curve{.label = "effect", .x = {}, .value = {}};
   std::string note;
   for (const Effect& e : anova.effects) {
     const double half = quantile * e.standard_error;
@@ -29,7 +29,7 @@ void draw(const Anova& anova, const std::string& response, const TableAnalysis& 
     curve.high.push_back(e.value + half);
     note += fmt::format("{}{:.0f}: {}{}", note.empty() ? "" : ", ", curve.x.back(), e.name, e.pooled ? " (in the residual)" : "");
   }
-  studies::draw_curves({.title = "Effects on " + response,
+  picture::draw_curves({.title = "Effects on " + response,
                         .subtitle = analysis.table.description,
                         .x_label = "effect",
                         .x_unit = "",
@@ -62,9 +62,9 @@ std::array<Index, 2> widest(const Surface& s) {
   return found;
 }
 
-studies::CellAxis axis_of(const Surface& s, Index i) {
+picture::CellAxis axis_of(const Surface& s, Index i) {
   const Factor& f = s.factors[i];
-  studies::CellAxis axis{f.name, f.unit, {}};
+  picture::CellAxis axis{f.name, f.unit, {}};
   for (int edge = 0; edge <= kCells; ++edge)
     axis.edges.push_back(f.centre + f.step * (s.lower[i] + (s.upper[i] - s.lower[i]) * edge / kCells));
   return axis;
@@ -84,7 +84,7 @@ std::vector<double> cells_of(const Surface& s, Index across, Index up) {
   return cells;
 }
 
-void mark_stationary(studies::MapPicture& picture, const Surface& s, Index across, Index up) {
+void mark_stationary(picture::MapPicture& picture, const Surface& s, Index across, Index up) {
   if (!s.stationary || !s.stationary->inside) return;
   const StationaryPoint& p = *s.stationary;
   picture.marks.push_back({name_of(p.kind), p.natural[across], p.natural[up]});
@@ -97,15 +97,15 @@ void mark_stationary(studies::MapPicture& picture, const Surface& s, Index acros
 
 void draw(const Surface& s, const std::string& response, const TableAnalysis& analysis, const std::filesystem::path& stem) {
   const auto [across, up] = widest(s);
-  studies::MapPicture picture{.title = "Fitted " + response,
+  picture::MapPicture picture{.title = "Fitted " + response,
                               .subtitle = analysis.table.description + (s.rejected ? " · the quadratic is rejected" : ""),
                               .x = axis_of(s, across),
                               .y = axis_of(s, up),
                               .value = {response, "", cells_of(s, across, up)},
-                              .scale = studies::ColorScale::sequential};
+                              .scale = picture::ColorScale::sequential};
   mark_stationary(picture, s, across, up);
   if (s.lower.size() > 2) picture.note += "The other factors stand at their centre.";
-  studies::draw_map(picture, stem);
+  picture::draw_map(picture, stem);
 }
 
 /// Letters, digits, '-' and '_' only.

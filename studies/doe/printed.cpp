@@ -151,7 +151,7 @@ nlohmann::ordered_json printed_json(const std::vector<PrintedFigure>& figures) {
 }
 
 std::string printed_text(const std::vector<PrintedFigure>& figures) {
-  const auto number = [](double value) { return studies::significant_text(value, 4); };
+  const auto number = [](double value) { return picture::significant_text(value, 4); };
   std::vector<Row> rows{{"response, term", "figure", "printed", "worked again", "", "p of the printed F"}};
   std::size_t differ = 0, contradict = 0;
   for (const PrintedFigure& f : figures) {

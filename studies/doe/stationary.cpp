@@ -15,7 +15,7 @@ namespace millscope::doe {
 namespace {
 
 using Index = Eigen::Index;
-using studies::significant_text;
+using picture::significant_text;
 
 constexpr double kNoCurvature = 1e-10;  // of the largest: rounding
 constexpr double kRidge = 0.02;         // of the largest: flat enough to be called a ridge, where it cannot be told from zero either

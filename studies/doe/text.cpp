@@ -14,7 +14,7 @@ namespace millscope::doe {
 namespace {
 
 using Index = Eigen::Index;
-using studies::significant_text;
+using picture::significant_text;
 
 std::string number(double value) { return std::isinf(value) ? "∞" : significant_text(value, 4); }
 std::string blank_if_undefined(double value) { return std::isnan(value) ? "" : number(value); }

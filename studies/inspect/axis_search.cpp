@@ -6,7 +6,7 @@
 #include "millscope/random.hpp"
 #include "studies/inspect/circles.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 namespace {
 
 constexpr double kOuter = 0.75;  // of the enclosing radius: where windows count as support
@@ -53,7 +53,7 @@ class Distances {
     std::fill(count_.begin(), count_.end(), 0.0);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double dx = points.x[i] - cx, dy = points.y[i] - cy, r = std::sqrt(dx * dx + dy * dy) / bin_;
-      if (r < static_cast<double>(count_.size())) count_[r] += weights.empty() ? 1 : weights[i];
+      if (r < static_cast<double>(count_.size())) count_[static_cast<std::size_t>(r)] += weights.empty() ? 1 : weights[i];
     }
   }
 
@@ -154,4 +154,4 @@ Circle ridge_circle(const PlanePoints& points, const std::vector<double>& weight
   return circle;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

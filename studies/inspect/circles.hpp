@@ -8,7 +8,7 @@
 
 #include "studies/inspect/windows.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
 inline constexpr double kTurn = 2 * std::numbers::pi;  ///< rad
 
@@ -42,4 +42,4 @@ Circle touching_circle(const PlanePoints& points, const std::vector<double>& wei
 /// The circle near `start` with the largest Σ w exp(−e²/2s²). Weights may be empty.
 Circle ridge_circle(const PlanePoints& points, const std::vector<double>& weights, const Circle& start, double scale);
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

@@ -9,23 +9,23 @@
 #include "kernel/base/statistics.hpp"
 #include "studies/inspect/resample.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 namespace {
 
 // Height between the first and the last hundredth of the points.
-double extent_of_height(const Recording& recording) {
+double extent_of_height(const recording::Recording& recording) {
   std::vector<double> heights;
-  for (const Run& run : recording.runs) heights.insert(heights.end(), run.position[1].begin(), run.position[1].end());
+  for (const recording::Run& run : recording.runs) heights.insert(heights.end(), run.position[1].begin(), run.position[1].end());
   const double low = base::quantile(heights, 0.01);
   return base::quantile(heights, 0.99) - low;
 }
 
 }  // namespace
 
-std::vector<Extreme> find_extremes(const Recording& recording, double height, double longest_pause) {
+std::vector<Extreme> find_extremes(const recording::Recording& recording, double height, double longest_pause) {
   std::vector<Extreme> extremes;
   for (std::size_t r = 0; r < recording.runs.size(); ++r) {
-    const Run& run = recording.runs[r];
+    const recording::Run& run = recording.runs[r];
     const std::vector<double>& y = run.position[1];
     std::size_t lowest = 0, highest = 0;
     int direction = 0;  // of the motion since the last extreme; 0: not known yet
@@ -52,7 +52,7 @@ std::vector<Extreme> find_extremes(const Recording& recording, double height, do
   return extremes;
 }
 
-Circulations count_circulations(const Recording& recording, double noise, double angular_velocity) {
+Circulations count_circulations(const recording::Recording& recording, double noise, double angular_velocity) {
   Circulations c;
   c.least_height = std::max(8 * noise, 0.06 * extent_of_height(recording));
   c.longest_pause = angular_velocity != 0 ? std::clamp(0.5 * std::numbers::pi / std::fabs(angular_velocity), 0.1, 1.0) : 0.3;
@@ -83,4 +83,4 @@ Circulations count_circulations(const Recording& recording, double noise, double
   return c;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

@@ -7,7 +7,7 @@
 #include "studies/inspect/estimate.hpp"
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
 /// A turning point of the height y.
 struct Extreme {
@@ -18,7 +18,7 @@ struct Extreme {
 };
 
 /// A rise or fall counts when it is at least `height`, m; a pause longer than `longest_pause`, s, begins anew.
-std::vector<Extreme> find_extremes(const Recording& recording, double height, double longest_pause);
+std::vector<Extreme> find_extremes(const recording::Recording& recording, double height, double longest_pause);
 
 struct Circulations {
   std::size_t count = 0;     ///< whole ones: a rise and the fall after it, unbroken
@@ -30,6 +30,6 @@ struct Circulations {
 };
 
 /// `noise`: of y, m. `angular_velocity`: of the shell, rad/s; 0: unknown.
-Circulations count_circulations(const Recording& recording, double noise, double angular_velocity);
+Circulations count_circulations(const recording::Recording& recording, double noise, double angular_velocity);
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

@@ -10,10 +10,10 @@
 #include "studies/inspect/windows.hpp"
 #include "studies/recording/noise.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 namespace {
 
-void add(RunReport& sum, const RunReport& r) {
+void add(recording::RunReport& sum, const recording::RunReport& r) {
   sum.rows += r.rows;
   sum.used += r.used;
   sum.unreadable += r.unreadable;
@@ -27,11 +27,11 @@ void add(RunReport& sum, const RunReport& r) {
   sum.gaps += r.gaps;
 }
 
-Run part_of(const Run& run, std::size_t first, std::size_t last) {
+recording::Run part_of(const recording::Run& run, std::size_t first, std::size_t last) {
   const auto slice = [&](const std::vector<double>& values) {
     return std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(first), values.begin() + static_cast<std::ptrdiff_t>(last));
   };
-  Run part;
+  recording::Run part;
   part.name = run.name;
   part.time = slice(run.time);
   for (std::size_t a = 0; a < 3; ++a) part.position[a] = slice(run.position[a]);
@@ -40,12 +40,12 @@ Run part_of(const Run& run, std::size_t first, std::size_t last) {
 
 }  // namespace
 
-Coverage measure_coverage(const Recording& recording) {
+Coverage measure_coverage(const recording::Recording& recording) {
   Coverage c;
   c.runs = recording.runs.size();
   c.gap_limit = recording.gap_limit;
   c.median_interval = median_interval(recording);
-  for (const Run& run : recording.runs) {
+  for (const recording::Run& run : recording.runs) {
     add(c.report, run.report);
     c.points += run.size();
     c.span += run.time.back() - run.time.front();
@@ -59,15 +59,15 @@ Coverage measure_coverage(const Recording& recording) {
   return c;
 }
 
-std::array<Finding, 3> measure_noise(const Recording& recording) {
+std::array<Finding, 3> measure_noise(const recording::Recording& recording) {
   constexpr std::size_t kParts = 20, kFewest = 60;
   std::size_t all = 0;
-  for (const Run& run : recording.runs) all += run.size();
+  for (const recording::Run& run : recording.runs) all += run.size();
   const std::size_t length = std::max(kFewest, all / kParts);
   std::array<std::vector<double>, 3> values;
-  for (const Run& run : recording.runs) {
+  for (const recording::Run& run : recording.runs) {
     for (std::size_t first = 0; first + length <= run.size(); first += length) {
-      const auto noise = difference_noise(part_of(run, first, first + length), recording.gap_limit);
+      const auto noise = recording::difference_noise(part_of(run, first, first + length), recording.gap_limit);
       for (std::size_t a = 0; a < 3; ++a) {
         if (noise[a] > 0) values[a].push_back(noise[a]);
       }
@@ -88,10 +88,10 @@ std::array<Finding, 3> measure_noise(const Recording& recording) {
   return result;
 }
 
-Axial measure_axial(const Recording& recording) {
+Axial measure_axial(const recording::Recording& recording) {
   std::vector<std::pair<double, double>> heights;
   double all = 0;
-  for (const Run& run : recording.runs) {
+  for (const recording::Run& run : recording.runs) {
     const std::vector<double> dwell = dwell_times(run, recording.gap_limit);
     for (std::size_t i = 0; i < run.size(); ++i) {
       heights.emplace_back(run.position[2][i], dwell[i]);
@@ -106,7 +106,7 @@ Axial measure_axial(const Recording& recording) {
   if (!(length > 0)) return axial;
   for (const auto& [z, weight] : heights)
     axial.share[static_cast<std::size_t>(std::clamp((z - axial.low) / length * 10, 0.0, 9.0))] += weight / all;
-  for (const Run& run : recording.runs) {
+  for (const recording::Run& run : recording.runs) {
     int side = 0;
     for (const double z : run.position[2]) {
       const double place = (z - axial.low) / length;
@@ -118,4 +118,4 @@ Axial measure_axial(const Recording& recording) {
   return axial;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

@@ -6,7 +6,7 @@
 
 #include "kernel/base/statistics.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
 /// How a bound is to be read.
 enum class Bound {
@@ -21,4 +21,4 @@ struct Finding {
   Bound bound = Bound::both;
 };
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

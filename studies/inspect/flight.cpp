@@ -12,7 +12,7 @@
 #include "studies/inspect/windows.hpp"
 #include "studies/recording/noise.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 namespace {
 
 using Eigen::Vector3d;
@@ -32,7 +32,7 @@ struct Arc {
 
 // How far from the point `first` the same parabola holds within the noise; returns the end, or `first`.
 std::size_t end_of_arc(const UnbrokenStretch& stretch, std::size_t first, const std::array<double, 3>& noise, std::size_t least) {
-  const Run& run = *stretch.run;
+  const recording::Run& run = *stretch.run;
   GrowingParabola sums(run.time[first]);
   std::size_t good = first, next_test = first + least;
   for (std::size_t i = first; i < stretch.last; ++i) {
@@ -49,7 +49,7 @@ std::size_t end_of_arc(const UnbrokenStretch& stretch, std::size_t first, const 
   return good;
 }
 
-void add_arc(const Run& run, std::size_t first, std::size_t last, double noise, std::vector<Arc>& arcs) {
+void add_arc(const recording::Run& run, std::size_t first, std::size_t last, double noise, std::vector<Arc>& arcs) {
   const double duration = run.time[last - 1] - run.time[first];
   const double from = run.time[first] + kCutEnds * duration, to = run.time[last - 1] - kCutEnds * duration;
   while (first < last && run.time[first] < from) ++first;
@@ -60,13 +60,13 @@ void add_arc(const Run& run, std::size_t first, std::size_t last, double noise, 
   if (deviation < 0.8) arcs.push_back({{p.acceleration[0], p.acceleration[1], p.acceleration[2]}, deviation});
 }
 
-std::vector<Arc> find_arcs(const Recording& recording) {
+std::vector<Arc> find_arcs(const recording::Recording& recording) {
   std::vector<std::array<double, 3>> noises;
-  for (const Run& run : recording.runs) noises.push_back(difference_noise(run, recording.gap_limit));
+  for (const recording::Run& run : recording.runs) noises.push_back(recording::difference_noise(run, recording.gap_limit));
   const auto least = std::max(kFewest, static_cast<std::size_t>(kShortest / std::max(1e-5, median_interval(recording)) / 4));
   std::vector<Arc> arcs;
   for (const UnbrokenStretch& stretch : unbroken_stretches(recording)) {
-    const Run& run = *stretch.run;
+    const recording::Run& run = *stretch.run;
     std::array<double, 3> noise = noises[stretch.run_number];
     for (double& n : noise) n = std::max(n, 2e-5);
     for (std::size_t i = stretch.first; i + least <= stretch.last;) {
@@ -158,7 +158,7 @@ double out_of_plane(const Vector3d& g) { return std::atan2(g[2], std::hypot(g[0]
 
 }  // namespace
 
-FreeFlight measure_flight(const Recording& recording) {
+FreeFlight measure_flight(const recording::Recording& recording) {
   constexpr std::size_t kMostArcs = 4000;
   FreeFlight result;
   std::vector<Arc> arcs = find_arcs(recording);
@@ -195,4 +195,4 @@ FreeFlight measure_flight(const Recording& recording) {
   return result;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

@@ -10,7 +10,7 @@
 #include "studies/inspect/estimate.hpp"
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
 struct FreeFlight {
   std::size_t arcs = 0;   ///< parabolic arcs, of any acceleration
@@ -20,6 +20,6 @@ struct FreeFlight {
   Finding magnitude;      ///< m/s²; away from 9.81 the recording's scale or clock is off, or air and neighbours brake the beads
 };
 
-FreeFlight measure_flight(const Recording& recording);
+FreeFlight measure_flight(const recording::Recording& recording);
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

@@ -4,13 +4,13 @@
 
 #include "studies/inspect/verdict.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
-Inspection inspect(const Recording& recording) {
+Inspection inspect(const recording::Recording& recording) {
   Inspection result;
   result.file = recording.file.string();
   result.stated = recording.condition;
-  for (const Run& run : recording.runs) {
+  for (const recording::Run& run : recording.runs) {
     if (std::find(result.formats.begin(), result.formats.end(), run.format) == result.formats.end()) result.formats.push_back(run.format);
   }
   result.coverage = measure_coverage(recording);
@@ -30,4 +30,4 @@ Inspection inspect(const Recording& recording) {
   return result;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

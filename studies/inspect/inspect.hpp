@@ -21,7 +21,7 @@
 #include "studies/inspect/offset.hpp"
 #include "studies/inspect/rotor.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
 enum class Support { yes, partly, no };
 
@@ -39,7 +39,7 @@ struct Inspection {
   std::array<Finding, 3> noise;  ///< standard deviation of a component, from point to point, m
   std::optional<Rotor> rotor;    ///< when the tracer sits on a rotor, nothing of what follows but the verdicts is filled
   MillMotion motion;
-  Condition stated;  ///< what recording.yaml states; not used, only its speed is held against the one found
+  recording::Condition stated;  ///< what recording.yaml states; not used, only its speed is held against the one found
   FreeFlight flight;
   Circulations circulations;
   Finding mean_offset;  ///< ⟨x⟩ of the tracer beside the axis, m
@@ -48,6 +48,6 @@ struct Inspection {
   std::vector<Verdict> verdicts;
 };
 
-Inspection inspect(const Recording& recording);
+Inspection inspect(const recording::Recording& recording);
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

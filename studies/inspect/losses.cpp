@@ -12,7 +12,7 @@
 #include "studies/inspect/resample.hpp"
 #include "studies/inspect/windows.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 namespace {
 
 constexpr std::size_t kRanges = 7;
@@ -26,7 +26,7 @@ struct Pause {
   std::size_t group = 0;
 };
 
-double chord_speed(const Run& run, std::size_t from, std::size_t to) {
+double chord_speed(const recording::Run& run, std::size_t from, std::size_t to) {
   double square = 0;
   for (const auto& component : run.position) square += (component[to] - component[from]) * (component[to] - component[from]);
   return std::sqrt(square) / (run.time[to] - run.time[from]);
@@ -35,7 +35,7 @@ double chord_speed(const Run& run, std::size_t from, std::size_t to) {
 // Slope of a line through the nine points about the pause, within the stretch.
 double local_speed(const UnbrokenStretch& stretch, std::size_t before) {
   constexpr std::size_t kSide = 4;
-  const Run& run = *stretch.run;
+  const recording::Run& run = *stretch.run;
   const std::size_t first = std::max(stretch.first, before - std::min(before, kSide)), last = std::min(stretch.last, before + kSide + 2);
   if (last - first < 5) return chord_speed(run, first, last - 1);
   double mean = 0, square = 0;
@@ -49,7 +49,7 @@ double local_speed(const UnbrokenStretch& stretch, std::size_t before) {
   return std::sqrt(slope[0] * slope[0] + slope[1] * slope[1] + slope[2] * slope[2]) / square;
 }
 
-std::vector<Pause> list_pauses(const Recording& recording, double& unassigned) {
+std::vector<Pause> list_pauses(const recording::Recording& recording, double& unassigned) {
   std::vector<Pause> pauses;
   std::size_t group = 0, group_run = 0;
   double group_start = -std::numeric_limits<double>::infinity();
@@ -62,7 +62,7 @@ std::vector<Pause> list_pauses(const Recording& recording, double& unassigned) {
     pauses.push_back({length, speed, group});
   };
   for (const UnbrokenStretch& stretch : unbroken_stretches(recording)) {
-    const Run& run = *stretch.run;
+    const recording::Run& run = *stretch.run;
     if (stretch.first > 0) {
       const double length = run.time[stretch.first] - run.time[stretch.first - 1];
       if (length > kLongest) unassigned += length;
@@ -135,7 +135,7 @@ void measure_ranges(const std::vector<Pause>& pauses, Losses& losses) {
 }
 
 // Length of the pause in which the tracer passes the middle height between two extremes.
-double pause_at_middle(const Run& run, std::size_t from, std::size_t to) {
+double pause_at_middle(const recording::Run& run, std::size_t from, std::size_t to) {
   const double middle = 0.5 * (run.position[1][from] + run.position[1][to]);
   const bool rising = run.position[1][to] > run.position[1][from];
   for (std::size_t i = from; i < to; ++i) {
@@ -146,9 +146,9 @@ double pause_at_middle(const Run& run, std::size_t from, std::size_t to) {
 }
 
 // Points that come at random leave out a given instant for so long in 2 % of all cases: (1 + 6) e⁻⁶.
-double limit_of_passage(const Recording& recording) { return 6 * median_interval(recording) / std::numbers::ln2; }
+double limit_of_passage(const recording::Recording& recording) { return 6 * median_interval(recording) / std::numbers::ln2; }
 
-void measure_passages(const Recording& recording, const Circulations& circulations, Losses& losses) {
+void measure_passages(const recording::Recording& recording, const Circulations& circulations, Losses& losses) {
   const double limit = limit_of_passage(recording);
   std::array<double, 2> all{}, missed{};  // falling, rising
   for (std::size_t i = 1; i < circulations.extremes.size(); ++i) {
@@ -171,7 +171,7 @@ void measure_passages(const Recording& recording, const Circulations& circulatio
 
 }  // namespace
 
-Losses measure_losses(const Recording& recording, const Circulations& circulations) {
+Losses measure_losses(const recording::Recording& recording, const Circulations& circulations) {
   Losses losses;
   const std::vector<Pause> pauses = list_pauses(recording, losses.unassigned);
   losses.lost.note = "fewer than 200 pauses between points";
@@ -180,4 +180,4 @@ Losses measure_losses(const Recording& recording, const Circulations& circulatio
   return losses;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

@@ -7,7 +7,7 @@
 #include "studies/inspect/estimate.hpp"
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
 /// One range of speed. Time within it: pauses between points, each at the speed of its neighbourhood; long pauses at that of their chord.
 struct SpeedRange {
@@ -25,6 +25,6 @@ struct Losses {
   Finding missed_falling;  ///< the same of falls: each circulation has one of both, so without losses by speed both are alike
 };
 
-Losses measure_losses(const Recording& recording, const Circulations& circulations);
+Losses measure_losses(const recording::Recording& recording, const Circulations& circulations);
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

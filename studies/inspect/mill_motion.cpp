@@ -13,7 +13,7 @@
 #include "studies/inspect/windows.hpp"
 #include "studies/recording/noise.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 namespace {
 
 constexpr std::size_t kFewestRides = 5;
@@ -25,7 +25,7 @@ constexpr double kRolling = 0.006;
 
 /// What the steps share.
 struct Work {
-  const Recording& recording;
+  const recording::Recording& recording;
   double noise = 0;  ///< of x and y, m
   PlanePoints points;
   std::vector<Parabola> windows;
@@ -37,10 +37,10 @@ struct Work {
 
 std::string rides_text(std::size_t rides) { return fmt::format("{} {}", rides, rides == 1 ? "ride" : "rides"); }
 
-double plane_noise(const Recording& recording) {
+double plane_noise(const recording::Recording& recording) {
   double sum = 0, count = 0;
-  for (const Run& run : recording.runs) {
-    const auto noise = difference_noise(run, recording.gap_limit);
+  for (const recording::Run& run : recording.runs) {
+    const auto noise = recording::difference_noise(run, recording.gap_limit);
     const auto n = static_cast<double>(run.size());
     sum += 0.5 * (noise[0] + noise[1]) * n;
     count += n;
@@ -49,13 +49,13 @@ double plane_noise(const Recording& recording) {
 }
 
 // At most about twenty thousand points, evenly chosen, in groups of a second.
-PlanePoints plane_points(const Recording& recording) {
+PlanePoints plane_points(const recording::Recording& recording) {
   std::size_t count = 0;
-  for (const Run& run : recording.runs) count += run.size();
+  for (const recording::Run& run : recording.runs) count += run.size();
   const std::size_t stride = count / 20000 + 1;
   PlanePoints points;
   std::size_t group = 0;
-  for (const Run& run : recording.runs) {
+  for (const recording::Run& run : recording.runs) {
     double start = run.time.front();
     for (std::size_t i = 0; i < run.size(); i += stride) {
       if (run.time[i] - start > 1) {
@@ -211,7 +211,7 @@ void report_least_speed(const Work& work, MillMotion& motion) {
 
 }  // namespace
 
-Agreement compare_speed(const Condition& stated, const MillMotion& motion) {
+Agreement compare_speed(const recording::Condition& stated, const MillMotion& motion) {
   constexpr double kFar = 1.5, kFarBeyondBound = 10;
   if (!stated.speed || motion.sense == 0) return Agreement::unknown;
   if (stated.angular_velocity.value_or(0) * motion.sense < 0) return Agreement::opposite;
@@ -223,7 +223,7 @@ Agreement compare_speed(const Condition& stated, const MillMotion& motion) {
   return *stated.speed < found.low || *stated.speed > found.high ? Agreement::outside : Agreement::within;
 }
 
-MillMotion estimate_motion(const Recording& recording) {
+MillMotion estimate_motion(const recording::Recording& recording) {
   Work work{recording, plane_noise(recording), plane_points(recording), {}, {}, {}, {}, {}};
   MillMotion motion;
   if (!find_rotation(work)) {
@@ -250,4 +250,4 @@ MillMotion estimate_motion(const Recording& recording) {
   return motion;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

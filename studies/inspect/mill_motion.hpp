@@ -11,7 +11,7 @@
 #include "studies/inspect/estimate.hpp"
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
 struct MillMotion {
   int sense = 0;                ///< of turning, seen with z towards the viewer: +1 counter-clockwise, −1 clockwise, 0 not recognised
@@ -37,9 +37,9 @@ enum class Agreement {
   far,       ///< beyond its interval by half as much again; of a bound, ten times the speed that the charge has
   opposite,  ///< the other sense
 };
-Agreement compare_speed(const Condition& stated, const MillMotion& motion);
+Agreement compare_speed(const recording::Condition& stated, const MillMotion& motion);
 
 /// Needs motion across x and y, with the axis along z. Never throws; where the data cannot say, the findings give the reason.
-MillMotion estimate_motion(const Recording& recording);
+MillMotion estimate_motion(const recording::Recording& recording);
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

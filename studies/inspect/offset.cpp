@@ -6,7 +6,7 @@
 #include "studies/inspect/resample.hpp"
 #include "studies/inspect/windows.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 namespace {
 
 /// Dwell-weighted mean of the distance beside the axis, and its standard error from blocks of time.
@@ -15,9 +15,9 @@ struct SideMean {
 };
 
 // Means over blocks of `length` seconds of covered time.
-SideMean mean_by_blocks(const Recording& recording, double axis_x, double length) {
+SideMean mean_by_blocks(const recording::Recording& recording, double axis_x, double length) {
   std::vector<std::pair<double, double>> blocks;  // Σ w x, Σ w
-  for (const Run& run : recording.runs) {
+  for (const recording::Run& run : recording.runs) {
     const std::vector<double> dwell = dwell_times(run, recording.gap_limit);
     double moment = 0, weight = 0;
     for (std::size_t i = 0; i < run.size(); ++i) {
@@ -57,7 +57,7 @@ SideMean mean_by_blocks(const Recording& recording, double axis_x, double length
 
 }  // namespace
 
-Finding mean_offset(const Recording& recording, const MillMotion& motion, double circulation) {
+Finding mean_offset(const recording::Recording& recording, const MillMotion& motion, double circulation) {
   Finding result;
   if (!(circulation > 0) || motion.sense == 0) {
     result.note = "the axis or the circulations are not known";
@@ -78,4 +78,4 @@ Finding mean_offset(const Recording& recording, const MillMotion& motion, double
           "weighted by time; blocks of one to eight circulations and their likeness; the largest error"};
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

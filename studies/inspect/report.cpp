@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace millscope::studies {
+namespace millscope::inspect {
 namespace {
 
 constexpr double kRpm = 30 / std::numbers::pi;
@@ -34,7 +34,7 @@ std::string line(const std::string& name, const Finding& f, const Unit& u) {
 }
 
 std::string coverage_text(const Coverage& c) {
-  const RunReport& r = c.report;
+  const recording::RunReport& r = c.report;
   std::string out = "\nRecording\n";
   out += line("runs", fmt::format("{}", c.runs));
   out += line("span", fmt::format("{:.1f} s", c.span));
@@ -68,7 +68,7 @@ std::string rotor_text(const Rotor& r) {
   return out;
 }
 
-std::string stated_text(const Condition& stated, const MillMotion& m) {
+std::string stated_text(const recording::Condition& stated, const MillMotion& m) {
   const auto words = [](Agreement agreement) {
     switch (agreement) {
       case Agreement::within:
@@ -175,4 +175,4 @@ std::string inspection_text(const Inspection& i) {
   return out + verdict_text(i.verdicts);
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

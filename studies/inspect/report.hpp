@@ -6,7 +6,7 @@
 
 #include "studies/inspect/inspect.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
 /// Aligned text with units; ends with a newline.
 std::string inspection_text(const Inspection& inspection);
@@ -14,4 +14,4 @@ std::string inspection_text(const Inspection& inspection);
 /// The same content; units are in the names of the keys; what the recording cannot say is null, with a note.
 nlohmann::ordered_json inspection_json(const Inspection& inspection);
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

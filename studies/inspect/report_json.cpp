@@ -3,7 +3,7 @@
 
 #include "studies/inspect/report.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -20,7 +20,7 @@ Json json(const Finding& f) {
 }
 
 Json json(const Coverage& c) {
-  const RunReport& r = c.report;
+  const recording::RunReport& r = c.report;
   return {{"runs", c.runs},
           {"points", c.points},
           {"span_s", c.span},
@@ -120,4 +120,4 @@ Json inspection_json(const Inspection& i) {
   return j;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

@@ -6,7 +6,7 @@
 
 #include "millscope/random.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
 std::vector<double> bootstrap_deviation(std::size_t groups, std::size_t draws,
                                         const std::function<std::vector<double>(const std::vector<double>&)>& estimate) {
@@ -45,4 +45,4 @@ base::Interval90 proportion(double successes, double trials) {
   return {p, std::max(0.0, centre - half), std::min(1.0, centre + half)};
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

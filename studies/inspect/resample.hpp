@@ -7,7 +7,7 @@
 
 #include "studies/inspect/estimate.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
 /// Draws with replacement as many groups as there are and calls `estimate` with how often each was drawn. Each call returns the same
 /// number of values; returns for each value its standard deviation over the draws. Calls that return nothing are left out.
@@ -21,4 +21,4 @@ base::Interval90 interval(double value, double deviation, double freedom, double
 /// 90 % interval (Wilson 1927) of a proportion.
 base::Interval90 proportion(double successes, double trials);
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-namespace millscope::studies {
+namespace millscope::inspect {
 namespace {
 
 // Angles about the circle's centre in the turning sense, unwrapped.
-std::vector<double> angles(const Run& run, const std::vector<std::size_t>& points, const Circle& circle, int sense) {
+std::vector<double> angles(const recording::Run& run, const std::vector<std::size_t>& points, const Circle& circle, int sense) {
   std::vector<double> result(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     double angle = sense * std::atan2(run.position[1][points[i]] - circle.y, run.position[0][points[i]] - circle.x);
@@ -19,7 +19,7 @@ std::vector<double> angles(const Run& run, const std::vector<std::size_t>& point
 }
 
 // Slope of angle over time, and its standard error.
-void fit_speed(const Run& run, const std::vector<double>& angle, int sense, Ride& ride) {
+void fit_speed(const recording::Run& run, const std::vector<double>& angle, int sense, Ride& ride) {
   const auto n = static_cast<double>(ride.points.size());
   double mean_time = 0, mean_angle = 0;
   for (std::size_t i = 0; i < angle.size(); ++i) {
@@ -39,7 +39,7 @@ void fit_speed(const Run& run, const std::vector<double>& angle, int sense, Ride
 }
 
 // Cuts the ends, divides what is long.
-void add_rides(const Run& run, std::size_t number, const std::vector<std::size_t>& points, const Circle& circle, int sense,
+void add_rides(const recording::Run& run, std::size_t number, const std::vector<std::size_t>& points, const Circle& circle, int sense,
                const RideRule& rule, std::vector<Ride>& rides) {
   if (points.size() < 8) return;
   const std::vector<double> angle = angles(run, points, circle, sense);
@@ -68,11 +68,11 @@ void add_rides(const Run& run, std::size_t number, const std::vector<std::size_t
 
 }  // namespace
 
-std::vector<Ride> find_rides(const Recording& recording, const Circle& circle, int sense, const RideRule& rule) {
+std::vector<Ride> find_rides(const recording::Recording& recording, const Circle& circle, int sense, const RideRule& rule) {
   constexpr std::size_t kMayMiss = 2;  // points outside the band that do not end a ride
   std::vector<Ride> rides;
   for (std::size_t r = 0; r < recording.runs.size(); ++r) {
-    const Run& run = recording.runs[r];
+    const recording::Run& run = recording.runs[r];
     std::vector<std::size_t> points;
     for (std::size_t i = 0; i < run.size(); ++i) {
       const double distance = std::hypot(run.position[0][i] - circle.x, run.position[1][i] - circle.y);
@@ -96,10 +96,10 @@ double radius_spread(const std::vector<Ride>& rides) {
   return n > 1 ? std::sqrt(squares / (n - 1)) : 0;
 }
 
-PlanePoints points_of(const Recording& recording, const std::vector<Ride>& rides) {
+PlanePoints points_of(const recording::Recording& recording, const std::vector<Ride>& rides) {
   PlanePoints points;
   for (std::size_t r = 0; r < rides.size(); ++r) {
-    const Run& run = recording.runs[rides[r].run];
+    const recording::Run& run = recording.runs[rides[r].run];
     for (const std::size_t i : rides[r].points) {
       points.x.push_back(run.position[0][i]);
       points.y.push_back(run.position[1][i]);
@@ -140,4 +140,4 @@ double common_speed(const std::vector<Ride>& rides, const std::vector<double>& t
   return result;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

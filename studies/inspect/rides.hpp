@@ -5,7 +5,7 @@
 
 #include "studies/inspect/circles.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
 /// One ride with its ends cut off: points first … last − 1 of a run, those within the band.
 struct Ride {
@@ -26,16 +26,16 @@ struct RideRule {
 };
 
 /// Rides in the turning sense `sense` (±1).
-std::vector<Ride> find_rides(const Recording& recording, const Circle& circle, int sense, const RideRule& rule);
+std::vector<Ride> find_rides(const recording::Recording& recording, const Circle& circle, int sense, const RideRule& rule);
 
 /// Standard deviation of the rides' radii about their mean, m; a common wall leaves little.
 double radius_spread(const std::vector<Ride>& rides);
 
 /// The points of rides, grouped by ride.
-PlanePoints points_of(const Recording& recording, const std::vector<Ride>& rides);
+PlanePoints points_of(const recording::Recording& recording, const std::vector<Ride>& rides);
 
 /// Largest density of the rides' angular velocities, weighted by their duration times `times` (one per ride; empty: 1), with a kernel of
 /// relative width 0.8 %. Signed; 0 without rides.
 double common_speed(const std::vector<Ride>& rides, const std::vector<double>& times);
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

@@ -10,7 +10,7 @@
 #include "studies/inspect/resample.hpp"
 #include "studies/inspect/windows.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 namespace {
 
 using Eigen::Matrix3d;
@@ -21,15 +21,15 @@ struct Plane {
   Vector3d middle, first, second, normal;
 };
 
-Vector3d point_of(const Run& run, std::size_t i) { return {run.position[0][i], run.position[1][i], run.position[2][i]}; }
+Vector3d point_of(const recording::Run& run, std::size_t i) { return {run.position[0][i], run.position[1][i], run.position[2][i]}; }
 
 // At most about fifty thousand, evenly chosen.
-std::vector<Vector3d> some_points(const Recording& recording) {
+std::vector<Vector3d> some_points(const recording::Recording& recording) {
   std::size_t count = 0;
-  for (const Run& run : recording.runs) count += run.size();
+  for (const recording::Run& run : recording.runs) count += run.size();
   const std::size_t stride = count / 50000 + 1;
   std::vector<Vector3d> points;
-  for (const Run& run : recording.runs) {
+  for (const recording::Run& run : recording.runs) {
     for (std::size_t i = 0; i < run.size(); i += stride) points.push_back(point_of(run, i));
   }
   return points;
@@ -101,7 +101,7 @@ struct Pace {
 class Phases {
  public:
   Phases(const Plane& plane, const Circle& circle) : plane_(plane), circle_(circle) {}
-  double operator()(const Run& run, std::size_t i) const {
+  double operator()(const recording::Run& run, std::size_t i) const {
     const Vector3d p = point_of(run, i) - plane_.middle;
     return std::atan2(plane_.second.dot(p) - circle_.y, plane_.first.dot(p) - circle_.x);
   }
@@ -112,10 +112,10 @@ class Phases {
 };
 
 // Slope of the unwrapped angle over spans of `length`, in unbroken stretches.
-std::vector<Pace> measure_paces(const Recording& recording, const Phases& phase, double length) {
+std::vector<Pace> measure_paces(const recording::Recording& recording, const Phases& phase, double length) {
   std::vector<Pace> paces;
   for (const UnbrokenStretch& stretch : unbroken_stretches(recording)) {
-    const Run& run = *stretch.run;
+    const recording::Run& run = *stretch.run;
     std::size_t i = stretch.first;
     while (i < stretch.last && run.time[i] + length <= run.time[stretch.last - 1]) {
       const double start = run.time[i];
@@ -199,7 +199,7 @@ base::Interval90 radius_interval(const PlanePoints& flat, const Circle& circle, 
 
 }  // namespace
 
-std::optional<Rotor> recognise_rotor(const Recording& recording) {
+std::optional<Rotor> recognise_rotor(const recording::Recording& recording) {
   constexpr double kPaceLength = 4;  // s
   const std::vector<Vector3d> points = some_points(recording);
   if (points.size() < 100) return std::nullopt;
@@ -232,4 +232,4 @@ std::optional<Rotor> recognise_rotor(const Recording& recording) {
   return rotor;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

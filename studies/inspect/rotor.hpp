@@ -8,7 +8,7 @@
 #include "studies/inspect/estimate.hpp"
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
 /// A time of steady speed.
 struct Plateau {
@@ -27,6 +27,6 @@ struct Rotor {
 };
 
 /// None unless nearly all points lie on one circle and go round it.
-std::optional<Rotor> recognise_rotor(const Recording& recording);
+std::optional<Rotor> recognise_rotor(const recording::Recording& recording);
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

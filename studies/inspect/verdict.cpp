@@ -9,7 +9,7 @@
 #include "kernel/base/statistics.hpp"
 #include "studies/inspect/windows.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 namespace {
 
 // Power is M g ⟨x⟩ Ω: what the recording adds is the uncertainty of ⟨x⟩.
@@ -29,14 +29,14 @@ Verdict judge_power(const Inspection& i) {
 }
 
 // Part of the covered time spent in cells with ten visits or more; visits are half a circulation apart.
-double well_visited(const Recording& recording, const std::array<double, 2>& axis, double cell, double apart) {
+double well_visited(const recording::Recording& recording, const std::array<double, 2>& axis, double cell, double apart) {
   struct Cell {
     double time = 0, last = -1e300;
     int visits = 0;
   };
   std::map<std::pair<long, long>, Cell> cells;
   double all = 0;
-  for (const Run& run : recording.runs) {
+  for (const recording::Run& run : recording.runs) {
     const std::vector<double> dwell = dwell_times(run, recording.gap_limit);
     for (auto& [place, c] : cells) c.last = -1e300;
     for (std::size_t i = 0; i < run.size(); ++i) {
@@ -52,7 +52,7 @@ double well_visited(const Recording& recording, const std::array<double, 2>& axi
   return all > 0 ? good / all : 0;
 }
 
-Verdict judge_maps(const Recording& recording, const Inspection& i) {
+Verdict judge_maps(const recording::Recording& recording, const Inspection& i) {
   Verdict v{"occupancy maps", Support::no, "the axis, the shell's radius or the circulations are not known"};
   if (!i.circulations.time.estimate || !i.motion.path_radius.estimate) return v;
   const double diameter = 2 * i.motion.path_radius.estimate->value, noise = i.motion.radial_scatter > 0 ? i.motion.radial_scatter
@@ -79,7 +79,7 @@ Verdict judge_maps(const Recording& recording, const Inspection& i) {
 }
 
 // A parabola over a quarter of a radian of the mill's turn.
-Verdict judge_velocity(const Recording& recording, const Inspection& i) {
+Verdict judge_velocity(const recording::Recording& recording, const Inspection& i) {
   Verdict v{"velocity", Support::no, "the mill's speed or the noise is not known"};
   if (!i.motion.speed.estimate || !i.noise[0].estimate) return v;
   const double speed = i.motion.speed.estimate->value, length = std::clamp(0.25 / speed, 0.02, 0.3);
@@ -145,7 +145,7 @@ Verdict judge_calibration(const Inspection& i) {
 
 }  // namespace
 
-std::vector<Verdict> judge(const Recording& recording, const Inspection& inspection) {
+std::vector<Verdict> judge(const recording::Recording& recording, const Inspection& inspection) {
   if (inspection.rotor) return {judge_calibration(inspection), judge_fast(inspection)};
   return {judge_motion(inspection),
           judge_maps(recording, inspection),
@@ -156,4 +156,4 @@ std::vector<Verdict> judge(const Recording& recording, const Inspection& inspect
           judge_axial(inspection)};
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

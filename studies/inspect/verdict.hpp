@@ -5,8 +5,8 @@
 
 #include "studies/inspect/inspect.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
-std::vector<Verdict> judge(const Recording& recording, const Inspection& inspection);
+std::vector<Verdict> judge(const recording::Recording& recording, const Inspection& inspection);
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

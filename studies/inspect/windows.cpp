@@ -7,12 +7,12 @@
 
 #include "kernel/base/statistics.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
-std::vector<UnbrokenStretch> unbroken_stretches(const Recording& recording) {
+std::vector<UnbrokenStretch> unbroken_stretches(const recording::Recording& recording) {
   std::vector<UnbrokenStretch> stretches;
   for (std::size_t r = 0; r < recording.runs.size(); ++r) {
-    const Run& run = recording.runs[r];
+    const recording::Run& run = recording.runs[r];
     std::size_t first = 0;
     for (std::size_t i = 1; i <= run.size(); ++i) {
       if (i < run.size() && run.time[i] - run.time[i - 1] <= recording.gap_limit) continue;
@@ -23,7 +23,7 @@ std::vector<UnbrokenStretch> unbroken_stretches(const Recording& recording) {
   return stretches;
 }
 
-Parabola fit_parabola(const Run& run, std::size_t first, std::size_t last) {
+Parabola fit_parabola(const recording::Run& run, std::size_t first, std::size_t last) {
   Parabola result;
   result.count = last - first;
   result.middle = 0.5 * (run.time[first] + run.time[last - 1]);
@@ -41,7 +41,7 @@ Parabola fit_parabola(const Run& run, std::size_t first, std::size_t last) {
   for (std::size_t i = first; i < last; ++i) {
     const double s = run.time[i] - result.middle;
     for (int a = 0; a < 3; ++a) {
-      const double miss = run.position[a][i] - (solution(0, axis) + s * (solution(1, axis) + s * solution(2, axis)));
+      const double miss = run.position[a][i] - (solution(0, a) + s * (solution(1, a) + s * solution(2, a)));
       squares[a] += miss * miss;
     }
   }
@@ -56,7 +56,7 @@ Parabola fit_parabola(const Run& run, std::size_t first, std::size_t last) {
   return result;
 }
 
-void GrowingParabola::add(const Run& run, std::size_t point) {
+void GrowingParabola::add(const recording::Run& run, std::size_t point) {
   const double s = run.time[point] - origin_;
   double power = 1;
   for (double& sum : power_) {
@@ -102,7 +102,7 @@ std::vector<Parabola> local_parabolas(const std::vector<UnbrokenStretch>& stretc
   return result;
 }
 
-std::vector<double> dwell_times(const Run& run, double gap_limit) {
+std::vector<double> dwell_times(const recording::Run& run, double gap_limit) {
   std::vector<double> dwell(run.size());
   for (std::size_t i = 1; i < run.size(); ++i) {
     const double pause = run.time[i] - run.time[i - 1];
@@ -113,12 +113,12 @@ std::vector<double> dwell_times(const Run& run, double gap_limit) {
   return dwell;
 }
 
-double median_interval(const Recording& recording) {
+double median_interval(const recording::Recording& recording) {
   std::vector<double> intervals;
-  for (const Run& run : recording.runs) {
+  for (const recording::Run& run : recording.runs) {
     for (std::size_t i = 1; i < run.size(); ++i) intervals.push_back(run.time[i] - run.time[i - 1]);
   }
   return intervals.empty() ? 0 : base::quantile(intervals, 0.5);
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

@@ -8,11 +8,11 @@
 
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::inspect {
 
 /// Consecutive points without a pause longer than the recording's gap limit.
 struct UnbrokenStretch {
-  const Run* run = nullptr;
+  const recording::Run* run = nullptr;
   std::size_t run_number = 0;
   std::size_t first = 0;
   std::size_t last = 0;  ///< one past the end
@@ -20,7 +20,7 @@ struct UnbrokenStretch {
   double duration() const { return run->time[last - 1] - run->time[first]; }
 };
 
-std::vector<UnbrokenStretch> unbroken_stretches(const Recording& recording);
+std::vector<UnbrokenStretch> unbroken_stretches(const recording::Recording& recording);
 
 /// Least-squares parabola x(t) = c0 + c1 s + c2 s², s = t − middle, through points of one run.
 struct Parabola {
@@ -36,13 +36,13 @@ struct Parabola {
 };
 
 /// Through the points first … last − 1; needs four points or more at different times.
-Parabola fit_parabola(const Run& run, std::size_t first, std::size_t last);
+Parabola fit_parabola(const recording::Run& run, std::size_t first, std::size_t last);
 
 /// Sums that grow point by point, so that a span can be lengthened at the cost of one point.
 class GrowingParabola {
  public:
   explicit GrowingParabola(double origin) : origin_(origin) {}
-  void add(const Run& run, std::size_t point);
+  void add(const recording::Run& run, std::size_t point);
   std::size_t count() const { return count_; }
   /// Variance of the points about the best parabola in each component, m²; 0 degrees of freedom give 0.
   std::array<double, 3> variance() const;
@@ -60,9 +60,9 @@ class GrowingParabola {
 std::vector<Parabola> local_parabolas(const std::vector<UnbrokenStretch>& stretches, double length, std::size_t least);
 
 /// Dwell time of each point of a run, s: half of the pauses on both sides; pauses longer than the gap limit count nothing.
-std::vector<double> dwell_times(const Run& run, double gap_limit);
+std::vector<double> dwell_times(const recording::Run& run, double gap_limit);
 
 /// Median time between consecutive points, s.
-double median_interval(const Recording& recording);
+double median_interval(const recording::Recording& recording);
 
-}  // namespace millscope::studies
+}  // namespace millscope::inspect

@@ -18,7 +18,7 @@ extern "C" __attribute__((visibility("default"))) const char* __lsan_default_sup
 const char* __lsan_default_suppressions() { return "leak:libfontconfig"; }
 #endif
 
-namespace millscope::studies {
+namespace millscope::picture {
 namespace {
 
 constexpr const char* kFamily = "DejaVu Sans";
@@ -239,4 +239,4 @@ void write_sheet(const Sheet& sheet, const std::filesystem::path& stem) {
   output::write_file(png, draw_png(sheet, png));
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

@@ -13,7 +13,7 @@
 
 struct _cairo;  // cairo_t; NOLINT(bugprone-reserved-identifier): named so by cairo's header
 
-namespace millscope::studies {
+namespace millscope::picture {
 
 struct Point {
   double x = 0, y = 0;
@@ -90,4 +90,4 @@ struct Sheet {
 /// written or no font is installed.
 void write_sheet(const Sheet& sheet, const std::filesystem::path& stem);
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

@@ -5,7 +5,7 @@
 
 #include "studies/picture/palette.hpp"
 
-namespace millscope::studies {
+namespace millscope::picture {
 namespace {
 
 Color from_hex(std::uint32_t rgb) {
@@ -29,4 +29,4 @@ Color diverging_color(double fraction) { return interpolate(kDiverging, fraction
 
 Color distinct_color(std::size_t index) { return from_hex(kDistinct[index % kDistinct.size()]); }
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace millscope::studies {
+namespace millscope::picture {
 
 /// sRGB, each 0…1.
 struct Color {
@@ -19,4 +19,4 @@ Color diverging_color(double fraction);
 /// Unlike colours for curves and names; repeats after eight.
 Color distinct_color(std::size_t index);
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

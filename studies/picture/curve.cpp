@@ -10,7 +10,7 @@
 #include "studies/picture/frame.hpp"
 #include "studies/picture/picture.hpp"
 
-namespace millscope::studies {
+namespace millscope::picture {
 namespace {
 
 constexpr double kWidth = 360, kHeight = 230;  // of the plot, points
@@ -275,4 +275,4 @@ void draw_curves(const CurvePicture& picture, const std::filesystem::path& stem)
   write_sheet(CurveDrawing(picture).sheet(), stem);
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

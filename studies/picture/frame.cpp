@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace millscope::studies {
+namespace millscope::picture {
 namespace {
 
 constexpr double kEdge = 8;    // around everything
@@ -84,4 +84,4 @@ void Frame::draw_y_axis(Canvas& canvas) const {
   canvas.text({y_label_, plot_.top + plot_.height / 2}, y_.label, kTextFont, Align::middle, true);
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

@@ -7,7 +7,7 @@
 #include "studies/picture/canvas.hpp"
 #include "studies/picture/scale.hpp"
 
-namespace millscope::studies {
+namespace millscope::picture {
 
 inline constexpr Color kInk{0.13, 0.13, 0.13, 1};
 inline constexpr Color kFaint{0.42, 0.42, 0.42, 1};
@@ -58,4 +58,4 @@ class Frame {
 /// Widest of some words.
 double widest(const std::vector<std::string>& words, const Font& font);
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

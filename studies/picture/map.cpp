@@ -11,7 +11,7 @@
 #include "studies/picture/map_colors.hpp"
 #include "studies/picture/picture.hpp"
 
-namespace millscope::studies {
+namespace millscope::picture {
 namespace {
 
 constexpr double kLongSide = 300, kShortSide = 60;        // of the plot, points
@@ -267,4 +267,4 @@ void draw_map(const MapPicture& picture, const std::filesystem::path& stem) {
   write_sheet(MapDrawing(picture).sheet(), stem);
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

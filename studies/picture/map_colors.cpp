@@ -6,7 +6,7 @@
 
 #include "kernel/base/statistics.hpp"
 
-namespace millscope::studies {
+namespace millscope::picture {
 Color MapColors::operator()(double value) const {
   if (named) return distinct_color(std::lround(value) - 1);
   const double fraction = (value - low) / (high - low);
@@ -45,4 +45,4 @@ MapColors choose_colors(const MapPicture& picture) {
   return colors;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

@@ -6,7 +6,7 @@
 #include "studies/picture/color.hpp"
 #include "studies/picture/picture.hpp"
 
-namespace millscope::studies {
+namespace millscope::picture {
 
 /// No data, or exactly zero: never visited.
 inline bool is_blank(double value) { return !std::isfinite(value) || value == 0; }
@@ -25,4 +25,4 @@ struct MapColors {
 
 MapColors choose_colors(const MapPicture& picture);
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

@@ -10,7 +10,7 @@
 #include "kernel/host/objects.hpp"
 #include "studies/picture/results_pictures.hpp"
 
-namespace millscope::studies {
+namespace millscope::picture {
 namespace {
 
 struct Vertex {
@@ -48,7 +48,7 @@ std::vector<std::array<double, 4>> section_of(const Surface& surface, double z, 
   return lines;
 }
 
-MillOutline outline_of(const ResultSet& results, const host::Registry& registry, std::string& why) {
+MillOutline outline_of(const analysis::ResultSet& results, const host::Registry& registry, std::string& why) {
   MillOutline outline = shell_of(results);
   const AnalyzerContext& context = results.meta.context;
   why.clear();
@@ -72,4 +72,4 @@ MillOutline outline_of(const ResultSet& results, const host::Registry& registry,
   return outline;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

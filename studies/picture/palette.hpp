@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace millscope::studies {
+namespace millscope::picture {
 
 /// viridis (Smith, van der Walt and Firing 2015), and cool to warm through light grey (Moreland, Diverging Color Maps for Scientific
 /// Visualization, 2009): 0xRRGGBB, every eighth entry of the published tables; straight lines between them differ from the tables by less
@@ -22,4 +22,4 @@ constexpr std::array<std::uint32_t, 33> kDiverging{0x3b4cc0, 0x445acc, 0x4e68d8,
 /// them.
 constexpr std::array<std::uint32_t, 8> kDistinct{0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9, 0x8a6d3b, 0x7f7f7f};
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

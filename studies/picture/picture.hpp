@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace millscope::studies {
+namespace millscope::picture {
 
 /// One axis of an array: edges of cells (one more than cells), increasing.
 struct CellAxis {
@@ -87,4 +87,4 @@ struct CurvePicture {
 /// Logarithmic x where the edges grow by a constant factor; then also logarithmic values where all are positive and span three decades.
 void draw_curves(const CurvePicture& picture, const std::filesystem::path& stem);
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

@@ -11,7 +11,7 @@
 #include "kernel/base/error.hpp"
 #include "studies/picture/scale.hpp"
 
-namespace millscope::studies {
+namespace millscope::picture {
 namespace {
 
 /// "theta_edges_deg" → "theta": what an axis counts, without how.
@@ -28,9 +28,9 @@ std::string axis_label(const std::string& name) {
   return label.empty() ? words : label;
 }
 
-const ResultArray* axis_array(const ResultSet& results, const ResultArray& array, std::size_t dimension) {
+const analysis::ResultArray* axis_array(const analysis::ResultSet& results, const analysis::ResultArray& array, std::size_t dimension) {
   if (dimension >= array.axes.size() || array.axes[dimension].empty()) return nullptr;
-  for (const ResultArray& other : results.arrays) {
+  for (const analysis::ResultArray& other : results.arrays) {
     if (other.analyzer == array.analyzer && other.name == array.axes[dimension]) return &other;
   }
   return nullptr;
@@ -46,25 +46,26 @@ std::vector<double> edges_between(const std::vector<double>& centres) {
   return edges;
 }
 
-std::string full_name(const ResultArray& array) { return array.analyzer + "." + array.name; }
+std::string full_name(const analysis::ResultArray& array) { return array.analyzer + "." + array.name; }
 
 /// What a reader must know of the uncertainty, after the sentence that says what is drawn.
-std::string note_of(const ResultArray& array) {
+std::string note_of(const analysis::ResultArray& array) {
   std::size_t few = 0, all = 0;
   for (std::size_t i = 0; i < array.flags.size(); ++i) {
     if (!std::isfinite(array.value[i]) || array.value[i] == 0) continue;
     ++all;
-    few += (array.flags[i] & (kFewBlocks | kNoUncertainty)) != 0 ? 1 : 0;
+    few += (array.flags[i] & (analysis::kFewBlocks | analysis::kNoUncertainty)) != 0 ? 1 : 0;
   }
   if (few == 0) return array.doc;
   return fmt::format("{} {} of {} values rest on fewer than 10 independent blocks.", array.doc, few, all);
 }
 
-bool has_value(const ResultArray& array) {
+bool has_value(const analysis::ResultArray& array) {
   return std::any_of(array.value.begin(), array.value.end(), [](double v) { return std::isfinite(v); });
 }
 
-void draw_result_map(const ResultSet& results, const ResultArray& array, const MillOutline& mill, const std::filesystem::path& stem) {
+void draw_result_map(const analysis::ResultSet& results, const analysis::ResultArray& array, const MillOutline& mill,
+                     const std::filesystem::path& stem) {
   const CellAxis y = cell_axis(results, array, 0), x = cell_axis(results, array, 1);
   const bool across = is_cross_section(y, x);
   draw_map({.title = title_of(array.name),
@@ -78,8 +79,8 @@ void draw_result_map(const ResultSet& results, const ResultArray& array, const M
            stem);
 }
 
-void draw_result_curve(const ResultSet& results, const ResultArray& array, const std::filesystem::path& stem) {
-  const ResultArray* const axis = axis_array(results, array, 0);
+void draw_result_curve(const analysis::ResultSet& results, const analysis::ResultArray& array, const std::filesystem::path& stem) {
+  const analysis::ResultArray* const axis = axis_array(results, array, 0);
   draw_curves({.title = title_of(array.name),
                .subtitle = source_line(results.meta),
                .x_label = axis != nullptr ? axis_label(axis->name) : "number",
@@ -94,7 +95,7 @@ void draw_result_curve(const ResultSet& results, const ResultArray& array, const
 }
 
 /// Why a result has no picture; empty: it has one.
-std::string obstacle(const ResultArray& array) {
+std::string obstacle(const analysis::ResultArray& array) {
   if (array.shape.size() > 2) return fmt::format("{} dimensions; see the tables", array.shape.size());
   if (!has_value(array)) return "no value is defined";
   if (array.shape.size() == 1 && array.size() < 2) return "a single value";
@@ -108,7 +109,7 @@ std::string words_of(std::string name) {
   return name;
 }
 
-std::vector<std::string> category_names(const ResultArray& array) {
+std::vector<std::string> category_names(const analysis::ResultArray& array) {
   if (array.shape.size() != 2 || array.unit != "1") return {};
   std::vector<std::string> names;
   for (std::size_t at = 0; at < array.doc.size();) {
@@ -129,19 +130,21 @@ std::string title_of(const std::string& name) {
   return title;
 }
 
-std::string source_line(const ResultMeta& meta) {
+std::string source_line(const analysis::ResultMeta& meta) {
   double seconds = 0;
-  for (const ResultBlock& block : meta.blocks) seconds += block.duration;
+  for (const analysis::ResultBlock& block : meta.blocks) seconds += block.duration;
   if (meta.blocks.empty()) seconds = meta.context.end - meta.context.start;
   const char* what = meta.source == "recording" ? "recording" : meta.source == "tracks" ? "simulated beads" : "simulation";
   return fmt::format("{}{} · {} s analysed", meta.name.empty() ? "" : meta.name + " · ", what, significant_text(seconds, 3));
 }
 
-MillOutline shell_of(const ResultSet& results) { return {.radius = results.meta.context.mill_radius, .omega = results.meta.context.omega}; }
+MillOutline shell_of(const analysis::ResultSet& results) {
+  return {.radius = results.meta.context.mill_radius, .omega = results.meta.context.omega};
+}
 
-CellAxis cell_axis(const ResultSet& results, const ResultArray& array, std::size_t dimension) {
+CellAxis cell_axis(const analysis::ResultSet& results, const analysis::ResultArray& array, std::size_t dimension) {
   const std::size_t count = array.shape.at(dimension);
-  const ResultArray* const axis = axis_array(results, array, dimension);
+  const analysis::ResultArray* const axis = axis_array(results, array, dimension);
   CellAxis cells{"number", "1", {}};
   if (axis == nullptr) {
     for (std::size_t i = 0; i <= count; ++i) cells.edges.push_back(static_cast<double>(i) + 0.5);
@@ -160,9 +163,9 @@ CellAxis cell_axis(const ResultSet& results, const ResultArray& array, std::size
   return cells;
 }
 
-Curve curve_of(const ResultSet& results, const ResultArray& array, const std::string& label) {
+Curve curve_of(const analysis::ResultSet& results, const analysis::ResultArray& array, const std::string& label) {
   Curve curve{label, {}, array.value, array.low, array.high};
-  if (const ResultArray* const axis = axis_array(results, array, 0)) {
+  if (const analysis::ResultArray* const axis = axis_array(results, array, 0)) {
     curve.x = axis->value;
   } else {
     curve.x.resize(array.size());
@@ -173,10 +176,10 @@ Curve curve_of(const ResultSet& results, const ResultArray& array, const std::st
 
 bool is_cross_section(const CellAxis& y, const CellAxis& x) { return x.label == "x" && y.label == "y" && x.unit == "m" && y.unit == "m"; }
 
-DrawnPictures draw_results(const ResultSet& results, const std::filesystem::path& directory, const MillOutline& mill) {
+DrawnPictures draw_results(const analysis::ResultSet& results, const std::filesystem::path& directory, const MillOutline& mill) {
   DrawnPictures drawn;
   std::filesystem::create_directories(directory);
-  for (const ResultArray& array : results.arrays) {
+  for (const analysis::ResultArray& array : results.arrays) {
     if (array.is_axis || array.shape.empty()) continue;
     if (const std::string why = obstacle(array); !why.empty()) {
       drawn.left_out.push_back(full_name(array) + ": " + why);
@@ -193,4 +196,4 @@ DrawnPictures draw_results(const ResultSet& results, const std::filesystem::path
   return drawn;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

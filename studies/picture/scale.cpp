@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-namespace millscope::studies {
+namespace millscope::picture {
 namespace {
 
 constexpr std::string_view kMinus = "\u2212";
@@ -153,4 +153,4 @@ Axis make_axis(const std::string& label, const std::string& unit, double low, do
   return axis;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

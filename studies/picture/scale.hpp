@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace millscope::studies {
+namespace millscope::picture {
 
 /// What a stored value is multiplied by, and the unit that then stands beside it.
 struct DisplayUnit {
@@ -56,4 +56,4 @@ struct Axis {
 /// An axis from `low` to `high` (stored values); ticks for about `length` points of paper.
 Axis make_axis(const std::string& label, const std::string& unit, double low, double high, bool logarithmic, double length);
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

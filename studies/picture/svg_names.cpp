@@ -6,7 +6,7 @@
 #include <map>
 #include <string_view>
 
-namespace millscope::studies {
+namespace millscope::picture {
 namespace {
 
 std::string escaped(const std::string& text) {
@@ -81,4 +81,4 @@ std::string describe_svg(const std::string& svg, const std::string& title, const
   return svg.substr(0, end + 1) + words + svg.substr(end + 1);
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace millscope::studies {
+namespace millscope::picture {
 
 /// cairo numbers clips, images and surfaces with a counter of the whole process; here they are numbered anew within the file.
 std::string stable_svg_names(const std::string& svg);
@@ -11,4 +11,4 @@ std::string stable_svg_names(const std::string& svg);
 /// Adds <title> and <desc>: letters are outlines in cairo's SVG, so a search or a screen reader would find none.
 std::string describe_svg(const std::string& svg, const std::string& title, const std::string& description);
 
-}  // namespace millscope::studies
+}  // namespace millscope::picture

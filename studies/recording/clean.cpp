@@ -7,7 +7,7 @@
 #include "kernel/base/statistics.hpp"
 #include "studies/recording/select.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 
 void drop_outside(Run& run, const std::array<std::array<double, 2>, 3>& range) {
   std::vector<char> keep(run.size(), 1);
@@ -75,4 +75,4 @@ void count_gaps(Run& run, double gap_limit) {
   }
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

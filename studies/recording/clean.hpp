@@ -7,7 +7,7 @@
 #include "studies/recording/table.hpp"
 #include "studies/recording/travel.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 
 /// Rows in the order of the file → one run, or several where the clock was set back for good. Sorts, and sets aside false times and
 /// duplicates. `report` is that of the rows.
@@ -28,4 +28,4 @@ double default_gap_limit(const std::vector<Run>& runs);
 /// Fills gaps and gap_time of the report.
 void count_gaps(Run& run, double gap_limit);
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

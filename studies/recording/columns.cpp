@@ -9,7 +9,7 @@
 #include "kernel/config/units.hpp"
 #include "studies/recording/description.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 
 std::optional<Quantity> quantity_of(std::string_view name) {
   std::string word;
@@ -65,4 +65,4 @@ ColumnUnit column_unit(Quantity quantity, std::string_view text) {
   return {std::string(text), unit.factor * std::pow(10.0, std::max(unit.decade, 0)), std::pow(10.0, std::max(-unit.decade, 0))};
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

@@ -8,7 +8,7 @@
 #include "kernel/config/units.hpp"
 #include "studies/recording/description.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 namespace {
 
 using config::Node;
@@ -120,4 +120,4 @@ Condition read_condition(const Node& section) {
   return condition;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

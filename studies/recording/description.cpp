@@ -9,7 +9,7 @@
 
 #include "kernel/config/units.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 namespace {
 
 namespace fs = std::filesystem;
@@ -224,4 +224,4 @@ Description read_description(const fs::path& file) {
   return description;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

@@ -12,7 +12,7 @@
 #include "studies/recording/recording.hpp"
 #include "studies/recording/table.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 
 enum class Format { automatic, ctrack, table, tracks };
 
@@ -76,4 +76,4 @@ std::optional<Quantity> quantity_of(std::string_view name);
 /// The unit that a column without one has: ms, mm, none.
 const char* usual_unit(Quantity quantity);
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace millscope::studies {
+namespace millscope::recording {
 namespace {
 
 using base::UserError;
@@ -230,4 +230,4 @@ void refuse_decimal_commas(const Top& top, const std::filesystem::path& file) {
                   fmt::format("'{}' has decimal commas; replace them by points", top.row.substr(0, 60)));
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

@@ -7,7 +7,7 @@
 
 #include "studies/recording/description.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 
 using Words = std::vector<std::string_view>;
 
@@ -45,4 +45,4 @@ std::vector<ColumnEntry> entries_of_heads(const Top& top, const std::filesystem:
 /// Without a unit: the usual one. Throws std::invalid_argument.
 ColumnEntry entry_of(int number, Quantity quantity, const std::string& unit);
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

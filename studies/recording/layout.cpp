@@ -6,7 +6,7 @@
 
 #include "studies/recording/heads.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 namespace {
 
 using base::UserError;
@@ -139,4 +139,4 @@ KnownLayout layout_of(std::string_view text, const std::filesystem::path& file, 
   return known;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

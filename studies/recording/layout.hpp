@@ -7,7 +7,7 @@
 #include "studies/recording/description.hpp"
 #include "studies/recording/table.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 
 /// A layout, in words too: "table, comma: t ms, x mm, y mm, z mm, error mm".
 struct KnownLayout {
@@ -19,4 +19,4 @@ struct KnownLayout {
 /// Throws base::UserError where nothing fits.
 KnownLayout layout_of(std::string_view text, const std::filesystem::path& file, const Description& description);
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

@@ -4,7 +4,7 @@
 
 #include "kernel/base/statistics.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 
 std::array<double, 3> difference_noise(const Run& run, double gap_limit) {
   constexpr double kMedianOfNormal = 0.6744897501960817;  // median of |z| for a standard normal z
@@ -33,4 +33,4 @@ std::array<double, 3> difference_noise(const Run& run, double gap_limit) {
   return noise;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

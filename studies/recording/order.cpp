@@ -9,7 +9,7 @@
 #include "studies/recording/clean.hpp"
 #include "studies/recording/select.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 namespace {
 
 constexpr std::size_t kLeastRows = 5;  // a shorter stretch of earlier times is disorder, which is sorted
@@ -220,4 +220,4 @@ std::vector<Run> order_rows(Rows rows, const RunReport& report) {
   return runs;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

@@ -7,7 +7,7 @@
 
 #include "studies/recording/clean.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 namespace {
 
 constexpr double kLargestMill = 20;       // m, across; the largest mills have 13 m
@@ -131,4 +131,4 @@ void check_units(const std::vector<Run>& runs, const Condition& condition, const
   check_condition(m, condition, where);
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

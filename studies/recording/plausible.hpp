@@ -3,7 +3,7 @@
 
 #include "studies/recording/description.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 
 /// Throws base::UserError at `where` when the points span more than any mill, or more or less than the mill that the condition states, or
 /// when their 99th-percentile speed is above 3 √(2 g D); says which unit is probably meant. `time_unit`, `length_unit`: as written. Also
@@ -11,4 +11,4 @@ namespace millscope::studies {
 void check_units(const std::vector<Run>& runs, const Condition& condition, const base::Location& where, const std::string& time_unit,
                  const std::string& length_unit);
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

@@ -13,7 +13,7 @@
 #include "studies/recording/recording.hpp"
 #include "studies/recording/text_file.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 namespace {
 
 namespace fs = std::filesystem;
@@ -223,4 +223,4 @@ Recording read_recording(const fs::path& file) {
   return recording;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace millscope::studies {
+namespace millscope::recording {
 
 struct TracerBead {
   std::optional<double> diameter;  ///< m
@@ -102,4 +102,4 @@ Recording clean_recording(Recording given);
 /// is left: spreads, events, the condition. `read_recording` reads it back. Throws base::UserError.
 void write_tracks(const Recording& recording, const std::filesystem::path& file);
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

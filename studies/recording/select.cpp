@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace millscope::studies {
+namespace millscope::recording {
 namespace {
 
 template <class Change>
@@ -39,4 +39,4 @@ void reorder(Run& run, const std::vector<std::size_t>& order) {
   });
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

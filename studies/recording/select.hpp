@@ -5,7 +5,7 @@
 
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 
 /// Keeps the points with a mark that is not 0, in all arrays of the run; returns how many went. report.used follows.
 std::uint64_t keep_only(Run& run, const std::vector<char>& keep);
@@ -13,4 +13,4 @@ std::uint64_t keep_only(Run& run, const std::vector<char>& keep);
 /// Puts the points into the order given: new point i is the old point order[i], in all arrays of the run.
 void reorder(Run& run, const std::vector<std::size_t>& order);
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

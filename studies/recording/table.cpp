@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace millscope::studies {
+namespace millscope::recording {
 namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -181,4 +181,4 @@ Rows read_rows(std::string_view text, const Layout& layout, RunReport& report, F
   return rows;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

@@ -10,7 +10,7 @@
 
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 
 enum Quantity { kTime, kX, kY, kZ, kError, kEvents, kQuantities };
 
@@ -51,4 +51,4 @@ struct FirstFault {
 /// Reads every row; counts rows, unreadable and not_finite in `report`.
 Rows read_rows(std::string_view text, const Layout& layout, RunReport& report, FirstFault& fault);
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

@@ -13,7 +13,7 @@
 
 #include "kernel/base/error.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 namespace {
 
 using base::UserError;
@@ -118,4 +118,4 @@ TextFile::TextFile(const std::filesystem::path& file) {
   if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // the byte-order mark of UTF-8
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

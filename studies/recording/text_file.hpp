@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace millscope::studies {
+namespace millscope::recording {
 
 /// The bytes of a file and the view of them.
 class TextFile {
@@ -22,4 +22,4 @@ class TextFile {
   std::string_view text_;
 };
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

@@ -7,7 +7,7 @@
 #include "kernel/base/statistics.hpp"
 #include "studies/recording/noise.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 namespace {
 
 constexpr double kGravity = 9.81;       // m/s²
@@ -76,4 +76,4 @@ Travel measure_travel(std::span<const Run> runs, double gap_limit) {
   return travel;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

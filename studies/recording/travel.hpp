@@ -6,7 +6,7 @@
 
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 
 /// Where the points of some runs lie: medians and percentiles, so outliers hardly matter.
 struct Extent {
@@ -33,4 +33,4 @@ struct Travel {
 };
 Travel measure_travel(std::span<const Run> runs, double gap_limit);
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

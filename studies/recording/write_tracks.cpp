@@ -4,7 +4,7 @@
 #include "kernel/output/tracks.hpp"
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::recording {
 
 void write_tracks(const Recording& recording, const std::filesystem::path& file) {
   std::vector<output::TrackInfo> tracks;
@@ -27,4 +27,4 @@ void write_tracks(const Recording& recording, const std::filesystem::path& file)
   output::publish(aside, file);
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::recording

@@ -7,8 +7,8 @@
 namespace millscope::report {
 namespace {
 
-using studies::ResultArray;
-using studies::ResultSet;
+using analysis::ResultArray;
+using analysis::ResultSet;
 
 constexpr std::size_t kMostValues = 40000;  ///< of one result; a map of 200 × 200 cells
 
@@ -58,7 +58,7 @@ Json result_json(const ResultSet& results, const ResultArray& array) {
 
 Json shell_json(const ResultSet& results, const host::Registry& registry, Json& notes) {
   std::string why;
-  const studies::MillOutline outline = studies::outline_of(results, registry, why);
+  const picture::MillOutline outline = picture::outline_of(results, registry, why);
   if (!why.empty()) notes.push_back("the shell is drawn without lifters: " + why);
   if (!(outline.radius > 0)) return nullptr;
   Json segments = Json::array();
@@ -70,9 +70,9 @@ Json shell_json(const ResultSet& results, const host::Registry& registry, Json& 
 }  // namespace
 
 Json analysis_section(const std::filesystem::path& folder, const host::Registry& registry) {
-  const ResultSet results = studies::read_results(folder);
+  const ResultSet results = analysis::read_results(folder);
   Json section = begun("analysis", results.meta.name, folder);
-  section["meta"] = studies::meta_json(results.meta);
+  section["meta"] = analysis::meta_json(results.meta);
   section["shell"] = shell_json(results, registry, section["notes"]);
   section["results"] = Json::array();
   for (const ResultArray& array : results.arrays) {

@@ -38,7 +38,7 @@ Json series_json(const fs::path& folder) {
 }
 
 Json mill_json(const fs::path& case_file, const host::Registry& registry) {
-  const studies::MillOfCase mill = studies::read_mill_of_case(case_file, registry);
+  const analysis::MillOfCase mill = analysis::read_mill_of_case(case_file, registry);
   if (!(mill.context.mill_radius > 0)) return nullptr;
   return {{"radius_m", mill.context.mill_radius},
           {"omega_rad_per_s", mill.context.omega},

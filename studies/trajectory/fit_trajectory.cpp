@@ -10,7 +10,7 @@
 #include "studies/trajectory/sample.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
-namespace millscope::studies {
+namespace millscope::trajectory {
 namespace {
 
 using base::UserError;
@@ -61,13 +61,13 @@ void add_pieces(Piece&& piece, const TrajectoryOptions& options, Trajectory& tra
   }
 }
 
-void move_to_axis(Run& run, const std::array<double, 2>& axis) {
+void move_to_axis(recording::Run& run, const std::array<double, 2>& axis) {
   for (std::size_t k = 0; k < 2; ++k) {
     for (double& value : run.position[k]) value -= axis[k];
   }
 }
 
-void set_noise(const Run& run, const TrajectoryOptions& options, Trajectory& trajectory) {
+void set_noise(const recording::Run& run, const TrajectoryOptions& options, Trajectory& trajectory) {
   constexpr double kLeast = 1e-7;  // m; a simulated bead has none, a smoothing spline needs some
   const bool given = std::all_of(options.noise.begin(), options.noise.end(), [](double value) { return value > 0; });
   NoiseEstimate noise;
@@ -83,7 +83,7 @@ void set_noise(const Run& run, const TrajectoryOptions& options, Trajectory& tra
 /// Fits the splines of one span after another.
 class Fitter {
  public:
-  Fitter(const Run& run, const std::vector<Span>& spans, SplineKind kind, const Trajectory& trajectory)
+  Fitter(const recording::Run& run, const std::vector<Span>& spans, SplineKind kind, const Trajectory& trajectory)
       : run_(run), kind_(kind), correlation_(trajectory.noise_correlation) {
     // To a spline that is wider than a few points, noise with a correlation of φ looks like white noise (1 + φ)/(1 − φ) times as strong.
     const double phi = correlation_;
@@ -110,7 +110,7 @@ class Fitter {
 
  private:
   static constexpr double kClose = 0.5;  // median intervals
-  const Run& run_;
+  const recording::Run& run_;
   SplineKind kind_;
   double correlation_;
   Lanes noise_{}, roughness_{};
@@ -119,7 +119,7 @@ class Fitter {
   Spline spline_;
 };
 
-[[noreturn]] void fail_empty(const Run& run, const TrajectoryOptions& options, const Trajectory& trajectory) {
+[[noreturn]] void fail_empty(const recording::Run& run, const TrajectoryOptions& options, const Trajectory& trajectory) {
   throw UserError(fmt::format(
       "{}: no trajectory: none of its {} points lies in a stretch of {} or more without a pause above {:.4g} s ({:.4g} s from first "
       "to last point); raise 'gap_limit', or the recording is too sparse",
@@ -138,13 +138,13 @@ void check(const TrajectoryOptions& options) {
 
 }  // namespace
 
-Points points_of(const Run& run, const Span& span) {
+Points points_of(const recording::Run& run, const Span& span) {
   const auto first = [&](const std::vector<double>& values) { return values.data() + span.first; };
   return {first(run.time), {first(run.position[0]), first(run.position[1]), first(run.position[2])}, span.size()};
 }
 
-std::vector<Span> unbroken(const Run& run, double gap_limit) {
-  Travel travel = measure_travel({&run, 1}, gap_limit);
+std::vector<Span> unbroken(const recording::Run& run, double gap_limit) {
+  recording::Travel travel = recording::measure_travel({&run, 1}, gap_limit);
   travel.speed *= 2;  // outliers are gone; what is left over this is a jump, e.g. across a periodic boundary
   std::vector<Span> spans;
   for (std::size_t i = 0; i < run.size(); ++i) {
@@ -154,9 +154,9 @@ std::vector<Span> unbroken(const Run& run, double gap_limit) {
   return spans;
 }
 
-Trajectory fit_trajectory(const Run& run, const TrajectoryOptions& options) {
+Trajectory fit_trajectory(const recording::Run& run, const TrajectoryOptions& options) {
   check(options);
-  Run moved = run;
+  recording::Run moved = run;
   move_to_axis(moved, options.axis);
   Trajectory trajectory;
   trajectory.name = run.name;
@@ -189,4 +189,4 @@ Trajectory fit_trajectory(const Run& run, const TrajectoryOptions& options) {
   return trajectory;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::trajectory

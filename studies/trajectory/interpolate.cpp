@@ -7,7 +7,7 @@
 
 #include "studies/trajectory/pieces.hpp"
 
-namespace millscope::studies {
+namespace millscope::trajectory {
 namespace {
 
 constexpr std::size_t kReach = 8;  // knots on either side; beyond them a point has no weight to speak of (4^-8 where they are even)
@@ -142,4 +142,4 @@ void interpolate(const Averaged& averaged, const Lanes& noise, Spline& spline) {
   }
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::trajectory

@@ -11,7 +11,7 @@
 #include "studies/trajectory/pieces.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
-namespace millscope::studies {
+namespace millscope::trajectory {
 namespace {
 
 constexpr std::size_t kWindow = 60, kShortest = 20, kWindows = 40;
@@ -76,19 +76,19 @@ void improve(const double* t, const double* y, std::size_t count, bool fixed, Gu
 
 /// Some points of a run.
 struct Window {
-  const Run* run;
+  const recording::Run* run;
   Span span;
   void improve(std::size_t axis, bool fixed, Guess& guess) const {
     const Points points = points_of(*run, span);
-    studies::improve(points.time, points.position[axis], points.count, fixed, guess);
+    trajectory::improve(points.time, points.position[axis], points.count, fixed, guess);
   }
 };
 
 /// Spread evenly over all runs; short ones only where there are hardly any long ones.
-std::vector<Window> windows_of(std::span<const Run> runs, double gap_limit) {
+std::vector<Window> windows_of(std::span<const recording::Run> runs, double gap_limit) {
   std::vector<Window> windows;
   for (const std::size_t length : {kWindow, kShortest}) {
-    for (const Run& run : runs) {
+    for (const recording::Run& run : runs) {
       for (const Span& span : unbroken(run, gap_limit)) {
         for (std::size_t first = span.first; first + length <= span.last; first += length)
           windows.push_back({&run, {first, first + length}});
@@ -104,10 +104,10 @@ std::vector<Window> windows_of(std::span<const Run> runs, double gap_limit) {
 
 }  // namespace
 
-NoiseEstimate estimate_noise_model(std::span<const Run> runs, double gap_limit) {
+NoiseEstimate estimate_noise_model(std::span<const recording::Run> runs, double gap_limit) {
   NoiseEstimate estimate;
-  for (const Run& run : runs) {
-    const auto noise = difference_noise(run, gap_limit);
+  for (const recording::Run& run : runs) {
+    const auto noise = recording::difference_noise(run, gap_limit);
     for (std::size_t axis = 0; axis < 3; ++axis)
       estimate.standard_deviation[axis] = std::max(estimate.standard_deviation[axis], noise[axis]);
   }
@@ -140,6 +140,8 @@ NoiseEstimate estimate_noise_model(std::span<const Run> runs, double gap_limit) 
   return estimate;
 }
 
-NoiseEstimate estimate_noise_model(const Run& run, double gap_limit) { return estimate_noise_model(std::span(&run, 1), gap_limit); }
+NoiseEstimate estimate_noise_model(const recording::Run& run, double gap_limit) {
+  return estimate_noise_model(std::span(&run, 1), gap_limit);
+}
 
-}  // namespace millscope::studies
+}  // namespace millscope::trajectory

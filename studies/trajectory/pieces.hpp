@@ -7,7 +7,7 @@
 
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::trajectory {
 
 /// Points first … last−1 of a run, with no pause longer than the gap limit and no jump that no bead can do.
 struct Span {
@@ -16,7 +16,7 @@ struct Span {
 };
 
 /// Every point is in exactly one span.
-std::vector<Span> unbroken(const Run& run, double gap_limit);
+std::vector<Span> unbroken(const recording::Run& run, double gap_limit);
 
 /// The points of one span: x, y, z at `count` times.
 struct Points {
@@ -24,7 +24,7 @@ struct Points {
   std::array<const double*, 3> position;
   std::size_t count;
 };
-Points points_of(const Run& run, const Span& span);
+Points points_of(const recording::Run& run, const Span& span);
 
 /// One number for each coordinate.
 using Lanes = std::array<double, 3>;
@@ -77,10 +77,10 @@ void smooth(const Points& points, const Lanes& noise, const Lanes& roughness, co
 double misfit(const Points& points, std::size_t axis, double noise, double roughness);
 
 /// The roughness that makes a coordinate most likely given the noise, from at most some ten thousand points of the run.
-double likely_roughness(const Run& run, std::size_t axis, const std::vector<Span>& spans, double noise);
+double likely_roughness(const recording::Run& run, std::size_t axis, const std::vector<Span>& spans, double noise);
 
 /// Smoothing splines whose strength follows the motion: at an impact the roughness rises in all three coordinates by one factor, in calm
 /// motion it falls.
 void smooth_adaptively(const Points& points, const Lanes& noise, const Lanes& roughness, Spline& spline);
 
-}  // namespace millscope::studies
+}  // namespace millscope::trajectory

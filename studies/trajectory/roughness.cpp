@@ -11,7 +11,7 @@
 #include "kernel/base/statistics.hpp"
 #include "studies/trajectory/pieces.hpp"
 
-namespace millscope::studies {
+namespace millscope::trajectory {
 namespace {
 
 constexpr int kRounds = 2;
@@ -61,7 +61,7 @@ double median_interval(const Points& points) {
   return base::quantile(some, 0.5);
 }
 
-double likely_roughness(const Run& run, std::size_t axis, const std::vector<Span>& spans, double noise) {
+double likely_roughness(const recording::Run& run, std::size_t axis, const std::vector<Span>& spans, double noise) {
   const std::vector<Span> sample = sample_of(spans);
   const auto cost = [&](double log_q) {
     double sum = 0;
@@ -100,4 +100,4 @@ void smooth_adaptively(const Points& points, const Lanes& noise, const Lanes& ro
   }
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::trajectory

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace millscope::studies {
+namespace millscope::trajectory {
 namespace {
 
 using Weights = std::array<double, 4>;  // of position and velocity at the knot before and at the knot behind
@@ -95,4 +95,4 @@ void sample(const double* time, const Spline& spline, Piece& piece) {
   }
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::trajectory

@@ -6,7 +6,7 @@
 
 #include "studies/trajectory/pieces.hpp"
 
-namespace millscope::studies {
+namespace millscope::trajectory {
 namespace {
 
 constexpr double kFastest = 10;  // m/s, standard deviation of the velocity before anything is seen: wide for any mill
@@ -106,4 +106,4 @@ void smooth(const Points& points, const Lanes& noise, const Lanes& roughness, co
   }
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::trajectory

@@ -14,7 +14,7 @@
 
 #include "studies/recording/recording.hpp"
 
-namespace millscope::studies {
+namespace millscope::trajectory {
 
 enum class SplineKind { cubic, smoothing };
 
@@ -68,12 +68,12 @@ struct NoiseEstimate {
   std::array<double, 3> standard_deviation{0, 0, 0};  ///< of each component, m
   double correlation = 0;                             ///< from one point to the next, 0 … 0.9
 };
-NoiseEstimate estimate_noise_model(const Run& run, double gap_limit);
+NoiseEstimate estimate_noise_model(const recording::Run& run, double gap_limit);
 /// The same from all runs of one tracker together: steadier, for TrajectoryOptions::noise and noise_correlation.
-NoiseEstimate estimate_noise_model(std::span<const Run> runs, double gap_limit);
+NoiseEstimate estimate_noise_model(std::span<const recording::Run> runs, double gap_limit);
 
 /// Throws base::UserError when no piece is long enough, with the reason. Of a run that never comes between `low` and `high` no piece is
 /// left; `samples_trimmed` tells.
-Trajectory fit_trajectory(const Run& run, const TrajectoryOptions& options);
+Trajectory fit_trajectory(const recording::Run& run, const TrajectoryOptions& options);
 
-}  // namespace millscope::studies
+}  // namespace millscope::trajectory

@@ -10,21 +10,21 @@
 #include "analysis/support.hpp"
 
 using namespace analysis_test;
-using namespace millscope::studies;
+using namespace millscope;
 using Catch::Contains;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
 
-AnalysisRequest request_for(const fs::path& path) {
-  AnalysisRequest request;
+analysis::AnalysisRequest request_for(const fs::path& path) {
+  analysis::AnalysisRequest request;
   request.path = path;
   request.only = {"power"};
   return request;
 }
 
-ResultSet run(const AnalysisRequest& request) { return analyze(request, build_registry()); }
+analysis::ResultSet run(const analysis::AnalysisRequest& request) { return analysis::analyze(request, build_registry()); }
 
 /// A bead on a circle of 50 mm about the axis at (1.4, −0.9) mm, once round in π s, clockwise, seen at 200 Hz with noise of 0.2 mm.
 void write_recording(const fs::path& file) {
@@ -59,7 +59,7 @@ frame: {axis: [1.4 mm, -0.9 mm]}
 TEST_CASE("powers of a made-up drum come out as they were put in") {
   const Scratch scratch;
   Drum().write(scratch.path);
-  const ResultSet r = run(request_for(scratch.path));
+  const analysis::ResultSet r = run(request_for(scratch.path));
   CHECK_THAT(r.find("power", "power_shell")->value[0], WithinRel(0.3, 1e-9));
   CHECK_THAT(r.find("power", "power_dissipation")->value[0], WithinRel(0.15, 1e-9));
   CHECK_THAT(r.find("power", "turning_speed")->value[0], WithinRel(-2.0, 1e-9));
@@ -73,12 +73,12 @@ TEST_CASE("powers of a made-up drum come out as they were put in") {
 TEST_CASE("settings and overrides choose analyzers and their parameters") {
   const Scratch scratch;
   Drum().write(scratch.path);
-  AnalysisRequest request = request_for(scratch.path);
+  analysis::AnalysisRequest request = request_for(scratch.path);
   request.only.clear();
   request.settings = scratch / "analysis.yaml";
   spill(request.settings,
         "analyzers:\n  coarse: {kind: pept_grid, cells_x: 5, cells_y: 4}\n  power: {}\nresampling: {draws: 50, seed: 3}\nfrom: 1.5 s\n");
-  const ResultSet r = run(request);
+  const analysis::ResultSet r = run(request);
   CHECK(r.meta.draws == 50);
   CHECK(r.meta.seed == 3);
   CHECK_THAT(r.meta.context.start, WithinAbs(1.5, 1e-9));
@@ -90,10 +90,10 @@ TEST_CASE("settings and overrides choose analyzers and their parameters") {
   CHECK(run(request).find("coarse", "occupancy")->shape == std::vector<std::size_t>{4, 7});
   request.only = {"pept_grid"};  // by the plugin's name
   CHECK(run(request).find("power", "power_shell") == nullptr);
-  AnalysisRequest plain = request_for(scratch.path);
+  analysis::AnalysisRequest plain = request_for(scratch.path);
   plain.only = {"pept_grid", "power"};
   plain.overrides = {"analyzers.pept_grid.cells_x=6"};  // --set alone makes no choice
-  const ResultSet both = run(plain);
+  const analysis::ResultSet both = run(plain);
   CHECK(both.find("pept_grid", "occupancy")->shape == std::vector<std::size_t>{50, 6});
   CHECK(both.find("power", "power_shell") != nullptr);
 }
@@ -101,10 +101,10 @@ TEST_CASE("settings and overrides choose analyzers and their parameters") {
 TEST_CASE("without a choice all analyzers run that the data allow, and the others are named") {
   const Scratch scratch;
   Drum().write(scratch.path);
-  AnalysisRequest request = request_for(scratch.path);
+  analysis::AnalysisRequest request = request_for(scratch.path);
   request.only.clear();
   request.tracers = {"all"};
-  const ResultSet r = run(request);
+  const analysis::ResultSet r = run(request);
   CHECK(r.find("power", "power_gravity") != nullptr);
   CHECK(r.find("power", "power_shell") == nullptr);  // a followed bead knows no work of the walls
   const auto names_it = [](const std::string& reason) { return reason.find("collision_energy: ") == 0; };
@@ -117,9 +117,9 @@ TEST_CASE("a recording runs through the same analyzers, in the mill's frame") {
   const Scratch scratch;
   write_recording(scratch / "bead.a");
   spill(scratch / "recording.yaml", kRecording);
-  AnalysisRequest request = request_for(scratch / "recording.yaml");
+  analysis::AnalysisRequest request = request_for(scratch / "recording.yaml");
   request.only = {"power", "pept_grid", "slip"};
-  const ResultSet r = run(request);
+  const analysis::ResultSet r = run(request);
   CHECK(r.meta.source == "recording");
   CHECK(r.meta.context.is_recording == 1);
   CHECK_THAT(r.meta.context.mill_radius, WithinRel(0.1, 1e-12));
@@ -132,8 +132,8 @@ TEST_CASE("a recording runs through the same analyzers, in the mill's frame") {
     if (std::isfinite(v)) CHECK_THAT(v, WithinAbs(0.1, 0.02));
   }
   // The bead alone shows where the axis is.
-  AnalysisRequest bare = request_for(scratch / "bead.a");
-  const ResultSet found = run(bare);
+  analysis::AnalysisRequest bare = request_for(scratch / "bead.a");
+  const analysis::ResultSet found = run(bare);
   CHECK_THAT(fmt::format("{}", fmt::join(found.meta.notes, "\n")), Contains("the mill's axis was found at x = 1."));
   CHECK_THAT(found.meta.context.omega, WithinRel(-2.0, 0.02));
   CHECK_THAT(found.meta.context.mill_radius, WithinRel(0.05, 0.02));
@@ -143,7 +143,7 @@ TEST_CASE("wrong settings are refused in one line with their place") {
   const Scratch scratch;
   Drum().write(scratch.path);
   const auto with = [&](const std::string& text) {
-    AnalysisRequest request = request_for(scratch.path);
+    analysis::AnalysisRequest request = request_for(scratch.path);
     request.only.clear();
     request.settings = scratch / "s.yaml";
     spill(request.settings, text);
@@ -160,7 +160,7 @@ TEST_CASE("wrong settings are refused in one line with their place") {
   CHECK_THAT(with("analysers: {}\n"), Contains("analyzers"));
   CHECK_THAT(with("from: 2 m\n"), Contains("from"));
   CHECK_THAT(with("schema_version: 2\n"), Contains("is not 1"));
-  AnalysisRequest request = request_for(scratch.path);
+  analysis::AnalysisRequest request = request_for(scratch.path);
   request.only = {"powr"};
   CHECK_THAT(refusal([&] { run(request); }), Contains("'powr' is no analyzer here") && Contains("power"));
   request.only = {"power", "power"};

@@ -8,7 +8,7 @@
 #include "studies/analysis/times.hpp"
 
 using namespace analysis_test;
-using namespace millscope::studies;
+using namespace millscope;
 using Catch::Contains;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
@@ -16,7 +16,7 @@ using Catch::Matchers::WithinRel;
 namespace {
 
 /// One bead that follows given coordinates; two stretches, with the shared frames between chunks that the contract promises.
-class MadeUp : public FrameSource {
+class MadeUp : public analysis::FrameSource {
  public:
   explicit MadeUp(std::uint64_t seed, std::size_t frames = 4000) {
     context_.has = kHasVelocity | kHasWallWork;
@@ -47,13 +47,13 @@ class MadeUp : public FrameSource {
       }
     }
   }
-  std::vector<BasicSeries> survey() const override {
-    std::vector<BasicSeries> all(2);
+  std::vector<analysis::BasicSeries> survey() const override {
+    std::vector<analysis::BasicSeries> all(2);
     const auto scratch = make_scratch();
-    for (std::size_t c = 0; c < chunks_.size(); ++c) all[chunks_[c].stretch].append(basics_of(load(c, *scratch)));
+    for (std::size_t c = 0; c < chunks_.size(); ++c) all[chunks_[c].stretch].append(analysis::basics_of(load(c, *scratch)));
     return all;
   }
-  const FrameBlock& load(std::size_t number, FrameSource::Scratch& scratch) const override {
+  const FrameBlock& load(std::size_t number, analysis::FrameSource::Scratch& scratch) const override {
     Buffers& b = static_cast<Buffers&>(scratch);
     const Chunk& chunk = chunks_[number];
     const Stretch& s = stretches_[chunk.stretch];
@@ -85,7 +85,7 @@ class MadeUp : public FrameSource {
   }
 
  private:
-  struct Buffers : FrameSource::Scratch {
+  struct Buffers : analysis::FrameSource::Scratch {
     FrameBlock block{};
     std::vector<double> time, weight, zero;
     std::vector<std::int32_t> piece;
@@ -186,22 +186,22 @@ struct Refuses : Twice {
   void accumulate(const FrameBlock&, double* const*) const { throw Refusal("the beads are of the wrong colour; paint them"); }
 };
 
-EngineOptions with_threads(int threads) {
-  EngineOptions options;
+analysis::EngineOptions with_threads(int threads) {
+  analysis::EngineOptions options;
   options.threads = threads;
   return options;
 }
 
-std::vector<AnalyzerInstance> both(const AnalyzerContext& context) {
-  std::vector<AnalyzerInstance> instances;
+std::vector<analysis::AnalyzerInstance> both(const AnalyzerContext& context) {
+  std::vector<analysis::AnalyzerInstance> instances;
   instances.push_back(local_instance<Means>("means", context));
   instances.push_back(local_instance<Twice>("twice", context));
   return instances;
 }
 
-std::size_t entry(const ResultSet& r, const std::string& name) {
+std::size_t entry(const analysis::ResultSet& r, const std::string& name) {
   for (std::size_t i = 0; i < r.covariance_entries.size(); ++i) {
-    if (entry_name(r, r.covariance_entries[i]) == name) return i;
+    if (analysis::entry_name(r, r.covariance_entries[i]) == name) return i;
   }
   FAIL("no entry " << name);
   return 0;
@@ -211,9 +211,9 @@ std::size_t entry(const ResultSet& r, const std::string& name) {
 
 TEST_CASE("the number of threads changes no bit of the results") {
   MadeUp source(1);
-  const std::vector<AnalyzerInstance> instances = both(source.context());
-  const ResultSet one = run_analyzers(source, instances, with_threads(1));
-  const ResultSet four = run_analyzers(source, instances, with_threads(4));
+  const std::vector<analysis::AnalyzerInstance> instances = both(source.context());
+  const analysis::ResultSet one = analysis::run_analyzers(source, instances, with_threads(1));
+  const analysis::ResultSet four = analysis::run_analyzers(source, instances, with_threads(4));
   REQUIRE(one.arrays.size() == four.arrays.size());
   for (std::size_t i = 0; i < one.arrays.size(); ++i) {
     CHECK(one.arrays[i].value == four.arrays[i].value);
@@ -225,17 +225,17 @@ TEST_CASE("the number of threads changes no bit of the results") {
 
 TEST_CASE("blocks join without loss and stay within their stretch") {
   MadeUp source(2);
-  const ResultSet r = run_analyzers(source, both(source.context()), with_threads(2));
+  const analysis::ResultSet r = analysis::run_analyzers(source, both(source.context()), with_threads(2));
   CHECK_THAT(r.find("means", "seconds")->value[0], WithinRel(80.0, 1e-12));
   CHECK_THAT(r.find("means", "power")->value[0], WithinRel(2.0, 1e-9));  // work is lost where frames are not shared
   CHECK(r.meta.blocks.size() >= 40);
   CHECK(r.meta.blocks.size() <= 64);
   // N_eff = n (1 − φ)/(1 + φ) of 8000 values with the memory φ = 0.8.
   CHECK_THAT(r.meta.times[0].independent, WithinRel(889, 0.5));
-  for (const ResultBlock& b : r.meta.blocks) CHECK(b.duration >= 3 * 0.045);
+  for (const analysis::ResultBlock& b : r.meta.blocks) CHECK(b.duration >= 3 * 0.045);
   CHECK(r.meta.blocks.front().stretch == 0);
   CHECK(r.meta.blocks.back().stretch == 1);
-  const ResultArray& edges = *r.find("means", "edges");
+  const analysis::ResultArray& edges = *r.find("means", "edges");
   CHECK(edges.is_axis);
   CHECK(edges.sem.empty());
   CHECK(r.axis(*r.find("means", "share"), 0) == &edges);
@@ -243,7 +243,7 @@ TEST_CASE("blocks join without loss and stay within their stretch") {
 
 TEST_CASE("results of one run have a joint covariance") {
   MadeUp source(3);
-  const ResultSet r = run_analyzers(source, both(source.context()), with_threads(2));
+  const analysis::ResultSet r = analysis::run_analyzers(source, both(source.context()), with_threads(2));
   const std::size_t n = r.covariance_entries.size();
   CHECK(n == 4 + 4 + 1);  // mean_x, mean_y, seconds, power, share[4], twice_x
   const auto at = [&](std::size_t i, std::size_t j) { return r.covariance[i * n + j]; };
@@ -270,11 +270,11 @@ TEST_CASE("intervals of a whole analysis hold with 90 %") {
   constexpr int kTrials = 120;
   for (int trial = 0; trial < kTrials; ++trial) {
     MadeUp source(1000 + 7 * static_cast<std::uint64_t>(trial), 1500);
-    std::vector<AnalyzerInstance> instances;
+    std::vector<analysis::AnalyzerInstance> instances;
     instances.push_back(local_instance<Means>("means", source.context()));
-    const ResultSet r = run_analyzers(source, instances, with_threads(1));
+    const analysis::ResultSet r = analysis::run_analyzers(source, instances, with_threads(1));
     for (const char* name : {"mean_x", "mean_y"}) {
-      const ResultArray& a = *r.find("means", name);
+      const analysis::ResultArray& a = *r.find("means", name);
       hits += a.low[0] <= 0 && a.high[0] >= 0 ? 1 : 0;
     }
   }
@@ -285,25 +285,25 @@ TEST_CASE("intervals of a whole analysis hold with 90 %") {
 
 TEST_CASE("what never changed among what varies has no uncertainty, and intervals keep to their range") {
   MadeUp source(9, 400);
-  std::vector<AnalyzerInstance> instances;
+  std::vector<analysis::AnalyzerInstance> instances;
   instances.push_back(local_instance<Ranges>("ranges", source.context()));
-  EngineOptions options = with_threads(1);
+  analysis::EngineOptions options = with_threads(1);
   options.block = 1.9;  // four blocks: wide intervals
-  const ResultSet r = run_analyzers(source, instances, options);
-  const ResultArray& share = *r.find("ranges", "share");
+  const analysis::ResultSet r = analysis::run_analyzers(source, instances, options);
+  const analysis::ResultArray& share = *r.find("ranges", "share");
   CHECK(share.traits == kShare);
   CHECK(r.find("ranges", "seconds")->traits == (kBookkeeping | kNotNegative));
   for (const std::size_t k : {1, 2}) {
-    CHECK((share.flags[k] & kNoUncertainty) != 0);
+    CHECK((share.flags[k] & analysis::kNoUncertainty) != 0);
     CHECK(std::isnan(share.sem[k]));
     CHECK(std::isnan(share.low[k]));
   }
-  for (const std::size_t k : {0, 3}) CHECK((share.flags[k] & kNoUncertainty) == 0);
+  for (const std::size_t k : {0, 3}) CHECK((share.flags[k] & analysis::kNoUncertainty) == 0);
   // Where all of a result is the same it is exact.
   CHECK(r.find("ranges", "constant")->sem == std::vector<double>{0, 0});
-  for (const std::uint8_t flags : r.find("ranges", "constant")->flags) CHECK((flags & kNoUncertainty) == 0);
+  for (const std::uint8_t flags : r.find("ranges", "constant")->flags) CHECK((flags & analysis::kNoUncertainty) == 0);
   CHECK(std::isnan(r.find("ranges", "perhaps_negative")->value[0]));
-  CHECK((r.find("ranges", "perhaps_negative")->flags[0] & kOftenUndefined) != 0);
+  CHECK((r.find("ranges", "perhaps_negative")->flags[0] & analysis::kOftenUndefined) != 0);
   CHECK(r.find("ranges", "rare_without")->low[0] < 0);
   CHECK(r.find("ranges", "rare")->low[0] == 0);
   CHECK(r.find("ranges", "rare")->high[0] == r.find("ranges", "rare_without")->high[0]);
@@ -311,26 +311,26 @@ TEST_CASE("what never changed among what varies has no uncertainty, and interval
 
 TEST_CASE("a plugin that errs is named, one that gives a result only sometimes is endured") {
   MadeUp source(4);
-  const auto alone = [&](AnalyzerInstance instance) {
-    std::vector<AnalyzerInstance> instances;
+  const auto alone = [&](analysis::AnalyzerInstance instance) {
+    std::vector<analysis::AnalyzerInstance> instances;
     instances.push_back(std::move(instance));
-    return run_analyzers(source, instances, with_threads(2));
+    return analysis::run_analyzers(source, instances, with_threads(2));
   };
   CHECK_THAT(refusal([&] { alone(local_instance<WrongAxis>("wrong", source.context())); }),
              Contains("'wrong'") && Contains("axis 'nowhere'"));
   CHECK_THAT(refusal([&] { alone(local_instance<Refuses>("no", source.context())); }), Contains("wrong colour"));
-  const ResultSet r = alone(local_instance<Sometimes>("some", source.context()));
+  const analysis::ResultSet r = alone(local_instance<Sometimes>("some", source.context()));
   CHECK(r.find("some", "always") != nullptr);
   CHECK_THAT(r.find("some", "always")->value[0], WithinRel(80.0, 1e-9));
 }
 
 TEST_CASE("a span shorter than two blocks has results without uncertainty, and says so") {
   MadeUp source(5, 10);
-  const ResultSet r = run_analyzers(source, both(source.context()), with_threads(1));
+  const analysis::ResultSet r = analysis::run_analyzers(source, both(source.context()), with_threads(1));
   CHECK(std::isfinite(r.find("means", "mean_x")->value[0]));
   REQUIRE_FALSE(r.meta.notes.empty());
   CHECK_THAT(r.meta.notes.front(), Contains("blocks of at least three autocorrelation times"));
-  CHECK((r.find("means", "mean_x")->flags[0] & kFewBlocks) != 0);
+  CHECK((r.find("means", "mean_x")->flags[0] & analysis::kFewBlocks) != 0);
 }
 
 TEST_CASE("analyzers that were read once are created without their document, by several threads") {
@@ -340,19 +340,19 @@ TEST_CASE("analyzers that were read once are created without their document, by 
     c.mill_radius = 0.1, c.gravity = 9.81, c.omega = -2;
     return c;
   }();
-  std::vector<AskedAnalyzer> asked;
+  std::vector<analysis::AskedAnalyzer> asked;
   {
     const config::Node settings = config::parse_document("analyzers:\n  fine: {kind: pept_grid, cells_x: 30}\n  power: {}\n", "a.yaml");
-    asked = read_analyzers(settings, true, {}, build_registry());
+    asked = analysis::read_analyzers(settings, true, {}, build_registry());
   }
   REQUIRE(asked.size() == 2);
   CHECK(asked[0].name == "fine");
   CHECK(asked[0].where.line == 2);
   std::vector<std::size_t> created(16);
   base::for_each_item(created.size(), 4,
-                      [&](std::size_t i, std::size_t) { created[i] = create_analyzers(asked, context).instances.size(); });
+                      [&](std::size_t i, std::size_t) { created[i] = analysis::create_analyzers(asked, context).instances.size(); });
   CHECK(created == std::vector<std::size_t>(16, 2));
   AnalyzerContext blind = context;
   blind.has = 0;
-  CHECK_THAT(refusal([&] { create_analyzers(asked, blind); }), Catch::Contains("a.yaml:2: analyzer 'fine' needs"));
+  CHECK_THAT(refusal([&] { analysis::create_analyzers(asked, blind); }), Catch::Contains("a.yaml:2: analyzer 'fine' needs"));
 }

@@ -8,14 +8,14 @@
 #include "studies/analysis/times.hpp"
 
 using namespace analysis_test;
-using namespace millscope::studies;
+using namespace millscope;
 using Catch::Contains;
 
 namespace {
 
 /// A bead on a circle, a point every 5 ms; `pause`: between all points, s, beyond every gap limit where it is large.
-Run circle(const std::string& name, std::size_t points, double pause = 0.005) {
-  Run run;
+recording::Run circle(const std::string& name, std::size_t points, double pause = 0.005) {
+  recording::Run run;
   run.name = name;
   run.source = name + ".a";
   for (std::size_t k = 0; k < points; ++k) {
@@ -28,8 +28,8 @@ Run circle(const std::string& name, std::size_t points, double pause = 0.005) {
   return run;
 }
 
-Recording recording_of(std::vector<Run> runs) {
-  Recording recording;
+recording::Recording recording_of(std::vector<recording::Run> runs) {
+  recording::Recording recording;
   recording.file = "all.yaml";
   recording.runs = std::move(runs);
   recording.condition.bead_diameter = 0.004;
@@ -37,15 +37,15 @@ Recording recording_of(std::vector<Run> runs) {
   return recording;
 }
 
-TrajectoryOptions steady() {
-  TrajectoryOptions options;
+trajectory::TrajectoryOptions steady() {
+  trajectory::TrajectoryOptions options;
   options.noise.fill(1e-4);
   options.noise_correlation = 0;
   return options;
 }
 
 /// Every number of a source's blocks that the fits decide.
-std::vector<double> numbers(const FrameSource& source) {
+std::vector<double> numbers(const analysis::FrameSource& source) {
   std::vector<double> all;
   const auto scratch = source.make_scratch();
   for (std::size_t c = 0; c < source.chunk_count(); ++c) {
@@ -60,8 +60,9 @@ std::vector<double> numbers(const FrameSource& source) {
 }  // namespace
 
 TEST_CASE("runs that cannot be followed are left out and named with the reason, and take no other with them") {
-  const Recording recording = recording_of({circle("short", 3), circle("first", 400), circle("torn", 50, 1), circle("second", 300)});
-  const Followed followed = follow(tracer_runs(recording, steady()), {.of = "all.yaml"});
+  const recording::Recording recording =
+      recording_of({circle("short", 3), circle("first", 400), circle("torn", 50, 1), circle("second", 300)});
+  const analysis::Followed followed = analysis::follow(analysis::tracer_runs(recording, steady()), {.of = "all.yaml"});
   CHECK(followed.runs == std::vector<std::size_t>{1, 3});
   CHECK(followed.points == 700);
   CHECK(followed.source->survey().size() == 2);
@@ -73,38 +74,40 @@ TEST_CASE("runs that cannot be followed are left out and named with the reason, 
 }
 
 TEST_CASE("of many that cannot be followed the first are named and the others counted") {
-  Recording recording = recording_of({circle("whole", 400)});
+  recording::Recording recording = recording_of({circle("whole", 400)});
   for (int k = 0; k < 9; ++k) recording.runs.push_back(circle("s" + std::to_string(k), 3));
-  const Followed followed = follow(tracer_runs(recording, steady()), {.of = "all.yaml"});
+  const analysis::Followed followed = analysis::follow(analysis::tracer_runs(recording, steady()), {.of = "all.yaml"});
   REQUIRE(followed.notes.size() == 1);
   CHECK_THAT(followed.notes[0], Contains("9 of 10 runs") && Contains("s2.a") && !Contains("s3.a") && Contains("and 6 more"));
 }
 
 TEST_CASE("where nothing can be followed it says why") {
-  const Recording two = recording_of({circle("short", 3), circle("torn", 50, 1)}), one = recording_of({circle("torn", 50, 1)});
-  CHECK_THAT(refusal([&] { follow(tracer_runs(two, steady()), {.of = "all.yaml"}); }),
+  const recording::Recording two = recording_of({circle("short", 3), circle("torn", 50, 1)}), one = recording_of({circle("torn", 50, 1)});
+  CHECK_THAT(refusal([&] { analysis::follow(analysis::tracer_runs(two, steady()), {.of = "all.yaml"}); }),
              Contains("all.yaml: none of its 2 runs can be followed; the first: short.a: its 3 points"));
-  CHECK_THAT(refusal([&] { follow(tracer_runs(one, steady()), {.of = "all.yaml"}); }), Contains("torn.a: no trajectory"));
-  TrajectoryOptions wrong = steady();
+  CHECK_THAT(refusal([&] { analysis::follow(analysis::tracer_runs(one, steady()), {.of = "all.yaml"}); }),
+             Contains("torn.a: no trajectory"));
+  trajectory::TrajectoryOptions wrong = steady();
   wrong.step = 0;
-  CHECK_THAT(refusal([&] { follow(tracer_runs(recording_of({circle("a", 400)}), wrong), {.of = "all.yaml"}); }), Contains("step"));
+  CHECK_THAT(refusal([&] { analysis::follow(analysis::tracer_runs(recording_of({circle("a", 400)}), wrong), {.of = "all.yaml"}); }),
+             Contains("step"));
 }
 
 TEST_CASE("threads change no bit of what is followed") {
-  std::vector<Run> runs;
+  std::vector<recording::Run> runs;
   for (std::size_t k = 0; k < 7; ++k) runs.push_back(circle("r" + std::to_string(k), 200 + 50 * k));
-  const Recording recording = recording_of(std::move(runs));
-  const std::vector<BeadRun> beads = tracer_runs(recording, steady());
-  const std::vector<double> alone = numbers(*follow(beads, {.of = "all.yaml", .threads = 1}).source);
+  const recording::Recording recording = recording_of(std::move(runs));
+  const std::vector<analysis::BeadRun> beads = analysis::tracer_runs(recording, steady());
+  const std::vector<double> alone = numbers(*analysis::follow(beads, {.of = "all.yaml", .threads = 1}).source);
   CHECK(alone.size() > 1000);
-  CHECK(numbers(*follow(beads, {.of = "all.yaml", .threads = 4}).source) == alone);
+  CHECK(numbers(*analysis::follow(beads, {.of = "all.yaml", .threads = 4}).source) == alone);
 }
 
 TEST_CASE("a tracer is of the size that is stated of it, and a bead keeps its own number") {
-  const Recording recording = recording_of({circle("a", 400)});
-  std::vector<BeadRun> beads = tracer_runs(recording, steady());
+  const recording::Recording recording = recording_of({circle("a", 400)});
+  std::vector<analysis::BeadRun> beads = analysis::tracer_runs(recording, steady());
   CHECK(beads[0].diameter == 0.005);
   CHECK(beads[0].density == 2500);
   beads[0].id = 41;
-  CHECK(follow(beads, {.of = "all.yaml"}).source->context().largest_id == 41);
+  CHECK(analysis::follow(beads, {.of = "all.yaml"}).source->context().largest_id == 41);
 }

@@ -11,32 +11,32 @@
 #include "studies/analysis/recorded_mill.hpp"
 
 using namespace analysis_test;
-using namespace millscope::studies;
+using namespace millscope;
 using Catch::Contains;
 
 namespace {
 
 /// A clockwise mill of 6 rad/s: its bead rides on a circle of 145 mm about (2.1, −3.4) mm.
-const Recording& clockwise() {
-  static const Recording recording = millscope::test::make_recording(millscope::test::SyntheticMill{});
+const recording::Recording& clockwise() {
+  static const recording::Recording recording = millscope::test::make_recording(millscope::test::SyntheticMill{});
   return recording;
 }
 
-std::string why(const Condition& condition) {
-  Recording recording = clockwise();
+std::string why(const recording::Condition& condition) {
+  recording::Recording recording = clockwise();
   recording.condition = condition;
   recording.file = "recording.yaml";
-  return refusal([&] { know_mill(recording, {}); });
+  return refusal([&] { analysis::know_mill(recording, {}); });
 }
 
-std::string notes(const RecordedMill& known) {
+std::string notes(const analysis::RecordedMill& known) {
   std::string all;
   for (const std::string& note : known.notes) all += note + "\n";
   return all;
 }
 
-Condition stated(double omega) {
-  Condition condition;
+recording::Condition stated(double omega) {
+  recording::Condition condition;
   condition.angular_velocity = omega;
   condition.speed = std::fabs(omega);
   return condition;
@@ -50,44 +50,44 @@ TEST_CASE("a stated sense that the tracer contradicts is refused, and so is a sp
              Contains("recording.yaml: the mill is stated to turn counter-clockwise") && Contains("clockwise; check the axes"));
   CHECK_THAT(why(stated(-360)), Contains("3438 rpm") && Contains("check the speed and its unit"));
   CHECK_THAT(why(stated(-0.1)), Contains("check the speed and its unit"));
-  Condition magnitude;
+  recording::Condition magnitude;
   magnitude.speed = 360;
   CHECK_THAT(why(magnitude), Contains("check the speed and its unit"));
   // Also where everything is given, so that nothing has to be found.
-  Recording recording = clockwise();
+  recording::Recording recording = clockwise();
   recording.condition = stated(6);
   recording.condition.mill_diameter = 0.3;
-  recording.frame = MillFrame{{0.0021, -0.0034}, 0, 0};
-  CHECK_THAT(refusal([&] { know_mill(recording, {}); }), Contains("check the axes"));
+  recording.frame = recording::MillFrame{{0.0021, -0.0034}, 0, 0};
+  CHECK_THAT(refusal([&] { analysis::know_mill(recording, {}); }), Contains("check the axes"));
 }
 
 TEST_CASE("a stated speed somewhat beside the one found is used, with a note") {
-  Recording recording = clockwise();
+  recording::Recording recording = clockwise();
   recording.condition = stated(-6.6);
-  const RecordedMill known = know_mill(recording, {});
+  const analysis::RecordedMill known = analysis::know_mill(recording, {});
   CHECK(known.context.omega == -6.6);
   CHECK_THAT(notes(known), Contains("is stated to turn at 63.03 rpm, but 57."));
   recording.condition = stated(-6);
-  CHECK_THAT(notes(know_mill(recording, {})), !Contains("is stated to turn"));
+  CHECK_THAT(notes(analysis::know_mill(recording, {})), !Contains("is stated to turn"));
 }
 
 TEST_CASE("a mill's length says nothing of where its ends are, but weighs the charge") {
-  Recording recording = clockwise();
-  Condition& c = recording.condition;
+  recording::Recording recording = clockwise();
+  recording::Condition& c = recording.condition;
   c.mill_diameter = 0.3;
   c.mill_length = 0.06;
   c.filling = 0.3;
   c.porosity = 0.4;
   c.bead_diameter = 0.01;
   c.bead_density = 2500;
-  const RecordedMill known = know_mill(recording, {});
+  const analysis::RecordedMill known = analysis::know_mill(recording, {});
   CHECK(known.context.mill_low == 0);
   CHECK(known.context.mill_high == 0);
   CHECK(known.context.mill_length == 0.06);
   CHECK(known.context.charge_mass == Approx(0.6 * 0.3 * std::numbers::pi * 0.15 * 0.15 * 0.06 * 2500));
   CHECK_THAT(notes(known), Contains("where the end faces stand along z is not known"));
-  recording.frame = MillFrame{{0.0021, -0.0034}, 0.01, 0.07};
-  const RecordedMill with_ends = know_mill(recording, {});
+  recording.frame = recording::MillFrame{{0.0021, -0.0034}, 0.01, 0.07};
+  const analysis::RecordedMill with_ends = analysis::know_mill(recording, {});
   CHECK(with_ends.context.mill_low == 0.01);
   CHECK(with_ends.context.mill_high == 0.07);
   CHECK_THAT(notes(with_ends), !Contains("end faces"));
@@ -96,13 +96,13 @@ TEST_CASE("a mill's length says nothing of where its ends are, but weighs the ch
 TEST_CASE("where only a bound is found, the note says it and the value that is used") {
   millscope::test::SyntheticMill mill;
   mill.slip = 0.4;
-  const RecordedMill known = know_mill(millscope::test::make_recording(mill), {});
+  const analysis::RecordedMill known = analysis::know_mill(millscope::test::make_recording(mill), {});
   CHECK_THAT(notes(known), Contains("clockwise at ") && Contains(" (at least "));
 }
 
 TEST_CASE("steps and gaps in which a motion is lost are refused") {
   const auto read = [](const std::string& text) {
-    return read_trajectory_options(millscope::config::parse_document(text, "settings.yaml"));
+    return analysis::read_trajectory_options(millscope::config::parse_document(text, "settings.yaml"));
   };
   CHECK(read("{step: 5 ms, gap_limit: 1 s, noise: 1 mm, noise_correlation: 0.2}").noise_correlation == 0.2);
   CHECK_FALSE(read("{noise: 1 mm}").noise_correlation);
@@ -113,8 +113,8 @@ TEST_CASE("steps and gaps in which a motion is lost are refused") {
 
 TEST_CASE("rows that were set aside are told in notes and in the results") {
   const Scratch scratch;
-  const Recording& seen = clockwise();
-  const Run& run = seen.runs[0];
+  const recording::Recording& seen = clockwise();
+  const recording::Run& run = seen.runs[0];
   std::string text = "t_s,x_m,y_m,z_m\n";
   for (std::size_t i = 0; i < run.size(); ++i) {
     if (i == 10) text += "lost,1,2,3\n";
@@ -122,10 +122,10 @@ TEST_CASE("rows that were set aside are told in notes and in the results") {
     text += fmt::format("{},{},{},{}\n", run.time[i], run.position[0][i], run.position[1][i], run.position[2][i]);
   }
   spill(scratch / "run.csv", text);
-  SourceRequest request;
+  analysis::SourceRequest request;
   request.path = scratch / "run.csv";
   request.trajectory.gap_limit = 0;
-  const OpenedSource opened = open_source(request, build_registry());
+  const analysis::OpenedSource opened = analysis::open_source(request, build_registry());
   std::string all;
   for (const std::string& note : opened.meta.notes) all += note + "\n";
   CHECK_THAT(all, Contains("run read as table, comma: t s (column 1)"));

@@ -10,7 +10,7 @@
 #include "studies/analysis/results.hpp"
 
 using namespace analysis_test;
-using namespace millscope::studies;
+using namespace millscope;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
@@ -19,11 +19,11 @@ namespace {
 constexpr std::size_t kDraws = 200;
 
 /// A mean over blocks (sum and weight of each) with its uncertainty, the way the host makes it.
-Uncertainty of_mean(const std::vector<double>& sums, const std::vector<double>& weights, std::uint64_t seed) {
+analysis::Uncertainty of_mean(const std::vector<double>& sums, const std::vector<double>& weights, std::uint64_t seed) {
   const std::size_t n = sums.size();
   const double all = std::accumulate(sums.begin(), sums.end(), 0.0), weight = std::accumulate(weights.begin(), weights.end(), 0.0);
   const double value = all / weight;
-  const std::vector<std::uint32_t> counts = draw_counts(n, kDraws, seed);
+  const std::vector<std::uint32_t> counts = analysis::draw_counts(n, kDraws, seed);
   std::vector<float> draws, left_out;
   for (std::size_t b = 0; b < kDraws; ++b) {
     double s = 0, w = 0;
@@ -36,7 +36,7 @@ Uncertainty of_mean(const std::vector<double>& sums, const std::vector<double>& 
   for (std::size_t i = 0; i < n; ++i) left_out.push_back(static_cast<float>((all - sums[i]) / (weight - weights[i]) - value));
   std::vector<std::uint8_t> follows(n, 1);
   follows[0] = 0;
-  return uncertainty(value, draws, left_out, follows);
+  return analysis::uncertainty(value, draws, left_out, follows);
 }
 
 /// Fraction of the intervals of many trials that hold the truth, for blocks of `length` values of f(x).
@@ -47,7 +47,7 @@ double coverage(std::size_t blocks, std::size_t length, double phi, double truth
     const std::vector<double> x = autoregressive(blocks * length, phi, 1000 + static_cast<std::uint64_t>(trial));
     std::vector<double> sums(blocks, 0.0);
     for (std::size_t i = 0; i < x.size(); ++i) sums[i / length] += f(x[i]);
-    const Uncertainty u = of_mean(sums, std::vector<double>(blocks, static_cast<double>(length)), 7);
+    const analysis::Uncertainty u = of_mean(sums, std::vector<double>(blocks, static_cast<double>(length)), 7);
     hits += u.low <= truth && truth <= u.high ? 1 : 0;
   }
   return static_cast<double>(hits) / trials;
@@ -83,7 +83,7 @@ BeadTrials bead_trials(std::int64_t beads, std::int64_t windows, std::size_t blo
   for (int trial = 0; trial < trials; ++trial) {
     const auto size = static_cast<std::size_t>(windows * beads);
     const std::vector<double> noise = autoregressive(size, 0, 500 + static_cast<std::uint64_t>(trial));
-    const std::vector<std::uint32_t> counts = draw_counts(blocks, kDraws, 1 + static_cast<std::uint64_t>(trial));
+    const std::vector<std::uint32_t> counts = analysis::draw_counts(blocks, kDraws, 1 + static_cast<std::uint64_t>(trial));
     // Metric at the end and exponent, of the windows with these weights.
     const auto of = [&](auto&& weight) {
       std::vector<double> time(size), value(size);
@@ -106,8 +106,10 @@ BeadTrials bead_trials(std::int64_t beads, std::int64_t windows, std::size_t blo
     }
     std::vector<std::uint8_t> follows(blocks, 1);
     follows[0] = 0;
-    const Uncertainty m = uncertainty(metric, influence_draws(metric_without, counts), metric_without, follows);
-    const Uncertainty e = uncertainty(exponent, influence_draws(exponent_without, counts), exponent_without, follows);
+    const analysis::Uncertainty m =
+        analysis::uncertainty(metric, analysis::influence_draws(metric_without, counts), metric_without, follows);
+    const analysis::Uncertainty e =
+        analysis::uncertainty(exponent, analysis::influence_draws(exponent_without, counts), exponent_without, follows);
     const double truth = 1.0 / static_cast<double>(windows);
     result.variance += (m.low <= truth && truth <= m.high) / static_cast<double>(trials);
     result.exponent += (e.low <= 1 && 1 <= e.high) / static_cast<double>(trials);
@@ -164,8 +166,8 @@ TEST_CASE("a memory longer than the blocks widens the interval and says so") {
   const std::vector<double> x = autoregressive(640, phi, 3);
   std::vector<double> sums(64, 0.0);
   for (std::size_t i = 0; i < x.size(); ++i) sums[i / 10] += x[i];
-  const Uncertainty u = of_mean(sums, std::vector<double>(64, 10.0), 1);
-  CHECK((u.flags & kCorrelated) != 0);
+  const analysis::Uncertainty u = of_mean(sums, std::vector<double>(64, 10.0), 1);
+  CHECK((u.flags & analysis::kCorrelated) != 0);
   CHECK(u.effective_blocks < 40);
   CHECK(u.effective_blocks > 8);
 }
@@ -175,21 +177,21 @@ TEST_CASE("the standard error of independent blocks is the textbook's") {
   const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) / 50;
   double square = 0;
   for (const double s : sums) square += (s - mean) * (s - mean);
-  const Uncertainty u = of_mean(sums, std::vector<double>(50, 1.0), 1);
+  const analysis::Uncertainty u = of_mean(sums, std::vector<double>(50, 1.0), 1);
   CHECK_THAT(u.sem, WithinRel(std::sqrt(square / 49 / 50), 0.2));
   CHECK(u.low < mean);
   CHECK(u.high > mean);
-  CHECK((u.flags & kFewBlocks) == 0);
+  CHECK((u.flags & analysis::kFewBlocks) == 0);
 }
 
 TEST_CASE("few blocks, a single block and constants are told apart") {
-  const Uncertainty few = of_mean({1, 2, 4, 3, 2}, {1, 1, 1, 1, 1}, 1);
-  CHECK((few.flags & kFewBlocks) != 0);
+  const analysis::Uncertainty few = of_mean({1, 2, 4, 3, 2}, {1, 1, 1, 1, 1}, 1);
+  CHECK((few.flags & analysis::kFewBlocks) != 0);
   CHECK(std::isfinite(few.sem));
-  const Uncertainty one = of_mean({1}, {1}, 1);
-  CHECK((one.flags & kNoUncertainty) != 0);
+  const analysis::Uncertainty one = of_mean({1}, {1}, 1);
+  CHECK((one.flags & analysis::kNoUncertainty) != 0);
   CHECK(std::isnan(one.sem));
-  const Uncertainty constant = of_mean(std::vector<double>(20, 3.0), std::vector<double>(20, 1.5), 1);
+  const analysis::Uncertainty constant = of_mean(std::vector<double>(20, 3.0), std::vector<double>(20, 1.5), 1);
   CHECK(constant.sem == 0);
   CHECK(constant.low == 2.0);
   CHECK(constant.flags == 0);
@@ -197,24 +199,24 @@ TEST_CASE("few blocks, a single block and constants are told apart") {
   std::vector<double> sums(20, 0.0), weights(20, 0.0);
   sums[7] = 3;
   weights[7] = 1;
-  const Uncertainty single = of_mean(sums, weights, 1);
+  const analysis::Uncertainty single = of_mean(sums, weights, 1);
   CHECK(std::isnan(single.sem));
-  CHECK((single.flags & kOftenUndefined) != 0);
+  CHECK((single.flags & analysis::kOftenUndefined) != 0);
   CHECK(single.effective_blocks == 1);
   // What fails once without a block, but feels the others too, is doubtful and still has an interval.
   std::vector<float> draws, left_out;
   for (int b = 0; b < 200; ++b) draws.push_back(b % 3 == 0 ? std::nanf("") : 0.1F * static_cast<float>(b % 7 - 3));
   for (int i = 0; i < 20; ++i) left_out.push_back(i == 4 ? std::nanf("") : 0.01F * static_cast<float>(i % 5 - 2));
-  const Uncertainty doubtful = uncertainty(1.0, draws, left_out, std::vector<std::uint8_t>(20, 1));
-  CHECK((doubtful.flags & kOftenUndefined) != 0);
+  const analysis::Uncertainty doubtful = analysis::uncertainty(1.0, draws, left_out, std::vector<std::uint8_t>(20, 1));
+  CHECK((doubtful.flags & analysis::kOftenUndefined) != 0);
   CHECK(doubtful.low < 1.0);
   CHECK(doubtful.high > 1.0);
 }
 
 TEST_CASE("draws are the same everywhere and hold every block as often as chance says") {
-  const std::vector<std::uint32_t> counts = draw_counts(10, 2000, 1);
-  CHECK(counts == draw_counts(10, 2000, 1));
-  CHECK(counts != draw_counts(10, 2000, 2));
+  const std::vector<std::uint32_t> counts = analysis::draw_counts(10, 2000, 1);
+  CHECK(counts == analysis::draw_counts(10, 2000, 1));
+  CHECK(counts != analysis::draw_counts(10, 2000, 2));
   std::vector<double> total(10, 0.0);
   for (std::size_t b = 0; b < 2000; ++b) {
     std::uint32_t sum = 0;

@@ -11,13 +11,13 @@
 #include "studies/analysis/tables.hpp"
 
 using namespace analysis_test;
-using namespace millscope::studies;
+using namespace millscope;
 using Catch::Contains;
 
 namespace {
 
-ResultSet some_results() {
-  ResultSet r;
+analysis::ResultSet some_results() {
+  analysis::ResultSet r;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   r.meta.source = "simulation";
   r.meta.name = "Drum";
@@ -33,24 +33,25 @@ ResultSet some_results() {
   r.meta.notes = {"a note"};
   r.meta.left_out = {"slip: no"};
   r.meta.provenance["version"] = "0.1.0";
-  ResultArray edges{"b_grid", "edges", "m", "Edges.", {3}, {""}, true, {0, 0.5, 1}, {}, {}, {}, {}, {}, {}, 0};
-  ResultArray map{"b_grid",
-                  "map",
-                  "1",
-                  "A map, with a \"comma\".",
-                  {2, 2},
-                  {"edges", "edges"},
-                  false,
-                  {1, nan, 3, 4},
-                  {0.1, nan, 0.3, 0.4},
-                  {0.8, nan, 2, 3},
-                  {1.2, nan, 4, 5},
-                  {12, 1, 13, 14},
-                  {0, 9, 2, 0},
-                  std::vector<float>(12, 0.25F),
-                  millscope::kShare | millscope::kOdd};
+  analysis::ResultArray edges{"b_grid", "edges", "m", "Edges.", {3}, {""}, true, {0, 0.5, 1}, {}, {}, {}, {}, {}, {}, 0};
+  analysis::ResultArray map{"b_grid",
+                            "map",
+                            "1",
+                            "A map, with a \"comma\".",
+                            {2, 2},
+                            {"edges", "edges"},
+                            false,
+                            {1, nan, 3, 4},
+                            {0.1, nan, 0.3, 0.4},
+                            {0.8, nan, 2, 3},
+                            {1.2, nan, 4, 5},
+                            {12, 1, 13, 14},
+                            {0, 9, 2, 0},
+                            std::vector<float>(12, 0.25F),
+                            millscope::kShare | millscope::kOdd};
   edges.traits = millscope::kAlongX;
-  ResultArray number{"a_power", "power", "W", "Power.", {}, {}, false, {29.8}, {0.3}, {29.3}, {30.3}, {40}, {2}, {0.1F, -0.2F, 0.1F}, 0};
+  analysis::ResultArray number{"a_power",           "power", "W", "Power.", {}, {}, false, {29.8}, {0.3}, {29.3}, {30.3}, {40}, {2},
+                               {0.1F, -0.2F, 0.1F}, 0};
   r.arrays = {edges, map, number};
   r.covariance_entries = {{2, 0}};
   r.covariance = {0.09};
@@ -62,9 +63,9 @@ ResultSet some_results() {
 
 TEST_CASE("results read back as they were written") {
   const Scratch scratch;
-  const ResultSet r = some_results();
+  const analysis::ResultSet r = some_results();
   write_results(scratch / "results.h5", r);
-  const ResultSet back = read_results(scratch.path);
+  const analysis::ResultSet back = analysis::read_results(scratch.path);
   CHECK(back.meta.name == r.meta.name);
   CHECK(back.meta.description == r.meta.description);
   CHECK(back.meta.context.mill_radius == 0.15);
@@ -94,49 +95,49 @@ TEST_CASE("results read back as they were written") {
   CHECK(std::isnan(back.arrays[1].sem[1]));
   CHECK(back.axis(back.arrays[1], 1) == &back.arrays[0]);
   CHECK(back.covariance == r.covariance);
-  CHECK(entry_name(back, back.covariance_entries[0]) == "a_power.power");
-  CHECK(entry_name(back, {1, 2}) == "b_grid.map[2]");
+  CHECK(analysis::entry_name(back, back.covariance_entries[0]) == "a_power.power");
+  CHECK(analysis::entry_name(back, {1, 2}) == "b_grid.map[2]");
 }
 
 TEST_CASE("results are never overwritten unasked, and damaged ones are refused") {
   const Scratch scratch;
-  const ResultSet r = some_results();
+  const analysis::ResultSet r = some_results();
   const fs::path file = scratch / "results.h5";
   write_results(file, r);
   CHECK_THAT(refusal([&] { write_results(file, r); }), Contains("exists already"));
   write_results(file, r, true);
   CHECK_FALSE(fs::exists(scratch / "results.h5.tmp"));
-  CHECK_THAT(refusal([&] { read_results(scratch / "nowhere"); }), Contains("there is no such file"));
+  CHECK_THAT(refusal([&] { analysis::read_results(scratch / "nowhere"); }), Contains("there is no such file"));
   const std::string bytes = base::text_of(file);
   spill(scratch / "cut.h5", bytes.substr(0, bytes.size() / 2));
-  CHECK_THAT(refusal([&] { read_results(scratch / "cut.h5"); }), Contains("cut.h5"));
+  CHECK_THAT(refusal([&] { analysis::read_results(scratch / "cut.h5"); }), Contains("cut.h5"));
   Drum().write(scratch / "run");
-  CHECK_THAT(refusal([&] { read_results(scratch / "run" / "frames.h5"); }), Contains("'format' is 'millscope frames'"));
+  CHECK_THAT(refusal([&] { analysis::read_results(scratch / "run" / "frames.h5"); }), Contains("'format' is 'millscope frames'"));
 }
 
 TEST_CASE("results that do not fit together are refused") {
   const Scratch scratch;
   const fs::path file = scratch / "results.h5";
   const auto read = [&](auto&& spoil) {
-    ResultSet r = some_results();
+    analysis::ResultSet r = some_results();
     spoil(r);
     write_results(file, r, true);
-    return refusal([&] { read_results(file); });
+    return refusal([&] { analysis::read_results(file); });
   };
   // Draws of another number than the file says: the writer takes the number from `draws`, so a lie is made there.
-  CHECK_THAT(read([](ResultSet& r) {
+  CHECK_THAT(read([](analysis::ResultSet& r) {
                r.meta.draws = 4;
                r.arrays[1].draws.resize(16);
                r.arrays[2].draws.clear();
                r.arrays[1].axes = {"edges", "nowhere"};
              }),
              Contains("b_grid.map") && Contains("axis 'nowhere'") && Contains("damaged"));
-  CHECK_THAT(read([](ResultSet& r) {
+  CHECK_THAT(read([](analysis::ResultSet& r) {
                r.arrays[0].value = {0, 0.25, 0.5, 1};
                r.arrays[0].shape = {4};
              }),
              Contains("axis 'edges'"));
-  CHECK_THAT(read([](ResultSet& r) {
+  CHECK_THAT(read([](analysis::ResultSet& r) {
                r.meta.draws = 1;
                r.arrays[1].draws.resize(4);
                r.arrays[2].draws.resize(1);
@@ -150,13 +151,13 @@ TEST_CASE("results that do not fit together are refused") {
     const hid_t space = H5Screate_simple(3, extent.data(), nullptr);
     const hid_t set = H5Dcreate2(opened, "analyzers/b_grid/map/draws", H5T_NATIVE_FLOAT, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     H5Dclose(set), H5Sclose(space), H5Fclose(opened);
-    CHECK_THAT(refusal([&] { read_results(file); }), Contains("b_grid.map") && Contains("draws"));
+    CHECK_THAT(refusal([&] { analysis::read_results(file); }), Contains("b_grid.map") && Contains("draws"));
   }
 }
 
 TEST_CASE("tables hold every value with the bounds of its cell") {
   const Scratch scratch;
-  const auto files = write_tables(scratch.path, some_results());
+  const auto files = analysis::write_tables(scratch.path, some_results());
   REQUIRE(files.size() == 2);
   const std::string numbers = base::text_of(scratch / "numbers.csv");
   CHECK_THAT(numbers, Contains("a_power,power,W,29.8,0.3,29.3,30.3,40,correlated blocks,Power.\n"));
@@ -164,8 +165,8 @@ TEST_CASE("tables hold every value with the bounds of its cell") {
   CHECK_THAT(map, Contains("edges_from [m],edges_to [m],edges_from [m],edges_to [m],map [1],map_sem,map_low,map_high\n"));
   CHECK_THAT(map, Contains("\n0.5,1,0,0.5,3,0.3,2,4\n"));
   CHECK_THAT(map, Contains("\n0,0.5,0.5,1,,,,\n"));  // undefined
-  const auto json = summary_json(some_results());
+  const auto json = analysis::summary_json(some_results());
   CHECK(json["numbers"]["a_power"]["power"]["value"] == 29.8);
   CHECK(json["blocks"] == 3);
-  CHECK_THAT(number_table(some_results(), 5), Contains("+- 0.3") && Contains("[29.3, 30.3]"));
+  CHECK_THAT(analysis::number_table(some_results(), 5), Contains("+- 0.3") && Contains("[29.3, 30.3]"));
 }

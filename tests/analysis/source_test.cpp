@@ -8,21 +8,21 @@
 #include "studies/analysis/times.hpp"
 
 using namespace analysis_test;
-using namespace millscope::studies;
+using namespace millscope;
 using Catch::Contains;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
 
-OpenedSource open(const fs::path& path, std::vector<std::string> tracers = {}, std::optional<double> from = {},
-                  std::optional<double> to = {}) {
-  SourceRequest request;
+analysis::OpenedSource open(const fs::path& path, std::vector<std::string> tracers = {}, std::optional<double> from = {},
+                            std::optional<double> to = {}) {
+  analysis::SourceRequest request;
   request.path = path;
   request.tracers = std::move(tracers);
   request.from = from;
   request.to = to;
-  return open_source(request, build_registry());
+  return analysis::open_source(request, build_registry());
 }
 
 /// Sums over all chunks of weight and of what changes from frame to frame.
@@ -30,7 +30,7 @@ struct Totals {
   double weight = 0, duration = 0, work = 0, elapsed = 0, largest_speed_error = 0, largest_place_error = 0;
 };
 
-Totals totals(const FrameSource& source, const Drum& drum, std::int64_t bead) {
+Totals totals(const analysis::FrameSource& source, const Drum& drum, std::int64_t bead) {
   Totals t;
   const auto scratch = source.make_scratch();
   for (std::size_t c = 0; c < source.chunk_count(); ++c) {
@@ -61,7 +61,7 @@ TEST_CASE("frames come with weights that fill the span and changes that add up, 
   const Scratch scratch;
   const Drum drum;
   drum.write(scratch.path);
-  const OpenedSource opened = open(scratch.path);
+  const analysis::OpenedSource opened = open(scratch.path);
   CHECK(opened.meta.source == "simulation");
   CHECK(opened.meta.name == "Drum");
   for (const std::size_t most : {1U, 7U, 128U}) {
@@ -102,7 +102,7 @@ TEST_CASE("the mean speed of the shell is that between the frames, also from a f
 TEST_CASE("a part of the frames can be asked for, spins only where they are wanted") {
   const Scratch scratch;
   Drum().write(scratch.path);
-  const OpenedSource opened = open(scratch.path, {}, 1.5, 2.0);
+  const analysis::OpenedSource opened = open(scratch.path, {}, 1.5, 2.0);
   CHECK_THAT(opened.source->context().start, WithinAbs(1.5, 1e-12));
   CHECK_THAT(opened.source->context().end, WithinAbs(2.0, 1e-12));
   CHECK(opened.source->survey()[0].size() == 51);
@@ -118,7 +118,7 @@ TEST_CASE("followed beads have the speed of their motion, through the periodic b
   const Scratch scratch;
   const Drum drum;
   drum.write(scratch.path);
-  const OpenedSource opened = open(scratch.path, {"3"});
+  const analysis::OpenedSource opened = open(scratch.path, {"3"});
   CHECK(opened.meta.source == "tracks");
   for (const std::size_t most : {1U, 9U}) {
     opened.source->cut(0, most);
@@ -143,7 +143,7 @@ TEST_CASE("followed beads have the speed of their motion, through the periodic b
   CHECK(open(scratch / "tracks.h5").source->survey().size() == 2);  // a file of a run stands for the run
   CHECK(open(scratch / "frames.h5").meta.source == "simulation");
   fs::remove(scratch / "frames.h5");
-  const OpenedSource only_tracks = open(scratch.path);
+  const analysis::OpenedSource only_tracks = open(scratch.path);
   CHECK(only_tracks.meta.source == "tracks");
   CHECK_THAT(only_tracks.meta.notes.front(), Contains("no frames.h5"));
 }

@@ -44,7 +44,7 @@ const host::Registry& build_registry();
 
 /// An instance of an analyzer of the test itself; A as `describe` wants it.
 template <class A>
-studies::AnalyzerInstance local_instance(const std::string& name, const AnalyzerContext& context) {
+analysis::AnalyzerInstance local_instance(const std::string& name, const AnalyzerContext& context) {
   static constexpr Descriptor descriptor = describe<A>({.name = "local"});
   const config::ResolvedValues values;
   const host::Loaded loaded{&descriptor, nullptr};

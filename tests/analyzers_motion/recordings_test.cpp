@@ -6,7 +6,7 @@
 #include "tests/skip.hpp"
 
 using namespace analyzers_test;
-using namespace millscope::studies;
+using namespace millscope;
 using Catch::Matchers::WithinAbs;
 
 namespace {
@@ -14,18 +14,18 @@ namespace {
 /// Splined samples of a recording as blocks, with its measured points.
 struct Recorded {
   Frames frames;
-  Trajectory trajectory;
+  trajectory::Trajectory trajectory;
   std::vector<double> variance;
   std::vector<std::int64_t> location_id;
 
   Recorded(const std::string& file, std::array<double, 2> axis, double omega) {
-    const Recording recording = read_recording(testing::recording(file));
-    TrajectoryOptions options;
+    const recording::Recording recording = recording::read_recording(testing::recording(file));
+    trajectory::TrajectoryOptions options;
     options.axis = axis;
     options.step = 2e-3;
-    trajectory = fit_trajectory(recording.runs.at(0), options);
+    trajectory = trajectory::fit_trajectory(recording.runs.at(0), options);
     std::int32_t number = 0;
-    for (const Piece& piece : trajectory.pieces) {
+    for (const trajectory::Piece& piece : trajectory.pieces) {
       for (std::size_t i = 0; i < piece.size(); ++i) {
         Sample s;
         for (std::size_t axis_number = 0; axis_number < 3; ++axis_number) {

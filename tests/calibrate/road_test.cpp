@@ -21,9 +21,9 @@ const host::Registry& registry() {
 }
 
 /// A clockwise mill of 6 rad/s, its tracer on a circle of 145 mm.
-const studies::Recording& recording() {
-  static const studies::Recording made = [] {
-    studies::Recording r = millscope::test::make_recording(millscope::test::SyntheticMill{});
+const recording::Recording& made_recording() {
+  static const recording::Recording made = [] {
+    recording::Recording r = millscope::test::make_recording(millscope::test::SyntheticMill{});
     r.file = "mill.yaml";
     r.gap_limit = 0.05;
     r.condition.angular_velocity = -6, r.condition.speed = 6;
@@ -50,7 +50,7 @@ time: {end_s: 1, analyze_from_s: 0}
 Study study_in(const testing::Folder& folder, const std::string& more) {
   folder.write("case.yaml", kCase);
   std::string rows = "t,x,y,z\n";
-  const studies::Run& run = recording().runs[0];
+  const recording::Run& run = made_recording().runs[0];
   for (std::size_t i = 0; i < run.size(); ++i)
     rows += fmt::format("{:.5f},{:.6f},{:.6f},{:.6f}\n", 1e3 * run.time[i], 1e3 * run.position[0][i], 1e3 * run.position[1][i],
                         1e3 * run.position[2][i]);
@@ -70,7 +70,7 @@ TEST_CASE("recorded and simulated tracks are followed by the same options") {
   Observing observing;
   CHECK(trajectory_options(Side::recorded, smoothing, observing) == trajectory_options(Side::simulated, smoothing, observing));
   observing.camera = "eye.yaml";
-  const studies::TrajectoryOptions plain = trajectory_options(Side::simulated, smoothing, observing);
+  const trajectory::TrajectoryOptions plain = trajectory_options(Side::simulated, smoothing, observing);
   CHECK(plain == trajectory_options(Side::recorded, smoothing, observing));
   CHECK(plain.noise == smoothing.noise);
   CHECK(plain.noise_correlation == smoothing.noise_correlation);
@@ -79,12 +79,12 @@ TEST_CASE("recorded and simulated tracks are followed by the same options") {
   // The two differences that are meant: places along the recorded mill, and beads without a camera's noise.
   observing.z_low = 0.1, observing.z_high = 0.2;
   CHECK(trajectory_options(Side::simulated, smoothing, observing) == plain);
-  studies::TrajectoryOptions recorded = trajectory_options(Side::recorded, smoothing, observing);
+  trajectory::TrajectoryOptions recorded = trajectory_options(Side::recorded, smoothing, observing);
   CHECK((recorded.low == 0.1 && recorded.high == 0.2));
   recorded.low = recorded.high = 0;
   CHECK(recorded == plain);
   observing.camera = "exact";
-  studies::TrajectoryOptions exact = trajectory_options(Side::simulated, smoothing, observing);
+  trajectory::TrajectoryOptions exact = trajectory_options(Side::simulated, smoothing, observing);
   CHECK((exact.noise == std::array<double, 3>{} && !exact.noise_correlation));
   exact.noise = smoothing.noise, exact.noise_correlation = smoothing.noise_correlation;
   CHECK(exact == plain);
@@ -94,10 +94,10 @@ TEST_CASE("the same tracks give the same bits, be they recorded or simulated") {
   const testing::Folder folder;
   const Study study = study_in(folder, "observe: {draws: 100}\n");
   const Processing how{study, registry(), 1, analyzers_of(study, registry())};
-  const Smoothing smoothing = smoothing_of(recording());
-  const studies::RecordedMill mill = studies::know_mill(recording(), {});
-  const studies::ResultSet a = process({recording(), mill, Side::recorded}, smoothing, how),
-                           b = process({recording(), mill, Side::simulated}, smoothing, how);
+  const Smoothing smoothing = smoothing_of(made_recording());
+  const analysis::RecordedMill mill = analysis::know_mill(made_recording(), {});
+  const analysis::ResultSet a = process({made_recording(), mill, Side::recorded}, smoothing, how),
+                            b = process({made_recording(), mill, Side::simulated}, smoothing, how);
   REQUIRE(a.arrays.size() == b.arrays.size());
   std::size_t numbers = 0;
   for (std::size_t i = 0; i < a.arrays.size(); ++i) {
@@ -118,7 +118,7 @@ TEST_CASE("a recording is read once: what looks at it later needs its file no mo
   const Observer observer(study, registry(), read_recordings(study), {folder.path / "cache", 1, {}});
   const auto again = [&] { return observer.results(0, {}, "analyzers:\n  power: {cells_x: 25, cells_y: 25}\n"); };
   const double before = again().find("power", "specific_power_gravity")->value.at(0);
-  const studies::MillMotion& motion = observer.recording(0).motion();
+  const inspect::MillMotion& motion = observer.recording(0).motion();
   std::filesystem::remove(folder.path / "bead.csv");
   std::filesystem::remove(folder.path / "r.yaml");
   CHECK(again().find("power", "specific_power_gravity")->value.at(0) == before);

@@ -20,7 +20,7 @@ observations:
   frame: {kind: frame_error, offset_x: 1.4 mm}
 )";
 
-Camera parse(const std::string& text) { return parse_camera(text, "camera.yaml", registry()); }
+camera::Camera parse(const std::string& text) { return camera::parse_camera(text, "camera.yaml", registry()); }
 
 }  // namespace
 
@@ -44,21 +44,21 @@ TEST_CASE("a camera file is read strictly, with the place of what is wrong") {
 }
 
 TEST_CASE("the same seed gives the same track, also from many threads, and another seed another") {
-  const Camera camera = parse(kWhole);
+  const camera::Camera camera = parse(kWhole);
   const output::TrackSamples track = circling(10, 2000, 0.12, -6);
-  const Run first = observe(track, camera, context_of(1));
-  std::vector<Run> again(4);
+  const recording::Run first = camera::observe(track, camera, context_of(1));
+  std::vector<recording::Run> again(4);
   std::vector<std::thread> threads;
-  for (Run& run : again) threads.emplace_back([&run, &camera, &track] { run = observe(track, camera, context_of(1)); });
+  for (recording::Run& run : again) threads.emplace_back([&run, &camera, &track] { run = camera::observe(track, camera, context_of(1)); });
   for (std::thread& t : threads) t.join();
-  for (const Run& run : again) {
+  for (const recording::Run& run : again) {
     CHECK(run.time == first.time);
     CHECK(run.position == first.position);
     CHECK(run.spread == first.spread);
   }
-  CHECK(observe(track, camera, context_of(2)).time != first.time);
-  CHECK(bead_seed(1, 4) != bead_seed(1, 5));
-  CHECK(bead_seed(1, 4) != bead_seed(2, 4));
+  CHECK(camera::observe(track, camera, context_of(2)).time != first.time);
+  CHECK(camera::bead_seed(1, 4) != camera::bead_seed(1, 5));
+  CHECK(camera::bead_seed(1, 4) != camera::bead_seed(2, 4));
 }
 
 TEST_CASE("taking one link away leaves the random numbers of the others") {
@@ -66,14 +66,15 @@ TEST_CASE("taking one link away leaves the random numbers of the others") {
   std::string less = kWhole;
   const std::size_t at = less.find("  noise:");
   less.erase(at, less.find('\n', at) - at + 1);
-  const Run with = observe(track, parse(kWhole), context_of(1)), without = observe(track, parse(less), context_of(1));
+  const recording::Run with = camera::observe(track, parse(kWhole), context_of(1)),
+                       without = camera::observe(track, parse(less), context_of(1));
   CHECK(with.time == without.time);
   CHECK(with.spread == without.spread);
 }
 
 TEST_CASE("an empty track stays empty, one sample passes") {
-  CHECK(observe({}, parse(kWhole), context_of(1)).size() == 0);
-  CHECK(observe(resting(0.01, 100), Camera(), context_of(1)).size() == 1);
+  CHECK(camera::observe({}, parse(kWhole), context_of(1)).size() == 0);
+  CHECK(camera::observe(resting(0.01, 100), camera::Camera(), context_of(1)).size() == 1);
 }
 
 TEST_CASE("a path through a periodic box is continued") {

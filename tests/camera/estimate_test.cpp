@@ -51,22 +51,22 @@ observations:
   gaps: {kind: gaps, rate: 0.2 Hz, mean_length: 0.8 s}
 )";
 
-Recording seen(const std::string& camera, int runs) {
-  Recording recording;
+recording::Recording seen(const std::string& camera, int runs) {
+  recording::Recording recording;
   recording.file = "made here";
-  const Camera chain = parse_camera(camera, "camera.yaml", registry());
+  const camera::Camera chain = camera::parse_camera(camera, "camera.yaml", registry());
   for (int k = 0; k < runs; ++k) {
     const auto number = static_cast<std::uint64_t>(k);
-    recording.runs.push_back(observe(circulating(40, 100 + number), chain, context_of(bead_seed(3, k))));
+    recording.runs.push_back(camera::observe(circulating(40, 100 + number), chain, context_of(camera::bead_seed(3, k))));
     recording.runs.back().source = "made here";
   }
   recording.gap_limit = 0.1;
-  recording.frame = MillFrame{{0, 0}, 0, 0.06};
+  recording.frame = recording::MillFrame{{0, 0}, 0, 0.06};
   return recording;
 }
 
 /// Within three standard errors, which must be small enough to say something.
-void check(const char* what, const Estimated& found, double truth, double largest_error) {
+void check(const char* what, const camera::Estimated& found, double truth, double largest_error) {
   INFO(what << ": " << found.value << " +- " << found.error << ", truth " << truth);
   CHECK(std::fabs(found.value - truth) <= 3 * found.error);
   CHECK(found.error <= largest_error);
@@ -75,7 +75,7 @@ void check(const char* what, const Estimated& found, double truth, double larges
 }  // namespace
 
 TEST_CASE("a known camera is found again within the stated errors") {
-  const CameraEstimate e = estimate_camera(seen(kKnown, 3), {std::nullopt, 120});
+  const camera::CameraEstimate e = camera::estimate_camera(seen(kKnown, 3), {std::nullopt, 120});
   check("rate", e.sampling.rate, 220, 15);
   CHECK(e.sampling.dead_time == 0);
   check("evenness", e.sampling.shape, 1, 0.2);
@@ -108,40 +108,40 @@ TEST_CASE("a bead of a slice is as far from the middle as its nearest image") {
 }
 
 TEST_CASE("in a slice that repeats along z noise depends on where the nearest image is") {
-  Recording slice;
+  recording::Recording slice;
   slice.file = "a slice";
-  const Camera chain = parse_camera(kKnown, "camera.yaml", registry());
+  const camera::Camera chain = camera::parse_camera(kKnown, "camera.yaml", registry());
   for (int k = 0; k < 2; ++k) {
     const auto number = static_cast<std::uint64_t>(k);
     output::TrackSamples path = circulating(40, 100 + number);
     for (std::size_t i = 0; i < path.time.size(); ++i) path.position[2][i] += 0.02 * path.time[i];  // m: as far as thirteen lengths
-    TrackContext context = context_of(bead_seed(3, k));
+    TrackContext context = context_of(camera::bead_seed(3, k));
     context.period = context.mill_high - context.mill_low;
-    slice.runs.push_back(observe(path, chain, context));
+    slice.runs.push_back(camera::observe(path, chain, context));
     slice.runs.back().source = "made here";
   }
   slice.gap_limit = 0.1;
-  slice.frame = MillFrame{{0, 0}, 0, 0};
-  slice.condition.slice = Slice{0, 0.06};
+  slice.frame = recording::MillFrame{{0, 0}, 0, 0};
+  slice.condition.slice = recording::Slice{0, 0.06};
   const double square = (2 * (0.35 * 0.35 + 0.25 * 0.25) + 0.45 * 0.45 + 0.32 * 0.32) / 3 * 1e-6;
-  const CameraEstimate e = estimate_camera(slice, {std::nullopt, 120});
+  const camera::CameraEstimate e = camera::estimate_camera(slice, {std::nullopt, 120});
   check("growth", e.noise.growth, 8, 6);
   check("noise near the middle", e.noise.total_near, std::sqrt(square) * (1 + 8 * e.noise.near), 0.15e-3);
   check("noise far from the middle", e.noise.total_far, std::sqrt(square) * (1 + 8 * e.noise.far), 0.2e-3);
   CHECK(e.noise.far < 0.2);
   // Without it, distances would be those along the path, which tell nothing.
   slice.condition.slice.reset();
-  const CameraEstimate unknowing = estimate_camera(slice, {std::nullopt, 120});
+  const camera::CameraEstimate unknowing = camera::estimate_camera(slice, {std::nullopt, 120});
   CHECK(unknowing.noise.far > 0.3);
   CHECK(unknowing.noise.growth.value < 2);
 }
 
 TEST_CASE("even intervals, a dead time and a camera without losses are recognised") {
-  const CameraEstimate e =
-      estimate_camera(seen("schema_version: 1\nobservations:\n  rate: {kind: sampling, rate: 200 Hz, dead_time: 2 ms, shape: 9}\n"
-                           "  noise: {kind: noise, white: [0.4, 0.4, 0.4, mm]}\n",
-                           1),
-                      {std::nullopt, 60});
+  const camera::CameraEstimate e =
+      camera::estimate_camera(seen("schema_version: 1\nobservations:\n  rate: {kind: sampling, rate: 200 Hz, dead_time: 2 ms, shape: 9}\n"
+                                   "  noise: {kind: noise, white: [0.4, 0.4, 0.4, mm]}\n",
+                                   1),
+                              {std::nullopt, 60});
   check("rate", e.sampling.rate, 200, 6);
   check("evenness", e.sampling.shape, 9, 2);
   CHECK(std::fabs(e.sampling.dead_time - 2e-3) < 0.6e-3);
@@ -153,27 +153,27 @@ TEST_CASE("even intervals, a dead time and a camera without losses are recognise
 TEST_CASE("where there is no slow noise, what chance makes of it is not told from none") {
   for (int k = 0; k < 4; ++k) {
     INFO("recording " << k);
-    Recording r = seen(
+    recording::Recording r = seen(
         "schema_version: 1\nobservations:\n  rate: {kind: sampling, rate: 200 Hz}\n  noise: {kind: noise, white: [0.4, 0.4, 0.4, mm]}\n",
         k + 1);
     r.runs = {r.runs.back()};
-    const CameraEstimate e = estimate_camera(r, {std::nullopt, 60});
+    const camera::CameraEstimate e = camera::estimate_camera(r, {std::nullopt, 60});
     check("noise", e.noise.total_near, 0.4e-3, 0.2e-3);
     CHECK(e.noise.correlated[0].value <= 3 * e.noise.correlated[0].error);
   }
 }
 
 TEST_CASE("the estimate as YAML is a camera file") {
-  const CameraEstimate e = estimate_camera(seen(kKnown, 1), {std::nullopt, 40});
-  const Camera camera = parse_camera(camera_text(e, "made here"), "estimated.yaml", registry());
+  const camera::CameraEstimate e = camera::estimate_camera(seen(kKnown, 1), {std::nullopt, 40});
+  const camera::Camera camera = camera::parse_camera(camera::camera_text(e, "made here"), "estimated.yaml", registry());
   std::vector<std::string> kinds;
-  for (const CameraLink& link : camera.links()) kinds.push_back(link.plugin.name());
+  for (const camera::CameraLink& link : camera.links()) kinds.push_back(link.plugin.name());
   CHECK(kinds == std::vector<std::string>{"sampling", "error_cut", "noise", "gaps", "outliers", "frame_error"});
 }
 
 TEST_CASE("losses that the tracker's spread does not decide are a cut that can be written, and keep the same") {
-  Recording recording;
-  Run run;
+  recording::Recording recording;
+  recording::Run run;
   for (int i = 0; i < 400; ++i) {
     run.time.push_back(0.005 * i);
     for (auto& axis : run.position) axis.push_back(0.001 * (i % 50));
@@ -181,7 +181,7 @@ TEST_CASE("losses that the tracker's spread does not decide are a cut that can b
   }
   recording.runs.push_back(run);
   for (const double at_rest : {1.2, 4.0}) {  // far above the margin of the fast beads in the windows: by the spreads u at rest is below 0
-    CameraLosses loss;
+    camera::CameraLosses loss;
     loss.found = true, loss.typical_distance = 0.1;
     loss.at_rest.value = at_rest, loss.per_distance.value = 2, loss.per_speed.value = 3;
     camera::express_as_cut(loss, recording, {0, 0, 0}, {{0.1, 20, 0.05, 0.1, 0}, {0.1, 400, 0.05, (at_rest - 0.9) / 3, 1}});
@@ -195,34 +195,34 @@ TEST_CASE("losses that the tracker's spread does not decide are a cut that can b
 }
 
 TEST_CASE("that a camera loses fast beads is said where the recording shows it, against beads at rest") {
-  CameraLosses loss;
+  camera::CameraLosses loss;
   loss.found = true, loss.typical_distance = 0.1;
   loss.at_rest.value = 1, loss.per_speed = {2, 0.5};
   // Phi(1) = 0.8413, Phi(1 - 2 0.5) = 0.5, Phi(1 - 2) = 0.1587
-  CHECK(losses_text(loss, 0.5) ==
+  CHECK(camera::losses_text(loss, 0.5) ==
         "its camera loses fast beads: of the locations that it keeps of a bead at rest it keeps 59 % at the shell's 0.5 m/s, 19 % at twice "
         "that");
   loss.per_speed.error = 1;
-  CHECK(losses_text(loss, 0.5).empty());
+  CHECK(camera::losses_text(loss, 0.5).empty());
   loss.per_speed.error = 0.5;
-  CHECK(losses_text(loss, std::nan("")).empty());
+  CHECK(camera::losses_text(loss, std::nan("")).empty());
   loss.found = false;
-  CHECK(losses_text(loss, 0.5).empty());
+  CHECK(camera::losses_text(loss, 0.5).empty());
 }
 
 TEST_CASE("a recording that is too short says so") {
-  Recording recording = seen(kKnown, 1);
-  Run& run = recording.runs[0];
+  recording::Recording recording = seen(kKnown, 1);
+  recording::Run& run = recording.runs[0];
   run.time.resize(150);
   for (auto& x : run.position) x.resize(150);
   run.spread.clear();
-  CHECK_THROWS_WITH(estimate_camera(recording), Contains("150 locations are too few"));
+  CHECK_THROWS_WITH(camera::estimate_camera(recording), Contains("150 locations are too few"));
 }
 
 TEST_CASE("a recording of short bursts says that it has no span to tell the rate from") {
-  Recording recording;
+  recording::Recording recording;
   recording.file = "bursts.a";
-  Run& run = recording.runs.emplace_back();
+  recording::Run& run = recording.runs.emplace_back();
   Random random(5);
   for (int i = 0; i < 800; ++i) {
     const double t = 0.2 * (i / 8) + 1e-3 * (i % 8);
@@ -231,23 +231,23 @@ TEST_CASE("a recording of short bursts says that it has no span to tell the rate
     for (std::size_t axis = 0; axis < 3; ++axis) run.position[axis].push_back(at[axis] + 3e-4 * random.normal());
   }
   recording.gap_limit = 0.01;
-  CHECK_THROWS_WITH(estimate_camera(recording), Contains("bursts.a: no 20 ms without a pause"));
+  CHECK_THROWS_WITH(camera::estimate_camera(recording), Contains("bursts.a: no 20 ms without a pause"));
 }
 
 TEST_CASE("an .a file reads back as it was written") {
-  const Run run = observe(circulating(10, 1), parse_camera(kKnown, "camera.yaml", registry()), context_of(5));
+  const recording::Run run = camera::observe(circulating(10, 1), camera::parse_camera(kKnown, "camera.yaml", registry()), context_of(5));
   const fs::path folder = fs::temp_directory_path() / fmt::format("camera_test_{}", getpid());
   fs::create_directories(folder);
-  std::ofstream(folder / "bead.a") << ctrack_text(run);
-  Condition condition;
+  std::ofstream(folder / "bead.a") << camera::ctrack_text(run);
+  recording::Condition condition;
   condition.speed = 6;
   condition.angular_velocity = -6;
   condition.filling = 0.313;
   condition.bead_diameter = 0.01;
-  condition.slice = Slice{-0.017, 0.034};
-  condition.power = MeasuredPower{7.335, 0.003};
-  std::ofstream(folder / "bead.yaml") << recording_text({"bead.a"}, condition, "A test.");
-  const Recording back = read_recording(folder / "bead.yaml");
+  condition.slice = recording::Slice{-0.017, 0.034};
+  condition.power = recording::MeasuredPower{7.335, 0.003};
+  std::ofstream(folder / "bead.yaml") << camera::recording_text({"bead.a"}, condition, "A test.");
+  const recording::Recording back = recording::read_recording(folder / "bead.yaml");
   fs::remove_all(folder);
   REQUIRE(back.runs.size() == 1);
   REQUIRE(back.runs[0].size() + back.runs[0].report.outliers + back.runs[0].report.outside == run.size());
@@ -267,7 +267,7 @@ TEST_CASE("an .a file reads back as it was written") {
 
 TEST_CASE("the camera of a known recording is found") {
   if (testing::absent("mill10_A_75_1.a")) return;
-  const CameraEstimate e = estimate_camera(read_recording(testing::recording("mill10_A_75_1.a")));
+  const camera::CameraEstimate e = camera::estimate_camera(recording::read_recording(testing::recording("mill10_A_75_1.a")));
   CHECK(std::fabs(e.sampling.rate.value - 220) < 25);  // "about 220 locations/s before losses"
   CHECK(e.noise.total_near.value > 0.45e-3);           // "0.5 to 1 mm, growing with distance"
   CHECK(e.noise.total_near.value < 0.7e-3);

@@ -7,15 +7,15 @@
 #include "support.hpp"
 
 using namespace camera_test;
-using namespace studies::camera;
+using namespace camera;
 
 namespace {
 
 constexpr double kWhite = 0.29e-3, kCorrelated = 0.21e-3, kTime = 8e-3;  // m, m, s
 
 /// A bead that rests, or goes straight ahead, seen 24 times, 5 ms apart.
-Stretch straight(Random& random) {
-  Stretch s;
+camera::Stretch straight(Random& random) {
+  camera::Stretch s;
   std::array<double, 3> slow{}, speed{};
   for (std::size_t axis = 0; axis < 3; ++axis) slow[axis] = kCorrelated * random.normal(), speed[axis] = 0.1 * random.normal();
   for (int i = 0; i < 24; ++i) {
@@ -31,17 +31,17 @@ Stretch straight(Random& random) {
 }
 
 struct Tried {
-  NoiseStrength noise;
+  camera::NoiseStrength noise;
   double time, memory;  // s
 };
 
-double log_likelihood(const std::vector<Stretch>& stretches, const Tried& tried) {
-  std::vector<Rungs> rungs;
-  for (const Stretch& s : stretches) {
-    const Steps steps(s, tried.time, tried.memory, 0);
-    for (std::size_t axis = 0; axis < 3; ++axis) rungs.push_back(rung_likelihoods(s, axis, steps, tried.noise));
+double log_likelihood(const std::vector<camera::Stretch>& stretches, const Tried& tried) {
+  std::vector<camera::Rungs> rungs;
+  for (const camera::Stretch& s : stretches) {
+    const camera::Steps steps(s, tried.time, tried.memory, 0);
+    for (std::size_t axis = 0; axis < 3; ++axis) rungs.push_back(camera::rung_likelihoods(s, axis, steps, tried.noise));
   }
-  const std::vector<double> each = averaged_over_ladder(rungs);
+  const std::vector<double> each = camera::averaged_over_ladder(rungs);
   return std::accumulate(each.begin(), each.end(), 0.0);
 }
 
@@ -49,9 +49,9 @@ double log_likelihood(const std::vector<Stretch>& stretches, const Tried& tried)
 
 TEST_CASE("of beads that do not wander it makes no difference how quickly they would forget it") {
   Random random(11);
-  std::vector<Stretch> stretches;
+  std::vector<camera::Stretch> stretches;
   for (int k = 0; k < 300; ++k) stretches.push_back(straight(random));
-  const NoiseStrength truth{kWhite, kCorrelated};
+  const camera::NoiseStrength truth{kWhite, kCorrelated};
   const double best = log_likelihood(stretches, {truth, kTime, 0.02});
   // With rungs that are equally likely a memory of 3 ms would be more likely by a hundred, and with it slow noise too small and too short.
   // A wandering that is forgotten at once can stand in for slow noise, but must not be preferred.
@@ -64,24 +64,24 @@ TEST_CASE("of beads that do not wander it makes no difference how quickly they w
 
 TEST_CASE("the weights of the ladder are those of its rungs among the stretches") {
   // Three in four can only be on the first rung, the others only on the last: averages are 3/4 and 1/4 of their likelihoods.
-  Rungs low, high;
+  camera::Rungs low, high;
   low.fill(-1000), high.fill(-1000);
   low.front() = -10, high.back() = -12;
-  const std::vector<double> each = averaged_over_ladder({low, low, high, low});
+  const std::vector<double> each = camera::averaged_over_ladder({low, low, high, low});
   CHECK(each[0] == Approx(-10 + std::log(0.75)));
   CHECK(each[2] == Approx(-12 + std::log(0.25)));
   // Where rungs are nearly alike their weights settle slowly, and must all the same: two in five are likelier by e on the last rung, the
   // rest by e^(1/2) on the first. With weight w on the last the mean of ln(1 + w (e - 1)) and ln(e^(1/2) + w (1 - e^(1/2))) is largest at
   // w = 2/5 / (e^(1/2) - 1) * e^(1/2) - 3/5 / (e - 1).
-  Rungs late{}, early{};
+  camera::Rungs late{}, early{};
   late.fill(-1000), early.fill(-1000);
   late.front() = 0, late.back() = 1, early.front() = 0.5, early.back() = 0;
   const double e = std::exp(1.0), root = std::exp(0.5), w = 0.4 * root / (root - 1) - 0.6 / (e - 1);
-  const std::vector<double> mixed = averaged_over_ladder({late, early, early, late, early});
+  const std::vector<double> mixed = camera::averaged_over_ladder({late, early, early, late, early});
   CHECK(mixed[0] == Approx(std::log(1 + w * (e - 1))).margin(0.03));
   CHECK(mixed[1] == Approx(std::log(root + w * (1 - root))).margin(0.03));
   // Where all rungs serve a stretch equally well, the weights do not matter.
-  Rungs any;
+  camera::Rungs any;
   any.fill(-7);
-  CHECK(averaged_over_ladder({any, low, low})[0] == Approx(-7));
+  CHECK(camera::averaged_over_ladder({any, low, low})[0] == Approx(-7));
 }

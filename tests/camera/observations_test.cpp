@@ -8,7 +8,7 @@ using Catch::Matchers::WithinRel;
 namespace {
 
 /// The distance moved, in the direction of no axis: for outliers.
-double moved(const Run& run, std::size_t i) { return std::hypot(run.position[0][i], run.position[1][i], run.position[2][i]); }
+double moved(const recording::Run& run, std::size_t i) { return std::hypot(run.position[0][i], run.position[1][i], run.position[2][i]); }
 
 }  // namespace
 
@@ -19,7 +19,7 @@ TEST_CASE("an observation whose effect is zero gives back the track, to the bit"
         "{kind: noise, correlation_time: 8 ms, growth: 5}", "{kind: error_cut}",
         "{kind: error_cut, spread: 4 mm, per_speed: 2 ms, scatter: 1 mm}", "{kind: gaps}", "{kind: gaps, mean_length: 1 s}",
         "{kind: outliers}", "{kind: outliers, distance: 2 m}", "{kind: frame_error}"}) {
-    const Run run = observe(track, chain_of(link), context_of(1));
+    const recording::Run run = camera::observe(track, chain_of(link), context_of(1));
     INFO(link);
     CHECK(run.time == track.time);
     CHECK(run.position == track.position);
@@ -31,8 +31,8 @@ TEST_CASE("sampling has its rate, its dead time and its evenness") {
   const output::TrackSamples track = resting(400, 500);
   for (const double shape : {1.0, 4.0, 250.0}) {
     for (const double dead : {0.0, 0.002}) {
-      const Run run =
-          observe(track, chain_of(fmt::format("{{kind: sampling, rate: 220 Hz, dead_time: {}, shape: {}}}", dead, shape)), context_of(3));
+      const recording::Run run = camera::observe(
+          track, chain_of(fmt::format("{{kind: sampling, rate: 220 Hz, dead_time: {}, shape: {}}}", dead, shape)), context_of(3));
       const std::vector<double> d = intervals(run);
       const double expected = (1.0 / 220 - dead) / std::sqrt(shape), n = static_cast<double>(d.size());
       INFO("shape " << shape << " dead time " << dead);
@@ -49,7 +49,7 @@ TEST_CASE("sampled positions lie on the path, and a pause of the track stays one
   const auto cut = [&](std::vector<double>& v) { v.erase(v.begin() + 10000, v.begin() + 14000); };  // 5 to 7 s
   cut(track.time);
   for (auto& p : track.position) cut(p);
-  const Run run = observe(track, chain_of("{kind: sampling, rate: 300 Hz}"), context_of(5));
+  const recording::Run run = camera::observe(track, chain_of("{kind: sampling, rate: 300 Hz}"), context_of(5));
   REQUIRE(run.size() > 5000);
   for (std::size_t i = 0; i < run.size(); ++i) {
     CHECK_FALSE((run.time[i] > 5.0 && run.time[i] < 6.9995));
@@ -59,30 +59,31 @@ TEST_CASE("sampled positions lie on the path, and a pause of the track stays one
 
 TEST_CASE("location_blur draws a circle in by sin(wT/2)/(wT/2) and leaves a straight path") {
   const double window = 0.02, omega = 40;
-  const Run circle = observe(circling(2, 5000, 0.1, omega), chain_of("{kind: location_blur, window: 20 ms}"), context_of(1));
+  const recording::Run circle =
+      camera::observe(circling(2, 5000, 0.1, omega), chain_of("{kind: location_blur, window: 20 ms}"), context_of(1));
   const double factor = std::sin(omega * window / 2) / (omega * window / 2);
   for (std::size_t i = 100; i + 100 < circle.size(); i += 97) {
     CHECK_THAT(std::hypot(circle.position[0][i], circle.position[1][i]), WithinRel(0.1 * factor, 1e-5));
   }
   output::TrackSamples line = resting(1, 2000);
   for (std::size_t i = 0; i < line.size(); ++i) line.position[1][i] = 3 + 1.5 * line.time[i];
-  const Run straight = observe(line, chain_of("{kind: location_blur, window: 20 ms}"), context_of(1));
+  const recording::Run straight = camera::observe(line, chain_of("{kind: location_blur, window: 20 ms}"), context_of(1));
   for (std::size_t i = 0; i < straight.size(); i += 50) CHECK_THAT(straight.position[1][i], WithinAbs(line.position[1][i], 1e-12));
-  CHECK_THROWS_WITH(observe(resting(10, 20), chain_of("{kind: location_blur, window: 5 ms}"), context_of(1)),
+  CHECK_THROWS_WITH(camera::observe(resting(10, 20), chain_of("{kind: location_blur, window: 5 ms}"), context_of(1)),
                     Catch::Contains("camera.yaml:3") && Catch::Contains("before sampling"));
 }
 
 TEST_CASE("noise has its deviation on each axis, its memory, and grows with distance") {
   const double rate = 500, time = 0.01;
   const auto run_at = [&](std::array<double, 3> at, std::uint64_t seed) {
-    return observe(resting(400, rate, at),
-                   chain_of("{kind: noise, white: [0.4, 0.5, 0.6, mm], correlated: [0.3, 0.2, 0, mm], "
-                            "correlation_time: 10 ms, growth: 8}"),
-                   context_of(seed));
+    return camera::observe(resting(400, rate, at),
+                           chain_of("{kind: noise, white: [0.4, 0.5, 0.6, mm], correlated: [0.3, 0.2, 0, mm], "
+                                    "correlation_time: 10 ms, growth: 8}"),
+                           context_of(seed));
   };
   const double white[] = {4e-4, 5e-4, 6e-4}, correlated[] = {3e-4, 2e-4, 0};
   for (const double distance : {0.0, 0.1}) {
-    const Run run = run_at({distance, 0, 0.03}, 7);  // the mill's axis goes from z = 0 to 60 mm
+    const recording::Run run = run_at({distance, 0, 0.03}, 7);  // the mill's axis goes from z = 0 to 60 mm
     const double factor = 1 + 8 * distance, n = static_cast<double>(run.size()), independent = n / (rate * 2 * time);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double expected = factor * std::hypot(white[axis], correlated[axis]);
@@ -102,10 +103,11 @@ TEST_CASE("noise has its deviation on each axis, its memory, and grows with dist
 TEST_CASE("error_cut loses beads by speed and distance as the normal integral says") {
   const auto kept = [](double radius, double speed) {
     const output::TrackSamples track = circling(100, 400, radius, speed / radius);
-    const Run run = observe(track,
-                            chain_of("{kind: error_cut, cut: 9 mm, spread: 4 mm, per_distance: 0.02, per_speed: 2 ms, scatter: 0.8 mm, "
-                                     "speed_window: 0.02}"),
-                            context_of(11));
+    const recording::Run run =
+        camera::observe(track,
+                        chain_of("{kind: error_cut, cut: 9 mm, spread: 4 mm, per_distance: 0.02, per_speed: 2 ms, scatter: 0.8 mm, "
+                                 "speed_window: 0.02}"),
+                        context_of(11));
     for (const double u : run.spread) CHECK(u <= 9e-3);
     return static_cast<double>(run.size()) / static_cast<double>(track.size());
   };
@@ -126,8 +128,8 @@ TEST_CASE("in a periodic slice a bead is as far from the middle as its nearest i
   TrackContext context = context_of(11);  // ends at 0 and 60 mm
   context.period = context.mill_high - context.mill_low;
   const auto kept = [&](double z, const std::string& middle) {
-    const Camera camera = chain_of("{kind: error_cut, cut: 5 mm, spread: 4 mm, per_distance: 0.1, scatter: 0" + middle + "}");
-    return observe(resting(1, 100, {0, 0, z}), camera, context).size() == 100;  // within 10 mm of the middle
+    const camera::Camera camera = chain_of("{kind: error_cut, cut: 5 mm, spread: 4 mm, per_distance: 0.1, scatter: 0" + middle + "}");
+    return camera::observe(resting(1, 100, {0, 0, z}), camera, context).size() == 100;  // within 10 mm of the middle
   };
   for (const double image : {-30, -1, 0, 1, 7}) {
     INFO(image);
@@ -141,7 +143,8 @@ TEST_CASE("in a periodic slice a bead is as far from the middle as its nearest i
 }
 
 TEST_CASE("gaps come at their rate with their mean length") {
-  const Run run = observe(resting(20000, 100), chain_of("{kind: gaps, rate: 0.1 Hz, mean_length: 0.9 s}"), context_of(13));
+  const recording::Run run =
+      camera::observe(resting(20000, 100), chain_of("{kind: gaps, rate: 0.1 Hz, mean_length: 0.9 s}"), context_of(13));
   std::vector<double> gaps;
   for (const double d : intervals(run)) {
     if (d > 0.015) gaps.push_back(d - 0.01);
@@ -155,7 +158,8 @@ TEST_CASE("gaps come at their rate with their mean length") {
 }
 
 TEST_CASE("outliers have their share and their distance") {
-  const Run run = observe(resting(400, 500), chain_of("{kind: outliers, fraction: 0.01, distance: 2 m}"), context_of(17));
+  const recording::Run run =
+      camera::observe(resting(400, 500), chain_of("{kind: outliers, fraction: 0.01, distance: 2 m}"), context_of(17));
   std::vector<double> far;
   for (std::size_t i = 0; i < run.size(); ++i) {
     if (moved(run, i) > 0) far.push_back(moved(run, i));
@@ -168,7 +172,7 @@ TEST_CASE("outliers have their share and their distance") {
 TEST_CASE("frame_error shifts, turns and stretches, and its clock goes wrong") {
   const output::TrackSamples track = resting(0.1, 100, {0.1, 0.02, 0.03});
   const auto at = [&](const std::string& values) {
-    const Run run = observe(track, chain_of("{kind: frame_error, " + values + "}"), context_of(1));
+    const recording::Run run = camera::observe(track, chain_of("{kind: frame_error, " + values + "}"), context_of(1));
     return std::array<double, 3>{run.position[0][0], run.position[1][0], run.position[2][0]};
   };
   CHECK(at("offset_x: 1.4 mm, offset_y: -0.9 mm") == std::array<double, 3>{0.1 + 1.4e-3, 0.02 - 0.9e-3, 0.03});
@@ -182,6 +186,6 @@ TEST_CASE("frame_error shifts, turns and stretches, and its clock goes wrong") {
   CHECK_THAT(about_y[2], WithinAbs(-0.1, 1e-15));
   CHECK_THAT(about_y[0], WithinAbs(0.03, 1e-15));
   CHECK_THAT(at("scale: 0.5 %")[0], WithinAbs(0.1005, 1e-15));
-  const Run late = observe(track, chain_of("{kind: frame_error, clock: 2 %}"), context_of(1));
+  const recording::Run late = camera::observe(track, chain_of("{kind: frame_error, clock: 2 %}"), context_of(1));
   for (std::size_t i = 0; i < late.size(); ++i) CHECK_THAT(late.time[i], WithinRel(1.02 * track.time[i], 1e-14) || WithinAbs(0, 1e-300));
 }

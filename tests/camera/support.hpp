@@ -15,7 +15,6 @@
 namespace camera_test {
 
 using namespace millscope;
-using namespace millscope::studies;
 
 inline const host::Registry& registry() {
   static const host::Registry r({{std::string(MILLSCOPE_BINARY_DIR) + "/lib/millscope/plugins"}, false, {}});
@@ -23,8 +22,8 @@ inline const host::Registry& registry() {
 }
 
 /// A chain of one link: chain_of("{kind: noise, …}").
-inline Camera chain_of(const std::string& link) {
-  return parse_camera("schema_version: 1\nobservations:\n  link: " + link + "\n", "camera.yaml", registry());
+inline camera::Camera chain_of(const std::string& link) {
+  return camera::parse_camera("schema_version: 1\nobservations:\n  link: " + link + "\n", "camera.yaml", registry());
 }
 
 /// A bead at rest, sampled at `rate` for `seconds`.
@@ -63,7 +62,7 @@ inline double deviation(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size() - 1));
 }
 
-inline std::vector<double> intervals(const Run& run) {
+inline std::vector<double> intervals(const recording::Run& run) {
   std::vector<double> result;
   for (std::size_t i = 1; i < run.size(); ++i) result.push_back(run.time[i] - run.time[i - 1]);
   return result;

@@ -78,7 +78,7 @@ TEST_CASE("sets are recordings of drawn mills, and tell nothing of what was draw
     CHECK(a.theta[0].second > 0.1 + 0.15 * 0.5 - 1e-3);
     CHECK(a.theta[0].second < 0.6 - 0.15 * 0.5 + 1e-3);
     const fs::path recording = made.sets / a.set / "r_fast.yaml";
-    const studies::Recording r = studies::read_recording(recording);
+    const recording::Recording r = recording::read_recording(recording);
     CHECK(r.runs.size() == 6);
     CHECK(*r.condition.filling == Approx(0.395));  // as believed
     CHECK(r.condition.geometry.empty());

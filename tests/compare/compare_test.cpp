@@ -9,14 +9,14 @@
 #include "studies/analysis/mirror.hpp"
 #include "studies/compare/elements.hpp"
 
-using namespace millscope::studies;
+using namespace millscope;
 using compare_test::make_results;
 using host_test::refusal;
 
 namespace {
 
-const ComparedObservable* find(const Comparison& c, const std::string& name) {
-  for (const ComparedObservable& o : c.observables) {
+const compare::ComparedObservable* find(const compare::Comparison& c, const std::string& name) {
+  for (const compare::ComparedObservable& o : c.observables) {
     if (o.name == name) return &o;
   }
   return nullptr;
@@ -29,8 +29,8 @@ bool mentions(const std::vector<std::string>& texts, const std::string& part) {
   return false;
 }
 
-ResultArray& array_named(ResultSet& results, const std::string& name) {
-  for (ResultArray& a : results.arrays) {
+analysis::ResultArray& array_named(analysis::ResultSet& results, const std::string& name) {
+  for (analysis::ResultArray& a : results.arrays) {
     if (a.analyzer + "." + a.name == name) return a;
   }
   throw std::runtime_error("no " + name);
@@ -39,8 +39,8 @@ ResultArray& array_named(ResultSet& results, const std::string& name) {
 }  // namespace
 
 TEST_CASE("two runs of the same mill do not differ") {
-  const Comparison c = compare(make_results({.seed = 1}), make_results({.seed = 2}), {});
-  CHECK(c.verdict_kind == Verdict::no_difference);
+  const compare::Comparison c = compare::compare(make_results({.seed = 1}), make_results({.seed = 2}), {});
+  CHECK(c.verdict_kind == compare::Verdict::no_difference);
   CHECK(c.verdict == "no difference at 5 % family-wise in 8 observables");
   CHECK(c.given.size() == 1);
   CHECK(c.notes.empty());
@@ -48,40 +48,42 @@ TEST_CASE("two runs of the same mill do not differ") {
 }
 
 TEST_CASE("a power that differs is found, and nothing else is") {
-  const Comparison c = compare(make_results({.seed = 3}), make_results({.seed = 4, .power = 0.6}), {});  // 5.4 standard errors
-  REQUIRE(c.verdict_kind == Verdict::differ);
+  const compare::Comparison c =
+      compare::compare(make_results({.seed = 3}), make_results({.seed = 4, .power = 0.6}), {});  // 5.4 standard errors
+  REQUIRE(c.verdict_kind == compare::Verdict::differ);
   CHECK(c.verdict == "1 of 8 observables differ at 5 % family-wise; strongest: power.power_gravity");
-  const ComparedElement& e = c.observables[0].elements[0];
+  const compare::ComparedElement& e = c.observables[0].elements[0];
   CHECK(e.b - e.a == Approx(0.6).margin(0.35));
   CHECK(e.test.high - e.test.low == Approx(2 * 1.665 * 0.5 * std::sqrt(2.0 / 40)).epsilon(0.25));  // Student's 95 % point at 78
 }
 
 TEST_CASE("a region that differs is named as an engineer would") {
-  const Comparison c = compare(make_results({.seed = 5}), make_results({.seed = 6, .speed = 0.05}), {});  // 2.2 standard errors in a cell
-  REQUIRE(c.verdict_kind == Verdict::differ);
+  const compare::Comparison c =
+      compare::compare(make_results({.seed = 5}), make_results({.seed = 6, .speed = 0.05}), {});  // 2.2 standard errors in a cell
+  REQUIRE(c.verdict_kind == compare::Verdict::differ);
   CHECK(c.observables[0].name == "pept_grid.speed by region");
-  const ComparedElement& e = c.observables[0].elements[c.observables[0].strongest];
+  const compare::ComparedElement& e = c.observables[0].elements[c.observables[0].strongest];
   CHECK(e.where.find("0–45° past 6 o'clock") != std::string::npos);
   CHECK(find(c, "pept_grid.velocity_x by region")->adjusted_p > 0.05);
 }
 
 TEST_CASE("cells are named by place, radius and clock") {
   const millscope::base::MillPlace clockwise{0.15, -1};
-  CHECK(place_text(-0.105, 0.0, clockwise) == "x −105 mm, y 0 mm (0.70 R, 90° past 6 o'clock)");
-  CHECK(place_text(0.105, 0.0, {0.15, 1}) == "x 105 mm, y 0 mm (0.70 R, 90° past 6 o'clock)");
-  CHECK(place_text(0.075, -0.1299, clockwise) == "x 75 mm, y −130 mm (1.00 R, 30° before 6 o'clock)");
-  CHECK(place_text(0.01, 0.02, {}) == "x 10 mm, y 20 mm");
+  CHECK(compare::place_text(-0.105, 0.0, clockwise) == "x −105 mm, y 0 mm (0.70 R, 90° past 6 o'clock)");
+  CHECK(compare::place_text(0.105, 0.0, {0.15, 1}) == "x 105 mm, y 0 mm (0.70 R, 90° past 6 o'clock)");
+  CHECK(compare::place_text(0.075, -0.1299, clockwise) == "x 75 mm, y −130 mm (1.00 R, 30° before 6 o'clock)");
+  CHECK(compare::place_text(0.01, 0.02, {}) == "x 10 mm, y 20 mm");
 }
 
 TEST_CASE("of two senses one is mirrored, and it is said") {
-  const ResultSet a = make_results({.seed = 7}), b = make_results({.seed = 8, .power = 0.6});
+  const analysis::ResultSet a = make_results({.seed = 7}), b = make_results({.seed = 8, .power = 0.6});
   std::vector<std::string> done;
-  const ResultSet turned = mirrored(b, done);
+  const analysis::ResultSet turned = analysis::mirrored(b, done);
   CHECK(turned.meta.context.omega == 6);
-  const Comparison plain = compare(a, b, {}), across = compare(a, turned, {});
+  const compare::Comparison plain = compare::compare(a, b, {}), across = compare::compare(a, turned, {});
   REQUIRE(across.observables.size() == plain.observables.size());
   for (std::size_t i = 0; i < plain.observables.size(); ++i) {
-    const ComparedObservable &x = plain.observables[i], &y = across.observables[i];
+    const compare::ComparedObservable &x = plain.observables[i], &y = across.observables[i];
     CHECK(x.name == y.name);
     CHECK(x.adjusted_p == y.adjusted_p);
     REQUIRE(x.elements.size() == y.elements.size());
@@ -95,20 +97,20 @@ TEST_CASE("of two senses one is mirrored, and it is said") {
 }
 
 TEST_CASE("an unknown sense is taken for the other's, and it is said") {
-  ResultSet b = make_results({.seed = 8});
+  analysis::ResultSet b = make_results({.seed = 8});
   b.meta.context.omega = 0;
-  CHECK(mentions(compare(make_results({.seed = 7}), b, {}).notes, "the turning sense of B is unknown"));
+  CHECK(mentions(compare::compare(make_results({.seed = 7}), b, {}).notes, "the turning sense of B is unknown"));
 }
 
 TEST_CASE("with too few blocks there is no verdict") {
-  const Comparison c = compare(make_results({.seed = 1, .blocks = 5}), make_results({.seed = 2, .power = 50}), {});
-  CHECK(c.verdict_kind == Verdict::cannot_tell);
+  const compare::Comparison c = compare::compare(make_results({.seed = 1, .blocks = 5}), make_results({.seed = 2, .power = 50}), {});
+  CHECK(c.verdict_kind == compare::Verdict::cannot_tell);
   CHECK(c.verdict == "cannot tell: no result rests on 10 independent blocks in both (A has 5 blocks, B 40); analyse longer spans");
   CHECK(mentions(c.not_judged, "power.power_gravity: rests on fewer than 10 independent blocks"));
 }
 
 TEST_CASE("given quantities and conditions that differ are told, not judged") {
-  const Comparison c = compare(make_results({.seed = 1}), make_results({.seed = 2, .omega = -5, .critical = 7.5}), {});
+  const compare::Comparison c = compare::compare(make_results({.seed = 1}), make_results({.seed = 2, .omega = -5, .critical = 7.5}), {});
   REQUIRE(c.given.size() == 2);
   CHECK(c.given.front() == "models.critical_speed: 8.0000 rad/s in A, 7.5000 rad/s in B");
   CHECK(mentions(c.notes, "the turning speed is 57.30 rpm in A and 47.75 rpm in B"));
@@ -117,70 +119,70 @@ TEST_CASE("given quantities and conditions that differ are told, not judged") {
 
 TEST_CASE("how much data there are is told, never judged") {
   // 40 s against 160 s: 75 standard errors.
-  const ResultSet a = make_results({.seed = 1}), b = make_results({.seed = 2, .blocks = 160});
-  const Comparison c = compare(a, b, {});
-  CHECK(c.verdict_kind == Verdict::no_difference);
+  const analysis::ResultSet a = make_results({.seed = 1}), b = make_results({.seed = 2, .blocks = 160});
+  const compare::Comparison c = compare::compare(a, b, {});
+  CHECK(c.verdict_kind == compare::Verdict::no_difference);
   CHECK(find(c, "power.seconds") == nullptr);
   CHECK(mentions(c.given, "power.seconds: "));
   CHECK(mentions(c.given, "how much data"));
   // Nor does its shape stand in the way.
-  ResultSet other = b;
+  analysis::ResultSet other = b;
   array_named(other, "power.seconds").unit = "min";
-  CHECK_NOTHROW(compare(a, other, {}));
+  CHECK_NOTHROW(compare::compare(a, other, {}));
   // Without the bit it is a difference like any other.
-  ResultSet plain_a = a, plain_b = b;
+  analysis::ResultSet plain_a = a, plain_b = b;
   array_named(plain_a, "power.seconds").traits = array_named(plain_b, "power.seconds").traits = 0;
-  CHECK(compare(plain_a, plain_b, {}).verdict_kind == Verdict::differ);
+  CHECK(compare::compare(plain_a, plain_b, {}).verdict_kind == compare::Verdict::differ);
 }
 
 TEST_CASE("a cell that one side never visited is not judged") {
   // As `analyze` writes it, and as earlier results had it: exactly zero.
-  for (const std::uint8_t flags : {std::uint8_t{kNoUncertainty}, std::uint8_t{0}}) {
-    ResultSet a = make_results({.seed = 1});
-    const ResultSet b = make_results({.seed = 2});
-    ResultArray& x = array_named(a, "distributions.x_percent");
+  for (const std::uint8_t flags : {std::uint8_t{analysis::kNoUncertainty}, std::uint8_t{0}}) {
+    analysis::ResultSet a = make_results({.seed = 1});
+    const analysis::ResultSet b = make_results({.seed = 2});
+    analysis::ResultArray& x = array_named(a, "distributions.x_percent");
     const double none = flags == 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
     x.value[0] = 0, x.sem[0] = x.low[0] = x.high[0] = none, x.flags[0] = flags, x.effective_blocks[0] = 40;
     for (std::size_t r = 0; r < x.draws.size(); r += x.size()) x.draws[r] = 0;
-    const Comparison c = compare(a, b, {.only = {"distributions.x_percent"}});
+    const compare::Comparison c = compare::compare(a, b, {.only = {"distributions.x_percent"}});
     REQUIRE(c.observables.size() == 1);
     CHECK(c.observables[0].elements.size() == x.size() - 1);
     CHECK(c.observables[0].too_few == 1);
-    CHECK(c.verdict_kind == Verdict::no_difference);
+    CHECK(c.verdict_kind == compare::Verdict::no_difference);
   }
 }
 
 TEST_CASE("other grids and units are refused, with the remedy") {
-  const ResultSet a = make_results({.seed = 1});
-  const std::string grids = refusal([&] { compare(a, make_results({.seed = 2, .cells = 10}), {.only = {"pept_grid"}}); });
+  const analysis::ResultSet a = make_results({.seed = 1});
+  const std::string grids = refusal([&] { compare::compare(a, make_results({.seed = 2, .cells = 10}), {.only = {"pept_grid"}}); });
   CHECK(grids.find("pept_grid.speed: the grids differ: y_edges is 13 values from −0.1500 to 0.1500 m in A and 11 values") == 0);
   CHECK(grids.find("--without pept_grid") != std::string::npos);
-  CHECK_NOTHROW(compare(a, make_results({.seed = 2, .cells = 10}), {.without = {"pept_grid", "distributions"}}));
-  ResultSet b = make_results({.seed = 2});
+  CHECK_NOTHROW(compare::compare(a, make_results({.seed = 2, .cells = 10}), {.without = {"pept_grid", "distributions"}}));
+  analysis::ResultSet b = make_results({.seed = 2});
   array_named(b, "power.power_gravity").unit = "kW";
-  CHECK(refusal([&] { compare(a, b, {}); }).find("power.power_gravity: the units differ: W in A, kW in B") == 0);
+  CHECK(refusal([&] { compare::compare(a, b, {}); }).find("power.power_gravity: the units differ: W in A, kW in B") == 0);
   b = make_results({.seed = 2});
   for (double& edge : array_named(b, "distributions.x_edges").value) edge *= 1.01;
-  CHECK(refusal([&] { compare(a, b, {}); }).find("distributions.x_percent: the grids differ") == 0);
+  CHECK(refusal([&] { compare::compare(a, b, {}); }).find("distributions.x_percent: the grids differ") == 0);
 }
 
 TEST_CASE("what is not there cannot be chosen") {
-  const ResultSet a = make_results({.seed = 1}), b = make_results({.seed = 2});
-  CHECK(refusal([&] { compare(a, b, {.only = {"pept_gird"}}); }).find("--only pept_gird: neither of the results has it") == 0);
-  CHECK(compare(a, b, {.only = {"pept_grid.speed"}}).observables.size() == 2);
-  CHECK(compare(a, b, {.without = {"pept_grid", "power.power_gravity"}}).observables.size() == 3);
-  ResultSet less = b;
-  std::erase_if(less.arrays, [](const ResultArray& x) { return x.name == "power_gravity"; });
-  CHECK(mentions(compare(a, less, {}).not_judged, "power.power_gravity: only in A"));
+  const analysis::ResultSet a = make_results({.seed = 1}), b = make_results({.seed = 2});
+  CHECK(refusal([&] { compare::compare(a, b, {.only = {"pept_gird"}}); }).find("--only pept_gird: neither of the results has it") == 0);
+  CHECK(compare::compare(a, b, {.only = {"pept_grid.speed"}}).observables.size() == 2);
+  CHECK(compare::compare(a, b, {.without = {"pept_grid", "power.power_gravity"}}).observables.size() == 3);
+  analysis::ResultSet less = b;
+  std::erase_if(less.arrays, [](const analysis::ResultArray& x) { return x.name == "power_gravity"; });
+  CHECK(mentions(compare::compare(a, less, {}).not_judged, "power.power_gravity: only in A"));
 }
 
 TEST_CASE("rounding errors of a fraction are no difference") {
-  ResultSet a = make_results({.seed = 1}), b = make_results({.seed = 2});
-  for (ResultSet* r : {&a, &b}) {
-    ResultArray& outside = array_named(*r, "power.centre_of_mass_x");
+  analysis::ResultSet a = make_results({.seed = 1}), b = make_results({.seed = 2});
+  for (analysis::ResultSet* r : {&a, &b}) {
+    analysis::ResultArray& outside = array_named(*r, "power.centre_of_mass_x");
     outside.name = "outside_fraction", outside.unit = "1";
     outside.value[0] = r == &a ? 4e-15 : -60e-15, outside.sem[0] = 2e-15;
     for (float& draw : outside.draws) draw *= 1e-12F;
   }
-  CHECK(find(compare(a, b, {}), "power.outside_fraction") == nullptr);
+  CHECK(find(compare::compare(a, b, {}), "power.outside_fraction") == nullptr);
 }

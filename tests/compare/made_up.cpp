@@ -8,7 +8,7 @@
 namespace compare_test {
 namespace {
 
-using namespace millscope::studies;
+using namespace millscope;
 using millscope::Random;
 
 constexpr std::size_t kDraws = 200;
@@ -27,7 +27,7 @@ class Maker {
 
   Random& random() { return random_; }
 
-  void add(ResultArray array, const std::vector<std::vector<double>>& blocks) {
+  void add(analysis::ResultArray array, const std::vector<std::vector<double>>& blocks) {
     const double n = static_cast<double>(blocks_);
     const std::size_t size = blocks[0].size();
     array.value.assign(size, 0), array.sem.assign(size, 0);
@@ -42,7 +42,7 @@ class Maker {
       array.low.push_back(array.value[k] - 1.68 * array.sem[k]), array.high.push_back(array.value[k] + 1.7 * array.sem[k]);
     }
     array.effective_blocks.assign(size, n);
-    array.flags.assign(size, blocks_ < 10 ? static_cast<std::uint8_t>(kFewBlocks) : std::uint8_t{0});
+    array.flags.assign(size, blocks_ < 10 ? static_cast<std::uint8_t>(analysis::kFewBlocks) : std::uint8_t{0});
     for (const auto& drawn : drawn_) {
       for (std::size_t k = 0; k < size; ++k) {
         double sum = 0;
@@ -53,7 +53,7 @@ class Maker {
     results.arrays.push_back(std::move(array));
   }
 
-  void add_exact(ResultArray array) {
+  void add_exact(analysis::ResultArray array) {
     if (!array.is_axis) {
       array.sem.assign(array.size(), 0), array.low = array.high = array.value;
       array.effective_blocks.assign(array.size(), static_cast<double>(blocks_)), array.flags.assign(array.size(), 0);
@@ -62,7 +62,7 @@ class Maker {
     results.arrays.push_back(std::move(array));
   }
 
-  ResultSet results;
+  analysis::ResultSet results;
 
  private:
   Random random_;
@@ -70,16 +70,16 @@ class Maker {
   std::vector<std::vector<std::size_t>> drawn_;
 };
 
-ResultArray array_of(const char* analyzer, const char* name, const char* unit, std::vector<std::size_t> shape,
-                     std::vector<std::string> axes, std::uint32_t traits = 0, const char* doc = "") {
-  ResultArray array;
+analysis::ResultArray array_of(const char* analyzer, const char* name, const char* unit, std::vector<std::size_t> shape,
+                               std::vector<std::string> axes, std::uint32_t traits = 0, const char* doc = "") {
+  analysis::ResultArray array;
   array.analyzer = analyzer, array.name = name, array.unit = unit, array.doc = doc;
   array.shape = std::move(shape), array.axes = std::move(axes), array.traits = traits;
   return array;
 }
 
 void add_edges(Maker& maker, const char* analyzer, const char* name, std::size_t cells) {
-  ResultArray edges = array_of(analyzer, name, "m", {cells + 1}, {}, name[0] == 'x' ? millscope::kAlongX : 0U);
+  analysis::ResultArray edges = array_of(analyzer, name, "m", {cells + 1}, {}, name[0] == 'x' ? millscope::kAlongX : 0U);
   edges.is_axis = true;
   for (std::size_t i = 0; i <= cells; ++i) edges.value.push_back(kRadius * (2 * static_cast<double>(i) / static_cast<double>(cells) - 1));
   maker.add_exact(std::move(edges));
@@ -93,7 +93,7 @@ void add_numbers(Maker& maker, const MadeUp& recipe) {
   }
   maker.add(array_of("power", "power_gravity", "W", {}, {}), power);
   maker.add(array_of("power", "centre_of_mass_x", "m", {}, {}, millscope::kOdd), place);
-  ResultArray critical = array_of("models", "critical_speed", "rad/s", {}, {});
+  analysis::ResultArray critical = array_of("models", "critical_speed", "rad/s", {}, {});
   critical.value = {recipe.critical};
   maker.add_exact(std::move(critical));
 }
@@ -131,7 +131,8 @@ void add_maps(Maker& maker, const MadeUp& recipe) {
   }
   maker.add(array_of("pept_grid", "speed", "m/s", {n, n}, {"y_edges", "x_edges"}), speed);
   maker.add(array_of("pept_grid", "velocity_x", "m/s", {n, n}, {"y_edges", "x_edges"}, millscope::kOdd), velocity);
-  ResultArray kind = array_of("pept_grid", "kind", "1", {n, n}, {"y_edges", "x_edges"}, 0, "0 nothing, 1 en masse, 2 cascading layer.");
+  analysis::ResultArray kind =
+      array_of("pept_grid", "kind", "1", {n, n}, {"y_edges", "x_edges"}, 0, "0 nothing, 1 en masse, 2 cascading layer.");
   for (std::size_t cell = 0; cell < n * n; ++cell) kind.value.push_back(static_cast<double>((cell + recipe.seed) % 3));
   maker.add_exact(std::move(kind));
   // How long it was watched: 1 s a block, give or take.
@@ -142,12 +143,12 @@ void add_maps(Maker& maker, const MadeUp& recipe) {
 
 }  // namespace
 
-ResultSet make_results(const MadeUp& recipe) {
+analysis::ResultSet make_results(const MadeUp& recipe) {
   Maker maker(recipe);
   add_numbers(maker, recipe);
   add_distribution(maker, recipe);
   add_maps(maker, recipe);
-  ResultMeta& meta = maker.results.meta;
+  analysis::ResultMeta& meta = maker.results.meta;
   meta.name = "made up", meta.source = "recording", meta.description = "made up, 40 s";
   meta.context.mill_radius = kRadius, meta.context.omega = recipe.omega, meta.draws = kDraws;
   for (std::size_t i = 0; i < recipe.blocks; ++i) meta.blocks.push_back({static_cast<double>(i), static_cast<double>(i + 1), 1, 0});

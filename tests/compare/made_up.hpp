@@ -19,6 +19,6 @@ struct MadeUp {
 
 /// power.power_gravity, power.centre_of_mass_x, distributions.x_percent and .x_cumulative, pept_grid.speed and .velocity_x on
 /// cells × cells over a mill of 0.15 m radius, pept_grid.kind (names), models.critical_speed, power.seconds (bookkeeping).
-millscope::studies::ResultSet make_results(const MadeUp& recipe);
+millscope::analysis::ResultSet make_results(const MadeUp& recipe);
 
 }  // namespace compare_test

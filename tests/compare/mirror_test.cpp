@@ -13,7 +13,7 @@
 #include "studies/analysis/analysis.hpp"
 #include "studies/compare/compare.hpp"
 
-using namespace millscope::studies;
+using namespace millscope;
 
 namespace {
 
@@ -96,12 +96,12 @@ std::filesystem::path write_recording(const std::filesystem::path& folder, const
   return file;
 }
 
-ResultSet analyze_file(const std::filesystem::path& file) {
+analysis::ResultSet analyze_file(const std::filesystem::path& file) {
   static const millscope::host::Registry registry({{MILLSCOPE_BINARY_DIR "/lib/millscope/plugins"}, false, {}});
-  AnalysisRequest request;
+  analysis::AnalysisRequest request;
   request.path = file;
   request.overrides = {"resampling.draws=60"};
-  return analyze(request, registry);
+  return analysis::analyze(request, registry);
 }
 
 bool same(double a, double b, double size) { return (std::isnan(a) && std::isnan(b)) || std::abs(a - b) <= 1e-7 * size; }
@@ -110,15 +110,15 @@ bool same(double a, double b, double size) { return (std::isnan(a) && std::isnan
 
 TEST_CASE("the mirror image of a recording gives the mirror image of its results") {
   const host_test::Temporary folder;
-  const ResultSet plain = analyze_file(write_recording(folder.path(), "plain", 1)),
-                  image = analyze_file(write_recording(folder.path(), "image", -1));
+  const analysis::ResultSet plain = analyze_file(write_recording(folder.path(), "plain", 1)),
+                            image = analyze_file(write_recording(folder.path(), "image", -1));
   std::vector<std::string> done;
-  const ResultSet back = mirrored(image, done);
+  const analysis::ResultSet back = analysis::mirrored(image, done);
   CHECK(back.meta.context.omega == Approx(plain.meta.context.omega));
   REQUIRE(back.arrays.size() == plain.arrays.size());
   std::size_t turned = 0;
   for (std::size_t i = 0; i < plain.arrays.size(); ++i) {
-    const ResultArray &x = plain.arrays[i], &y = back.arrays[i];
+    const analysis::ResultArray &x = plain.arrays[i], &y = back.arrays[i];
     REQUIRE(x.name == y.name);
     double size = 1e-5;  // rounding errors about 0
     for (const double v : x.value) size = std::max(size, std::isfinite(v) ? std::abs(v) : 0);
@@ -126,19 +126,19 @@ TEST_CASE("the mirror image of a recording gives the mirror image of its results
     for (std::size_t k = 0; k < x.size(); ++k) wrong += same(x.value[k], y.value[k], size) ? 0 : 1;
     INFO(x.analyzer << "." << x.name << ": " << wrong << " of " << x.size());
     CHECK(wrong <= x.size() / 200);  // a point that lies on the edge between two cells may fall to either side
-    turned += mirror_rule(plain, x).changes_sign ? 1 : 0;
+    turned += analysis::mirror_rule(plain, x).changes_sign ? 1 : 0;
   }
   CHECK(turned > 4);
-  CHECK(compare(plain, image, {}).verdict_kind == Verdict::no_difference);
+  CHECK(compare::compare(plain, image, {}).verdict_kind == compare::Verdict::no_difference);
 }
 
 TEST_CASE("mirroring twice gives back what was there") {
   const host_test::Temporary folder;
-  const ResultSet plain = analyze_file(write_recording(folder.path(), "plain", 1));
+  const analysis::ResultSet plain = analyze_file(write_recording(folder.path(), "plain", 1));
   std::vector<std::string> done;
-  const ResultSet twice = mirrored(mirrored(plain, done), done);
+  const analysis::ResultSet twice = analysis::mirrored(analysis::mirrored(plain, done), done);
   for (std::size_t i = 0; i < plain.arrays.size(); ++i) {
-    const ResultArray &x = plain.arrays[i], &y = twice.arrays[i];
+    const analysis::ResultArray &x = plain.arrays[i], &y = twice.arrays[i];
     for (std::size_t k = 0; k < x.size(); ++k) CHECK((same(x.value[k], y.value[k], std::abs(x.value[k]) + 100)));
     CHECK(x.draws.size() == y.draws.size());
   }

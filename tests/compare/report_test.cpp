@@ -7,7 +7,7 @@
 #include "host/temporary.hpp"
 #include "made_up.hpp"
 
-using namespace millscope::studies;
+using namespace millscope;
 using compare_test::make_results;
 
 namespace {
@@ -19,12 +19,12 @@ std::vector<std::string> lines_of(const std::filesystem::path& path) {
   return lines;
 }
 
-Comparison example() { return compare(make_results({.seed = 3}), make_results({.seed = 4, .power = 0.6}), {}); }
+compare::Comparison example() { return compare::compare(make_results({.seed = 3}), make_results({.seed = 4, .power = 0.6}), {}); }
 
 }  // namespace
 
 TEST_CASE("the table ranks, marks what differs and lines up") {
-  const std::string table = comparison_table(example(), 3);
+  const std::string table = compare::comparison_table(example(), 3);
   std::istringstream in(table);
   std::string head, first;
   std::getline(in, head), std::getline(in, first);
@@ -36,12 +36,12 @@ TEST_CASE("the table ranks, marks what differs and lines up") {
 
 TEST_CASE("files hold every judged value and can be read by machine") {
   const host_test::Temporary folder;
-  const Comparison c = example();
-  write_comparison(c, folder.path() / "out");
+  const compare::Comparison c = example();
+  compare::write_comparison(c, folder.path() / "out");
   const auto observables = lines_of(folder.path() / "out" / "observables.csv"), elements = lines_of(folder.path() / "out" / "elements.csv");
   CHECK(observables.size() == 1 + c.observables.size());
   std::size_t all = 1;
-  for (const ComparedObservable& o : c.observables) all += o.elements.size();
+  for (const compare::ComparedObservable& o : c.observables) all += o.elements.size();
   CHECK(elements.size() == all);
   CHECK(observables[1].find("1,power.power_gravity,W,1,") == 0);
   std::ifstream in(folder.path() / "out" / "comparison.json");
@@ -56,11 +56,11 @@ TEST_CASE("files hold every judged value and can be read by machine") {
 
 TEST_CASE("every map and curve has a picture, the same on each call") {
   const host_test::Temporary folder;
-  const Comparison c = example();
-  const MillOutline mill{.radius = 0.15, .omega = -6};
-  const auto drawn = draw_comparison(c, folder.path() / "one", mill);
+  const compare::Comparison c = example();
+  const picture::MillOutline mill{.radius = 0.15, .omega = -6};
+  const auto drawn = compare::draw_comparison(c, folder.path() / "one", mill);
   CHECK(drawn.size() == 4);  // two distributions, two maps
-  draw_comparison(c, folder.path() / "two", mill);
+  compare::draw_comparison(c, folder.path() / "two", mill);
   for (const auto& stem : drawn) {
     const auto other = folder.path() / "two" / stem.filename();
     CHECK(lines_of(stem.string() + ".svg") == lines_of(other.string() + ".svg"));

@@ -8,7 +8,7 @@ namespace compare_test {
 namespace {
 
 using millscope::Random;
-using millscope::studies::TestedObservable;
+using millscope::compare::TestedObservable;
 
 constexpr std::size_t kNumbers = 3, kBins = 30, kCells = kMapSide * kMapSide, kAll = kNumbers + 2 * kBins + kCells;
 constexpr std::size_t kSizes[] = {1, 1, 1, kBins, kBins, kCells};

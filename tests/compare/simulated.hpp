@@ -22,7 +22,7 @@ struct Design {
 
 /// Three numbers, two curves of 30 bins and a map of 20 × 20 cells. Numbers are normal and correlated with each other; bins are shares
 /// that sum to one; cells are gamma-distributed (many small values, few large ones) and correlated with their neighbours.
-std::vector<millscope::studies::TestedObservable> simulate(const Design& design, std::uint64_t seed);
+std::vector<millscope::compare::TestedObservable> simulate(const Design& design, std::uint64_t seed);
 
 inline constexpr std::size_t kMapSide = 20;
 inline constexpr std::size_t kMapObservable = 5;  ///< index of the map

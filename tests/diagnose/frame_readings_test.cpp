@@ -31,11 +31,11 @@ const std::string kDoubts =
 const ExpectedMill kMill{0.145, 0.005, true};
 
 /// A recording whose statements are wrong by what a study may doubt.
-studies::Recording misread() {
+recording::Recording misread() {
   test::SyntheticMill mill;
   mill.gravity_degrees = 3;
-  studies::Recording recording = test::make_recording(mill);
-  recording.frame = studies::MillFrame{{mill.axis[0] - 0.004, mill.axis[1] + 0.003}};
+  recording::Recording recording = test::make_recording(mill);
+  recording.frame = recording::MillFrame{{mill.axis[0] - 0.004, mill.axis[1] + 0.003}};
   recording.condition.speed = 1.03 * std::fabs(mill.angular_velocity);
   return recording;
 }
@@ -71,7 +71,7 @@ TEST_CASE("rides and flights tell where the axis stands, which way is down and w
 TEST_CASE("what is not stated cannot be read against") {
   const Scratch folder;
   const Question q = question_of(folder, kDoubts);
-  studies::Recording recording = misread();
+  recording::Recording recording = misread();
   recording.frame.reset();
   recording.condition.speed.reset();
   const std::vector<FrameReading> readings = read_frame(q, kMill, calibrate::Recorded(recording));

@@ -6,12 +6,11 @@
 #include "studies/inspect/inspect.hpp"
 
 using namespace millscope;
-using namespace millscope::studies;
 using test::SyntheticMill;
 
 namespace {
 
-bool holds(const Finding& f, double truth) { return f.estimate && f.estimate->low <= truth && truth <= f.estimate->high; }
+bool holds(const inspect::Finding& f, double truth) { return f.estimate && f.estimate->low <= truth && truth <= f.estimate->high; }
 
 }  // namespace
 
@@ -21,9 +20,9 @@ TEST_CASE("the intervals of axis, speed and radius hold the truth about nine tim
     SyntheticMill mill;
     mill.seed = seed;
     mill.seconds = 40;
-    const MillMotion m = estimate_motion(make_recording(mill));
+    const inspect::MillMotion m = inspect::estimate_motion(make_recording(mill));
     REQUIRE(m.sense == -1);
-    CHECK(m.path_radius.bound == Bound::both);
+    CHECK(m.path_radius.bound == inspect::Bound::both);
     CHECK(std::fabs(m.axis[0].estimate->value - mill.axis[0]) < 1e-3);
     CHECK(std::fabs(m.axis[1].estimate->value - mill.axis[1]) < 1e-3);
     CHECK(std::fabs(m.path_radius.estimate->value - mill.radius) < 1e-3);
@@ -40,7 +39,7 @@ TEST_CASE("a mill that turns the other way is told from its mirror image") {
   SyntheticMill mill;
   mill.angular_velocity = 4;
   mill.radius = 0.23;
-  const MillMotion m = estimate_motion(make_recording(mill));
+  const inspect::MillMotion m = inspect::estimate_motion(make_recording(mill));
   CHECK(m.sense == 1);
   CHECK_THAT(m.angular_velocity(), Catch::Matchers::WithinRel(4, 0.01));
   CHECK_THAT(m.path_radius.estimate->value, Catch::Matchers::WithinAbs(0.23, 1e-3));
@@ -50,7 +49,7 @@ TEST_CASE("gravity is found in flight, also when the camera is turned") {
   for (const double degrees : {0.0, -6.0, 12.0}) {
     SyntheticMill mill;
     mill.gravity_degrees = degrees;
-    const FreeFlight f = measure_flight(make_recording(mill));
+    const inspect::FreeFlight f = inspect::measure_flight(make_recording(mill));
     REQUIRE(f.angle_degrees.estimate);
     CHECK_THAT(f.angle_degrees.estimate->value, Catch::Matchers::WithinAbs(degrees, 1));
     CHECK(holds(f.angle_degrees, degrees));
@@ -64,7 +63,8 @@ TEST_CASE("noise comes from the points") {
   for (const double noise : {0.3e-3, 1.0e-3}) {
     SyntheticMill mill;
     mill.noise = noise;
-    for (const Finding& f : measure_noise(make_recording(mill))) CHECK_THAT(f.estimate->value, Catch::Matchers::WithinRel(noise, 0.12));
+    for (const inspect::Finding& f : inspect::measure_noise(make_recording(mill)))
+      CHECK_THAT(f.estimate->value, Catch::Matchers::WithinRel(noise, 0.12));
   }
 }
 
@@ -73,21 +73,21 @@ TEST_CASE("locations of fast beads that are lost are missed by their rate") {
   mill.seconds = 120;
   mill.fast = 1.2;
   mill.lost_when_fast = 0.5;
-  const Recording recording = make_recording(mill);
-  const Losses lossy = inspect(recording).losses;
+  const recording::Recording recording = make_recording(mill);
+  const inspect::Losses lossy = inspect::inspect(recording).losses;
   REQUIRE(lossy.ranges.size() == 7);
   CHECK_THAT(lossy.ranges.back().lost.value, Catch::Matchers::WithinAbs(0.5, 0.12));
   CHECK(lossy.ranges[3].lost.value < 0.15);
   mill.lost_when_fast = 0;
-  const Losses whole = inspect(make_recording(mill)).losses;
+  const inspect::Losses whole = inspect::inspect(make_recording(mill)).losses;
   CHECK(whole.ranges.back().lost.value < 0.12);
   CHECK(whole.missed_falling.estimate->value < 0.08);
 }
 
 TEST_CASE("circulations are counted, and their time follows the motion") {
   SyntheticMill mill;
-  const Recording recording = make_recording(mill);
-  const Inspection i = inspect(recording);
+  const recording::Recording recording = make_recording(mill);
+  const inspect::Inspection i = inspect::inspect(recording);
   CHECK(i.circulations.count > 60);
   CHECK_THAT(static_cast<double>(i.circulations.count) * i.circulations.time.estimate->value,
              Catch::Matchers::WithinRel(mill.seconds, 0.1));
@@ -99,9 +99,9 @@ TEST_CASE("circulations are counted, and their time follows the motion") {
 TEST_CASE("the interval of the mean beside the axis shrinks with the recording's length") {
   SyntheticMill mill;
   mill.seconds = 30;
-  const millscope::base::Interval90 brief = *inspect(make_recording(mill)).mean_offset.estimate;
+  const millscope::base::Interval90 brief = *inspect::inspect(make_recording(mill)).mean_offset.estimate;
   mill.seconds = 270;
-  const millscope::base::Interval90 lasting = *inspect(make_recording(mill)).mean_offset.estimate;
+  const millscope::base::Interval90 lasting = *inspect::inspect(make_recording(mill)).mean_offset.estimate;
   CHECK(lasting.high - lasting.low < 0.6 * (brief.high - brief.low));
   CHECK(lasting.value > brief.low);
   CHECK(lasting.value < brief.high);
@@ -110,9 +110,9 @@ TEST_CASE("the interval of the mean beside the axis shrinks with the recording's
 TEST_CASE("a charge that slips gives a bound on the speed, not the speed") {
   SyntheticMill mill;
   mill.slip = 0.4;
-  const MillMotion m = estimate_motion(make_recording(mill));
+  const inspect::MillMotion m = inspect::estimate_motion(make_recording(mill));
   REQUIRE(m.speed.estimate);
-  CHECK(m.speed.bound == Bound::at_least);
+  CHECK(m.speed.bound == inspect::Bound::at_least);
   CHECK(m.speed.estimate->low < 6);
   CHECK(std::isinf(m.speed.estimate->high));
 }
@@ -120,22 +120,22 @@ TEST_CASE("a charge that slips gives a bound on the speed, not the speed") {
 TEST_CASE("a tracer that never touches the shell gives a bound on its radius") {
   SyntheticMill mill;
   mill.at_shell = 0;
-  const MillMotion m = estimate_motion(make_recording(mill));
+  const inspect::MillMotion m = inspect::estimate_motion(make_recording(mill));
   REQUIRE(m.path_radius.estimate);
-  CHECK(m.path_radius.bound == Bound::at_least);
+  CHECK(m.path_radius.bound == inspect::Bound::at_least);
   CHECK(m.path_radius.estimate->low < 0.145);
 }
 
 TEST_CASE("several runs are read as one recording") {
   SyntheticMill mill;
   mill.seconds = 20;
-  Recording recording = make_recording(mill);
+  recording::Recording recording = make_recording(mill);
   const double alone = recording.runs[0].time.back() - recording.runs[0].time.front();
-  const std::size_t rides = estimate_motion(recording).rides;
+  const std::size_t rides = inspect::estimate_motion(recording).rides;
   mill.seed = 2;
   recording.runs.push_back(make_recording(mill).runs[0]);
-  CHECK(estimate_motion(recording).rides > rides + rides / 2);
-  const Coverage c = measure_coverage(recording);
+  CHECK(inspect::estimate_motion(recording).rides > rides + rides / 2);
+  const inspect::Coverage c = inspect::measure_coverage(recording);
   CHECK(c.runs == 2);
   CHECK_THAT(c.span, Catch::Matchers::WithinRel(2 * alone, 0.01));
 }

@@ -9,23 +9,21 @@
 #include "tests/skip.hpp"
 
 using namespace millscope;
-using namespace millscope::studies;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 using testing::absent;
-using testing::recording;
 
 namespace {
 
 constexpr double kRpm = 30 / std::numbers::pi;
 
-bool holds(const Finding& f, double truth) { return f.estimate && f.estimate->low <= truth && truth <= f.estimate->high; }
+bool holds(const inspect::Finding& f, double truth) { return f.estimate && f.estimate->low <= truth && truth <= f.estimate->high; }
 
 }  // namespace
 
 TEST_CASE("real rotor: radius and plateaus") {
   if (absent("rotor_calibration.a")) return;
-  const auto rotor = recognise_rotor(read_recording(recording("rotor_calibration.a")));
+  const auto rotor = inspect::recognise_rotor(recording::read_recording(testing::recording("rotor_calibration.a")));
   REQUIRE(rotor);
   CHECK_THAT(rotor->radius.value, WithinAbs(26.6e-3, 0.15e-3));
   CHECK(rotor->radius.low < 26.6e-3);
@@ -37,7 +35,7 @@ TEST_CASE("real rotor: radius and plateaus") {
 
 TEST_CASE("real mill: axis, sense, speed, radius and vertical") {
   if (absent("uct_mill_part1.a")) return;
-  const Inspection i = inspect(read_recording(recording("uct_mill_part1.a")));
+  const inspect::Inspection i = inspect::inspect(recording::read_recording(testing::recording("uct_mill_part1.a")));
   CHECK_FALSE(i.rotor);
   CHECK(i.motion.sense == -1);
   CHECK_THAT(i.motion.speed.estimate->value * kRpm, WithinAbs(36, 0.5));
@@ -58,11 +56,12 @@ TEST_CASE("known mill: the intervals over thirty recordings hold the truth") {
     for (const int percent : {75, 60, 50}) {
       const double speed = 42.3 / std::sqrt(0.290) * percent / 100 / kRpm;
       for (int run = 1; run <= 5; ++run) {
-        const MillMotion m = estimate_motion(read_recording(recording(fmt::format("mill10_{}_{}_{}.a", set, percent, run))));
+        const inspect::MillMotion m =
+            inspect::estimate_motion(recording::read_recording(testing::recording(fmt::format("mill10_{}_{}_{}.a", set, percent, run))));
         REQUIRE(m.sense == -1);
         ++all;
         axis += holds(m.axis[0], 1.4e-3) && holds(m.axis[1], -0.9e-3);
-        if (m.path_radius.bound == Bound::at_least) {
+        if (m.path_radius.bound == inspect::Bound::at_least) {
           CHECK(m.path_radius.estimate->low < 145e-3);
           CHECK(m.speed.estimate->low < speed);
           continue;

@@ -7,10 +7,9 @@
 #include "studies/inspect/report.hpp"
 
 using namespace millscope;
-using namespace millscope::studies;
 
 TEST_CASE("JSON holds the figures, units in the keys, and null where there is none") {
-  const Inspection i = inspect(make_recording(test::SyntheticMill{}));
+  const inspect::Inspection i = inspect::inspect(make_recording(test::SyntheticMill{}));
   const auto j = nlohmann::json::parse(inspection_json(i).dump());
   CHECK(j["mill"]["sense"] == "clockwise");
   CHECK(j["mill"]["axis_x_m"]["value"] == i.motion.axis[0].estimate->value);
@@ -22,13 +21,13 @@ TEST_CASE("JSON holds the figures, units in the keys, and null where there is no
   CHECK(j["verdicts"].size() == i.verdicts.size());
   test::SyntheticMill brief;
   brief.seconds = 0.3;
-  const auto nothing = nlohmann::json::parse(inspection_json(inspect(make_recording(brief))).dump());
+  const auto nothing = nlohmann::json::parse(inspection_json(inspect::inspect(make_recording(brief))).dump());
   CHECK(nothing["mill"]["path_radius_m"]["value"].is_null());
   CHECK_FALSE(nothing["mill"]["path_radius_m"]["note"].get<std::string>().empty());
 }
 
 TEST_CASE("the text names sense, speed and verdicts") {
-  const std::string text = inspection_text(inspect(make_recording(test::SyntheticMill{})));
+  const std::string text = inspection_text(inspect::inspect(make_recording(test::SyntheticMill{})));
   for (const char* part : {"clockwise, z towards the viewer (Omega < 0)", "57.", "rpm", "What it supports", "occupancy maps", "power"}) {
     INFO(part);
     CHECK(text.find(part) != std::string::npos);
@@ -36,11 +35,11 @@ TEST_CASE("the text names sense, speed and verdicts") {
 }
 
 TEST_CASE("a speed that is stated is held against the one found") {
-  Recording recording = make_recording(test::SyntheticMill{});
+  recording::Recording recording = make_recording(test::SyntheticMill{});
   const auto line = [&](double stated) {
     recording.condition.angular_velocity = stated;
     recording.condition.speed = std::fabs(stated);
-    const std::string text = inspection_text(inspect(recording));
+    const std::string text = inspection_text(inspect::inspect(recording));
     const std::size_t at = text.find("speed that is stated");
     return at == std::string::npos ? std::string() : text.substr(at, text.find('\n', at) - at);
   };
@@ -50,21 +49,21 @@ TEST_CASE("a speed that is stated is held against the one found") {
   CHECK(line(-600).find("far outside the interval") != std::string::npos);
   recording.condition = {};
   recording.condition.speed = 6.6;  // without a sense
-  const std::string text = inspection_text(inspect(recording));
+  const std::string text = inspection_text(inspect::inspect(recording));
   CHECK(text.find("63.03 rpm, outside the interval") != std::string::npos);
 }
 
 TEST_CASE("how the files were read is told once for each way") {
-  Recording recording = make_recording(test::SyntheticMill{});
+  recording::Recording recording = make_recording(test::SyntheticMill{});
   recording.runs[0].format = "table, comma: t s (column 2)";
   recording.runs.push_back(recording.runs[0]);
-  const Inspection i = inspect(recording);
+  const inspect::Inspection i = inspect::inspect(recording);
   CHECK(inspection_text(i).find("\nread as table, comma: t s (column 2)\n(intervals") != std::string::npos);
   CHECK(inspection_json(i)["formats"].size() == 1);
 }
 
 TEST_CASE("a rotor's text has its plateaus in rpm") {
-  const std::string text = inspection_text(inspect(make_recording(test::SyntheticRotor{})));
+  const std::string text = inspection_text(inspect::inspect(make_recording(test::SyntheticRotor{})));
   CHECK(text.find("30.0") != std::string::npos);
   CHECK(text.find("57.") != std::string::npos);
   CHECK(text.find("114.") != std::string::npos);

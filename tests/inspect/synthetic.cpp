@@ -85,10 +85,10 @@ class Bead {
   State from_;
 };
 
-studies::Recording wrap(studies::Run run) {
+recording::Recording wrap(recording::Run run) {
   run.name = "synthetic";
   run.report.rows = run.report.used = run.time.size();
-  studies::Recording recording;
+  recording::Recording recording;
   recording.file = "synthetic.a";
   recording.gap_limit = 0.045;
   for (std::size_t i = 1; i < run.size(); ++i) {
@@ -102,10 +102,10 @@ studies::Recording wrap(studies::Run run) {
 
 }  // namespace
 
-studies::Recording make_recording(const SyntheticMill& mill) {
+recording::Recording make_recording(const SyntheticMill& mill) {
   Random random(mill.seed);
   Bead bead(mill, random);
-  studies::Run run;
+  recording::Run run;
   const double turn = mill.gravity_degrees * pi / 180, cosine = std::cos(turn), sine = std::sin(turn);
   for (double time = 0.01; time < mill.seconds;) {
     const double step = -std::log(1 - random.uniform()) / mill.rate;
@@ -120,9 +120,9 @@ studies::Recording make_recording(const SyntheticMill& mill) {
   return wrap(std::move(run));
 }
 
-studies::Recording make_recording(const SyntheticRotor& rotor) {
+recording::Recording make_recording(const SyntheticRotor& rotor) {
   Random random(5);
-  studies::Run run;
+  recording::Run run;
   const auto& a = rotor.axis;
   const double length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
   const std::array<double, 3> n{a[0] / length, a[1] / length, a[2] / length};

@@ -23,7 +23,7 @@ struct SyntheticMill {
   std::uint64_t seed = 1;
 };
 
-studies::Recording make_recording(const SyntheticMill& mill);
+recording::Recording make_recording(const SyntheticMill& mill);
 
 struct SyntheticRotor {
   double radius = 0.03;                     ///< m
@@ -33,6 +33,6 @@ struct SyntheticRotor {
   double rate = 60;                         ///< 1/s
 };
 
-studies::Recording make_recording(const SyntheticRotor& rotor);
+recording::Recording make_recording(const SyntheticRotor& rotor);
 
 }  // namespace millscope::test

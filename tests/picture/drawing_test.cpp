@@ -9,7 +9,7 @@
 #include "studies/picture/picture.hpp"
 
 using millscope::base::text_of;
-using namespace millscope::studies;
+using namespace millscope;
 using host_test::refusal;
 using picture_test::Raster;
 using picture_test::read_png;
@@ -26,7 +26,7 @@ std::vector<double> edges(double low, double high, int cells) {
 }
 
 /// 10 × 10 cells, all without data.
-MapPicture empty_map() {
+picture::MapPicture empty_map() {
   return {.title = "Speed",
           .subtitle = "test · 1.0 s analysed",
           .x = {"x", "m", edges(-0.1, 0.1, 10)},
@@ -34,8 +34,8 @@ MapPicture empty_map() {
           .value = {"mean speed", "m/s", std::vector<double>(100, kNone)}};
 }
 
-CurvePicture two_curves() {
-  Curve a{"a", edges(0, 1, 20), {}, {}, {}}, b = a;
+picture::CurvePicture two_curves() {
+  picture::Curve a{"a", edges(0, 1, 20), {}, {}, {}}, b = a;
   for (int i = 0; i < 20; ++i) {
     a.value.push_back(std::sin(i * 0.3)), b.value.push_back(std::cos(i * 0.3));
     a.low.push_back(a.value.back() - 0.2), a.high.push_back(a.value.back() + 0.2);
@@ -49,18 +49,18 @@ CurvePicture two_curves() {
 
 TEST_CASE("a cell lies where its axes say, with its colour, square, and cells without data have none") {
   const host_test::Temporary folder;
-  MapPicture map = empty_map();
+  picture::MapPicture map = empty_map();
   map.value.values[9 * 10 + 8] = 2;    // second column from the right, uppermost row
   map.value.values[0 * 10 + 0] = 0.8;  // lower left
-  draw_map(map, folder.path() / "map");
+  picture::draw_map(map, folder.path() / "map");
   const Raster raster = read_png(folder.path() / "map.png");
-  const Raster::Spot low = raster.find(to_pixel(sequential_color(0.4)));
+  const Raster::Spot low = raster.find(to_pixel(picture::sequential_color(0.4)));
   CHECK(low.count >= 60 * 60 - 300);  // the frame of the plot covers some
   // the bar, too, ends in the brightest colour: look at the plot alone
   Raster::Spot high;
   for (int y = 0; y < raster.height; ++y) {
     for (int x = 0; x < low.left + 600; ++x) {
-      if (raster.at(x, y) != to_pixel(sequential_color(1))) continue;
+      if (raster.at(x, y) != to_pixel(picture::sequential_color(1))) continue;
       high.left = std::min(high.left, x), high.right = std::max(high.right, x), high.top = std::min(high.top, y),
       high.bottom = std::max(high.bottom, y);
     }
@@ -80,24 +80,24 @@ TEST_CASE("a cell lies where its axes say, with its colour, square, and cells wi
 
 TEST_CASE("signed values are centred at zero, others start there") {
   const host_test::Temporary folder;
-  MapPicture map = empty_map();
+  picture::MapPicture map = empty_map();
   for (int i = 0; i < 100; ++i) map.value.values[i] = i < 50 ? -1 : 3;
-  draw_map(map, folder.path() / "signed");
+  picture::draw_map(map, folder.path() / "signed");
   const Raster raster = read_png(folder.path() / "signed.png");
-  CHECK(raster.find(to_pixel(diverging_color((-1.0 + 3) / 6))).count > 600 * 290);
-  CHECK(raster.find(to_pixel(diverging_color(1))).count > 600 * 290);
+  CHECK(raster.find(to_pixel(picture::diverging_color((-1.0 + 3) / 6))).count > 600 * 290);
+  CHECK(raster.find(to_pixel(picture::diverging_color(1))).count > 600 * 290);
   for (double& v : map.value.values) v = std::abs(v);
-  draw_map(map, folder.path() / "plain");
-  CHECK(read_png(folder.path() / "plain.png").find(to_pixel(sequential_color(1.0 / 3))).count > 600 * 290);
+  picture::draw_map(map, folder.path() / "plain");
+  CHECK(read_png(folder.path() / "plain.png").find(to_pixel(picture::sequential_color(1.0 / 3))).count > 600 * 290);
 }
 
 TEST_CASE("the arrow turns with the mill") {
   const host_test::Temporary folder;
-  MapPicture map = empty_map();
+  picture::MapPicture map = empty_map();
   map.mill = {.radius = 0.1, .omega = 3};
-  draw_map(map, folder.path() / "left");
+  picture::draw_map(map, folder.path() / "left");
   map.mill.omega = -3;
-  draw_map(map, folder.path() / "right");
+  picture::draw_map(map, folder.path() / "right");
   const Raster left = read_png(folder.path() / "left.png"), right = read_png(folder.path() / "right.png");
   // the middle of all pixels that differ lies at the heads: up and left of the other one for Ω > 0
   double moved_x = 0, moved_y = 0;
@@ -113,12 +113,12 @@ TEST_CASE("the arrow turns with the mill") {
 
 TEST_CASE("the same arrays give the same bytes, whatever was drawn before") {
   const host_test::Temporary folder;
-  MapPicture map = empty_map();
+  picture::MapPicture map = empty_map();
   map.value.values[55] = 1;
   map.mill = {.radius = 0.1, .omega = 3};
-  draw_map(map, folder.path() / "one");
-  draw_curves(two_curves(), folder.path() / "curves");
-  draw_map(map, folder.path() / "two");
+  picture::draw_map(map, folder.path() / "one");
+  picture::draw_curves(two_curves(), folder.path() / "curves");
+  picture::draw_map(map, folder.path() / "two");
   CHECK(text_of(folder.path() / "one.svg") == text_of(folder.path() / "two.svg"));
   CHECK(text_of(folder.path() / "one.png") == text_of(folder.path() / "two.png"));
   CHECK(text_of(folder.path() / "one.svg").find("<title>Speed</title>") != std::string::npos);
@@ -128,33 +128,33 @@ TEST_CASE("nothing is cut off, however long the words and large the numbers") {
   const host_test::Temporary folder;
   const std::string tale =
       "a very long name of a source that goes on and on and does not fit on one line of any picture that one would print";
-  MapPicture map = empty_map();
+  picture::MapPicture map = empty_map();
   map.title = map.subtitle = map.note = tale;
   map.value = {"a quantity with a long name", "kg m^2/s^3", std::vector<double>(100, -123456.7)};
   map.value.values[0] = 9e9;
   map.marks = {{"somewhere near the edge", 0.099, 0.0}, {"lower left", -0.1, -0.1}};
   map.mill = {.radius = 0.1, .omega = 123};
-  draw_map(map, folder.path() / "map");
+  picture::draw_map(map, folder.path() / "map");
   CHECK(read_png(folder.path() / "map.png").has_white_margin(6));
-  CurvePicture curves = two_curves();
+  picture::CurvePicture curves = two_curves();
   curves.title = curves.subtitle = tale;
   for (int i = 0; i < 9; ++i) curves.curves.push_back({"source number " + std::to_string(i), edges(0, 1, 2), {-1e-7 * i, 4e8 * i}, {}, {}});
-  draw_curves(curves, folder.path() / "curves");
+  picture::draw_curves(curves, folder.path() / "curves");
   CHECK(read_png(folder.path() / "curves.png").has_white_margin(6));
 }
 
 TEST_CASE("a curve without a value has a gap, not a zero") {
   const host_test::Temporary folder;
-  CurvePicture picture{.title = "t",
-                       .subtitle = "s",
-                       .x_label = "x",
-                       .x_unit = "m",
-                       .value_label = "v",
-                       .value_unit = "W",
-                       .curves = {{"only", edges(0, 1, 10), std::vector<double>(10, 1.0), {}, {}}}};
+  picture::CurvePicture picture{.title = "t",
+                                .subtitle = "s",
+                                .x_label = "x",
+                                .x_unit = "m",
+                                .value_label = "v",
+                                .value_unit = "W",
+                                .curves = {{"only", edges(0, 1, 10), std::vector<double>(10, 1.0), {}, {}}}};
   const auto blue = [&](const char* name) {
-    draw_curves(picture, folder.path() / name);
-    return read_png(folder.path() / (std::string(name) + ".png")).find(to_pixel(distinct_color(0)));
+    picture::draw_curves(picture, folder.path() / name);
+    return read_png(folder.path() / (std::string(name) + ".png")).find(to_pixel(picture::distinct_color(0)));
   };
   const Raster::Spot whole = blue("whole");
   for (int i = 3; i < 7; ++i) picture.curves[0].value[i] = kNone;
@@ -165,21 +165,22 @@ TEST_CASE("a curve without a value has a gap, not a zero") {
 
 TEST_CASE("pictures that cannot be are refused in one line") {
   const host_test::Temporary folder;
-  MapPicture map = empty_map();
+  picture::MapPicture map = empty_map();
   map.value.values.pop_back();
-  CHECK(refusal([&] { draw_map(map, folder.path() / "m"); }) == "picture 'Speed': 99 values for 100 cells; check the axes of this result");
+  CHECK(refusal([&] { picture::draw_map(map, folder.path() / "m"); }) ==
+        "picture 'Speed': 99 values for 100 cells; check the axes of this result");
   map = empty_map();
   std::swap(map.x.edges[2], map.x.edges[3]);
-  CHECK(refusal([&] { draw_map(map, folder.path() / "m"); }).find("do not increase") != std::string::npos);
-  CurvePicture curves = two_curves();
+  CHECK(refusal([&] { picture::draw_map(map, folder.path() / "m"); }).find("do not increase") != std::string::npos);
+  picture::CurvePicture curves = two_curves();
   curves.curves[0].x.pop_back(), curves.curves[0].x.pop_back();
-  CHECK(refusal([&] { draw_curves(curves, folder.path() / "c"); }).find("20 values on an axis of 19") != std::string::npos);
-  CHECK(refusal([&] { draw_curves(two_curves(), folder.path() / "missing" / "c"); }).find("missing") != std::string::npos);
+  CHECK(refusal([&] { picture::draw_curves(curves, folder.path() / "c"); }).find("20 values on an axis of 19") != std::string::npos);
+  CHECK(refusal([&] { picture::draw_curves(two_curves(), folder.path() / "missing" / "c"); }).find("missing") != std::string::npos);
   CHECK(std::filesystem::is_empty(folder.path()));
 }
 
 TEST_CASE("a map without any data is drawn and says so") {
   const host_test::Temporary folder;
-  draw_map(empty_map(), folder.path() / "empty");
+  picture::draw_map(empty_map(), folder.path() / "empty");
   CHECK(std::filesystem::exists(folder.path() / "empty.png"));
 }

@@ -47,12 +47,12 @@ Raster read_png(const std::filesystem::path& path) {
   return raster;
 }
 
-std::uint32_t to_pixel(const millscope::studies::Color& color) {
+std::uint32_t to_pixel(const millscope::picture::Color& color) {
   const auto byte = [](double part) { return static_cast<std::uint32_t>(std::lround(255 * part)); };
   return (byte(color.red) << 16) | (byte(color.green) << 8) | byte(color.blue);
 }
 
-double lightness(const millscope::studies::Color& color) {
+double lightness(const millscope::picture::Color& color) {
   const auto linear = [](double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); };
   const double y = 0.2126 * linear(color.red) + 0.7152 * linear(color.green) + 0.0722 * linear(color.blue);
   return y > 0.008856 ? 116 * std::cbrt(y) - 16 : 903.3 * y;

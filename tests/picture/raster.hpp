@@ -28,9 +28,9 @@ struct Raster {
 
 Raster read_png(const std::filesystem::path& path);
 
-std::uint32_t to_pixel(const millscope::studies::Color& color);
+std::uint32_t to_pixel(const millscope::picture::Color& color);
 
 /// CIE L* of a colour, 0…100: how light it looks.
-double lightness(const millscope::studies::Color& color);
+double lightness(const millscope::picture::Color& color);
 
 }  // namespace picture_test

@@ -9,27 +9,27 @@
 #include "raster.hpp"
 #include "studies/picture/outline.hpp"
 
-using namespace millscope::studies;
+using namespace millscope;
 using host_test::refusal;
 
 namespace {
 
-ResultArray array_of(const char* name, const char* unit, std::vector<std::size_t> shape, std::vector<std::string> axes,
-                     std::vector<double> value) {
-  ResultArray array;
+analysis::ResultArray array_of(const char* name, const char* unit, std::vector<std::size_t> shape, std::vector<std::string> axes,
+                               std::vector<double> value) {
+  analysis::ResultArray array;
   array.analyzer = "fields", array.name = name, array.unit = unit, array.doc = "Test.";
   array.shape = std::move(shape), array.axes = std::move(axes), array.value = std::move(value);
   return array;
 }
 
-ResultSet example() {
-  ResultSet set;
+analysis::ResultSet example() {
+  analysis::ResultSet set;
   set.meta.name = "test", set.meta.source = "recording";
   set.meta.blocks = {{0, 10, 9.5, 0}, {10, 20, 10, 0}};
   set.meta.context.mill_radius = 0.1, set.meta.context.omega = 5;
   set.arrays = {array_of("x_edges", "m", {3}, {}, {-0.1, 0, 0.1}), array_of("y_edges", "m", {3}, {}, {-0.1, 0, 0.1}),
                 array_of("centres", "s", {3}, {}, {1, 2, 4}), array_of("power", "W", {}, {}, {7})};
-  for (ResultArray& a : set.arrays) a.is_axis = a.name != "power";
+  for (analysis::ResultArray& a : set.arrays) a.is_axis = a.name != "power";
   set.arrays.push_back(array_of("speed", "m/s", {2, 2}, {"y_edges", "x_edges"}, {1, 2, 3, 4}));
   set.arrays.push_back(array_of("decay", "1", {3}, {"centres"}, {1, 0.5, 0.2}));
   set.arrays.push_back(array_of("parts", "1", {3}, {""}, {1, 0.5, 0.2}));
@@ -42,8 +42,8 @@ ResultSet example() {
 
 TEST_CASE("every curve and map is drawn, and what is not is told") {
   const host_test::Temporary folder;
-  const ResultSet set = example();
-  const DrawnPictures drawn = draw_results(set, folder.path() / "pictures", shell_of(set));
+  const analysis::ResultSet set = example();
+  const picture::DrawnPictures drawn = picture::draw_results(set, folder.path() / "pictures", picture::shell_of(set));
   CHECK(drawn.files.size() == 3);
   CHECK(drawn.left_out == std::vector<std::string>{"fields.box: 3 dimensions; see the tables", "fields.nothing: no value is defined"});
   for (const auto& stem : drawn.files) {
@@ -52,33 +52,33 @@ TEST_CASE("every curve and map is drawn, and what is not is told") {
   }
   // The upper right cell is the fastest: rows go with y, columns with x.
   const picture_test::Raster speed = picture_test::read_png(folder.path() / "pictures" / "fields.speed.png");
-  const auto slow = speed.find(picture_test::to_pixel(sequential_color(0.25))),
-             quick = speed.find(picture_test::to_pixel(sequential_color(0.75)));
+  const auto slow = speed.find(picture_test::to_pixel(picture::sequential_color(0.25))),
+             quick = speed.find(picture_test::to_pixel(picture::sequential_color(0.75)));
   CHECK(slow.x < quick.x + 20);  // 1 m/s lower left, 3 m/s upper left
   CHECK(slow.y > quick.y + 200);
 }
 
 TEST_CASE("axes are edges, or centres that become edges, or a count") {
-  ResultSet set = example();
-  CHECK(cell_axis(set, set.arrays[4], 1).edges == std::vector<double>{-0.1, 0, 0.1});
-  CHECK(cell_axis(set, set.arrays[4], 1).label == "x");
-  CHECK(cell_axis(set, set.arrays[5], 0).edges == std::vector<double>{0.5, 1.5, 3, 5});
-  CHECK(cell_axis(set, set.arrays[6], 0).edges == std::vector<double>{0.5, 1.5, 2.5, 3.5});
+  analysis::ResultSet set = example();
+  CHECK(picture::cell_axis(set, set.arrays[4], 1).edges == std::vector<double>{-0.1, 0, 0.1});
+  CHECK(picture::cell_axis(set, set.arrays[4], 1).label == "x");
+  CHECK(picture::cell_axis(set, set.arrays[5], 0).edges == std::vector<double>{0.5, 1.5, 3, 5});
+  CHECK(picture::cell_axis(set, set.arrays[6], 0).edges == std::vector<double>{0.5, 1.5, 2.5, 3.5});
   set.arrays[2].value.push_back(8), set.arrays[2].value.push_back(16);
-  CHECK(refusal([&] { cell_axis(set, set.arrays[5], 0); }).find("fields.decay: its axis 'centres' has 5 values for 3 cells") == 0);
+  CHECK(refusal([&] { picture::cell_axis(set, set.arrays[5], 0); }).find("fields.decay: its axis 'centres' has 5 values for 3 cells") == 0);
 }
 
 TEST_CASE("a description that counts names makes a map of names") {
-  ResultArray kind = array_of("region", "1", {1, 3}, {"", ""}, {0, 1, 2});
+  analysis::ResultArray kind = array_of("region", "1", {1, 3}, {"", ""}, {0, 1, 2});
   kind.doc = "0 nothing, 1 en masse, 2 cascading layer.";
-  CHECK(category_names(kind) == std::vector<std::string>{"nothing", "en masse", "cascading layer"});
+  CHECK(picture::category_names(kind) == std::vector<std::string>{"nothing", "en masse", "cascading layer"});
   kind.doc = "Share of 3 regions, 1 for each.";
-  CHECK(category_names(kind).empty());
+  CHECK(picture::category_names(kind).empty());
 }
 
 TEST_CASE("the line below the title says what was analysed") {
-  CHECK(source_line(example().meta) == "test · recording · 19.5 s analysed");
-  CHECK(title_of("velocity_x") == "Velocity x");
+  CHECK(picture::source_line(example().meta) == "test · recording · 19.5 s analysed");
+  CHECK(picture::title_of("velocity_x") == "Velocity x");
 }
 
 TEST_CASE("the cut through a lifter is its outline, without the shell") {
@@ -95,7 +95,7 @@ TEST_CASE("the cut through a lifter is its outline, without the shell") {
   }
   const millscope::Surface surface{8, vertices.data(), 8, triangles.data(), nullptr};
   double length = 0;
-  for (const auto& l : section_of(surface, 0.3, 0.1)) length += std::hypot(l[2] - l[0], l[3] - l[1]);
+  for (const auto& l : picture::section_of(surface, 0.3, 0.1)) length += std::hypot(l[2] - l[0], l[3] - l[1]);
   CHECK(length == Approx(0.02 + 0.02 + 0.02));
-  CHECK(section_of(surface, 2, 0.1).empty());
+  CHECK(picture::section_of(surface, 2, 0.1).empty());
 }

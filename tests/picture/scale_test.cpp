@@ -6,11 +6,11 @@
 #include "studies/picture/color.hpp"
 #include "studies/picture/scale.hpp"
 
-using namespace millscope::studies;
+using namespace millscope;
 
 TEST_CASE("units are shown with the prefix that an engineer expects") {
   const auto shown = [](const char* unit, double largest) {
-    const DisplayUnit d = display_unit(unit, largest);
+    const picture::DisplayUnit d = picture::display_unit(unit, largest);
     return std::pair(d.text, d.factor * largest);
   };
   const auto check = [&](const char* unit, double largest, const char* text, double value) {
@@ -40,7 +40,7 @@ TEST_CASE("ticks are multiples of 1, 2 or 5 and never too many") {
   for (const double low : {-0.2, 0.0, 3.7, -1234.0}) {
     for (const double span : {1e-6, 0.3, 0.7, 1.0, 47.0, 1e5}) {
       const double high = low + span;
-      const Ticks ticks = even_ticks(low, high, 7);
+      const picture::Ticks ticks = picture::even_ticks(low, high, 7);
       CAPTURE(low, span);
       REQUIRE(ticks.major.size() >= 2);
       REQUIRE(ticks.major.size() <= 8);
@@ -52,36 +52,37 @@ TEST_CASE("ticks are multiples of 1, 2 or 5 and never too many") {
       CHECK(std::adjacent_find(ticks.label.begin(), ticks.label.end()) == ticks.label.end());  // labels tell ticks apart
     }
   }
-  CHECK(even_ticks(-1, 1, 5).label == std::vector<std::string>{"−1.0", "−0.5", "0.0", "0.5", "1.0"});
+  CHECK(picture::even_ticks(-1, 1, 5).label == std::vector<std::string>{"−1.0", "−0.5", "0.0", "0.5", "1.0"});
 }
 
 TEST_CASE("logarithmic axes are labelled at decades, and between them where there are few") {
-  CHECK(logarithmic_ticks(1e-9, 1e-1, 10).label.front() == "10⁻⁹");
-  CHECK(logarithmic_ticks(1, 100, 8).label == std::vector<std::string>{"1", "2", "5", "10", "20", "50", "100"});
-  const Axis axis = make_axis("energy", "J", 1e-6, 1e-2, true, 360);
+  CHECK(picture::logarithmic_ticks(1e-9, 1e-1, 10).label.front() == "10⁻⁹");
+  CHECK(picture::logarithmic_ticks(1, 100, 8).label == std::vector<std::string>{"1", "2", "5", "10", "20", "50", "100"});
+  const picture::Axis axis = picture::make_axis("energy", "J", 1e-6, 1e-2, true, 360);
   CHECK(axis.place(1e-4) == Approx(0.5));
   CHECK(std::isnan(axis.place(0)));
 }
 
 TEST_CASE("numbers have a true minus and no false digits") {
-  CHECK(number_text(-0.25, 0.05) == "−0.25");
-  CHECK(number_text(1e-17, 0.1) == "0.0");
-  CHECK(number_text(2000, 500) == "2000");
-  CHECK(significant_text(0.0123456, 3) == "0.0123");
-  CHECK(significant_text(-7334.6, 3) == "−7335");
-  CHECK(significant_text(std::nan(""), 3) == "–");
+  CHECK(picture::number_text(-0.25, 0.05) == "−0.25");
+  CHECK(picture::number_text(1e-17, 0.1) == "0.0");
+  CHECK(picture::number_text(2000, 500) == "2000");
+  CHECK(picture::significant_text(0.0123456, 3) == "0.0123");
+  CHECK(picture::significant_text(-7334.6, 3) == "−7335");
+  CHECK(picture::significant_text(std::nan(""), 3) == "–");
 }
 
 TEST_CASE("colours order by lightness, so that grey print and colour-blind eyes read them too") {
   double last = -1;
   for (int i = 0; i <= 64; ++i) {
-    const double light = picture_test::lightness(sequential_color(i / 64.0));
+    const double light = picture_test::lightness(picture::sequential_color(i / 64.0));
     CHECK(light > last);
     last = light;
   }
   for (int i = 0; i < 32; ++i) {  // both arms rise to the middle, alike
-    const double cool = picture_test::lightness(diverging_color(i / 64.0)), warm = picture_test::lightness(diverging_color(1 - i / 64.0));
-    CHECK(cool < picture_test::lightness(diverging_color((i + 1) / 64.0)));
+    const double cool = picture_test::lightness(picture::diverging_color(i / 64.0)),
+                 warm = picture_test::lightness(picture::diverging_color(1 - i / 64.0));
+    CHECK(cool < picture_test::lightness(picture::diverging_color((i + 1) / 64.0)));
     CHECK(std::abs(cool - warm) < 6);
   }
 }

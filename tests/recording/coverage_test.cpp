@@ -4,7 +4,7 @@
 #include "recording/support.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
-using namespace millscope::studies;
+using namespace millscope;
 using namespace recording_test;
 
 namespace {
@@ -17,12 +17,12 @@ struct Score {
   double speed_bias = 0;                          ///< relative
 };
 
-Score score(const Camera& camera, SplineKind kind) {
+Score score(const Camera& camera, trajectory::SplineKind kind) {
   const Motion motion;
-  const Trajectory trajectory = fit_trajectory(see(motion, camera), {.kind = kind});
+  const trajectory::Trajectory trajectory = trajectory::fit_trajectory(see(motion, camera), {.kind = kind});
   Score s;
   double count = 0, fitted = 0, true_speed = 0;
-  for (const Piece& piece : trajectory.pieces) {
+  for (const trajectory::Piece& piece : trajectory.pieces) {
     for (std::size_t k = 0; k < piece.size(); ++k) {
       const double t = piece.start + static_cast<double>(k) * piece.step;
       const auto x = motion.position(t), v = motion.velocity(t);
@@ -52,7 +52,7 @@ Score score(const Camera& camera, SplineKind kind) {
 }  // namespace
 
 TEST_CASE("the smoothing spline's intervals hold the truth under white noise") {
-  const Score s = score({.duration = 120}, SplineKind::smoothing);
+  const Score s = score({.duration = 120}, trajectory::SplineKind::smoothing);
   INFO("position " << s.position << ", velocity " << s.velocity << ", errors " << s.position_error << " m, " << s.velocity_error
                    << " m/s, bias " << s.speed_bias);
   CHECK(s.position > 0.86);
@@ -65,7 +65,7 @@ TEST_CASE("the smoothing spline's intervals hold the truth under white noise") {
 
 TEST_CASE("and under correlated noise") {
   for (const double correlation : {0.3, 0.6}) {
-    const Score s = score({.correlation = correlation, .duration = 120}, SplineKind::smoothing);
+    const Score s = score({.correlation = correlation, .duration = 120}, trajectory::SplineKind::smoothing);
     INFO("correlation " << correlation << ": position " << s.position << ", velocity " << s.velocity);
     CHECK(s.position > 0.85);
     CHECK(s.position < 0.97);
@@ -74,7 +74,8 @@ TEST_CASE("and under correlated noise") {
 }
 
 TEST_CASE("the interpolating spline's intervals are right, and wide") {
-  const Score cubic = score({.duration = 60}, SplineKind::cubic), smooth = score({.duration = 60}, SplineKind::smoothing);
+  const Score cubic = score({.duration = 60}, trajectory::SplineKind::cubic),
+              smooth = score({.duration = 60}, trajectory::SplineKind::smoothing);
   INFO("position " << cubic.position << ", velocity " << cubic.velocity << ", error " << cubic.velocity_error << " m/s");
   CHECK(cubic.position > 0.87);
   CHECK(cubic.position < 0.94);
@@ -86,9 +87,9 @@ TEST_CASE("the interpolating spline's intervals are right, and wide") {
 TEST_CASE("at an impact the spline lets go: the error there is smaller than one strength for all allows") {
   // The velocity jumps by 1 m/s within no time. Around it the spline is uncertain, and says so.
   const Motion motion;
-  const Trajectory trajectory = fit_trajectory(see(motion, {.duration = 60}), {});
+  const trajectory::Trajectory trajectory = trajectory::fit_trajectory(see(motion, {.duration = 60}), {});
   double near = 0, near_count = 0, calm = 0, calm_count = 0;
-  for (const Piece& piece : trajectory.pieces) {
+  for (const trajectory::Piece& piece : trajectory.pieces) {
     for (std::size_t k = 0; k < piece.size(); ++k) {
       const double t = piece.start + static_cast<double>(k) * piece.step;
       const double phase = t - std::floor(t / motion.period()) * motion.period(), to_impact = std::min(phase, motion.period() - phase);

@@ -4,7 +4,7 @@
 
 #include "recording/support.hpp"
 
-using namespace millscope::studies;
+using namespace millscope;
 using namespace recording_test;
 
 namespace {
@@ -29,8 +29,8 @@ TEST_CASE("rows that run backwards are sorted in and counted") {
   std::vector<int> order = ascending(200);
   std::swap(order[50], order[51]);
   std::rotate(order.begin() + 100, order.begin() + 103, order.begin() + 110);
-  const Recording recording = read_recording(scratch.file("order.txt", rows_in(order)));
-  const Recording straight = read_recording(scratch.file("straight.txt", rows_in(ascending(200))));
+  const recording::Recording recording = recording::read_recording(scratch.file("order.txt", rows_in(order)));
+  const recording::Recording straight = recording::read_recording(scratch.file("straight.txt", rows_in(ascending(200))));
   CHECK(recording.runs[0].report.backwards == 2);
   CHECK(recording.runs[0].time == straight.runs[0].time);
   CHECK(recording.runs[0].position == straight.runs[0].position);
@@ -40,7 +40,7 @@ TEST_CASE("a file that is backwards as a whole gives the same points") {
   const Scratch scratch;
   std::vector<int> order = ascending(200);
   std::reverse(order.begin(), order.end());
-  const Recording recording = read_recording(scratch.file("reverse.txt", rows_in(order)));
+  const recording::Recording recording = recording::read_recording(scratch.file("reverse.txt", rows_in(order)));
   REQUIRE(recording.runs.size() == 1);
   CHECK(recording.runs[0].report.backwards == 199);
   CHECK(recording.runs[0].size() == 200);
@@ -55,7 +55,7 @@ TEST_CASE("of rows with one time the one with the smallest spread is kept, else 
     if (k == 40) text += ctrack_row(5 * k, 101, k, 30, 3) + ctrack_row(5 * k, 102, k, 30, 3.5);
     if (k == 60) text += ctrack_row(5 * k, 101, k, 30, 5) + ctrack_row(5 * k, 102, k, 30, 4);
   }
-  const Run run = read_recording(scratch.file("twice.a", text)).runs[0];
+  const recording::Run run = recording::read_recording(scratch.file("twice.a", text)).runs[0];
   CHECK(run.report.rows == 104);
   CHECK(run.report.duplicates == 4);
   REQUIRE(run.size() == 100);
@@ -72,7 +72,7 @@ TEST_CASE("a single false time is set aside") {
     if (k == 399) return "9.0e30" + row.substr(row.find(' '));
     return row;
   });
-  const Run run = read_recording(scratch.file("glitch.txt", text)).runs[0];
+  const recording::Run run = recording::read_recording(scratch.file("glitch.txt", text)).runs[0];
   CHECK(run.report.false_times == 3);
   CHECK(run.report.used == 397);
   CHECK(run.time.back() == Approx(1.99));
@@ -82,7 +82,7 @@ TEST_CASE("times of thousands of years are refused, and false times count as bad
   const Scratch scratch;
   const auto why = [&](const std::function<std::string(int, std::string)>& change) {
     const auto file = scratch.file("times.txt", circle_rows(100, change));
-    return refusal([&] { read_recording(file); });
+    return refusal([&] { recording::read_recording(file); });
   };
   const auto at = [](const std::string& time, const std::string& row) { return time + row.substr(row.find(' ')); };
   const auto epoch = [&](int k, const std::string& row) { return at(std::to_string(1'700'000'000'000'000'000 + 5'000'000LL * k), row); };
@@ -100,7 +100,7 @@ TEST_CASE("many stretches written over again are read in little time") {
     for (int k = 0; k < 30; ++k) text += circle_row(10 * (part % 7) + 50 * k) + "\n";
   }
   const std::clock_t start = std::clock();
-  const Recording recording = read_recording(scratch.file("over.txt", text));
+  const recording::Recording recording = recording::read_recording(scratch.file("over.txt", text));
   CHECK(recording.runs[0].report.rows + recording.runs.back().report.rows > 0);
   CHECK(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC < 4);
 }
@@ -109,7 +109,7 @@ TEST_CASE("a clock that was set back begins another run") {
   const Scratch scratch;
   const std::string other = circle_rows(500, [](int, std::string row) { return row.replace(row.rfind(' '), 1, " 1"); });  // z + 100 mm
   const std::string text = circle_rows(600) + other;
-  const Recording recording = read_recording(scratch.file("twice.txt", text));
+  const recording::Recording recording = recording::read_recording(scratch.file("twice.txt", text));
   REQUIRE(recording.runs.size() == 2);
   CHECK(recording.runs[0].name == "twice");
   CHECK(recording.runs[1].name == "twice_2");
@@ -124,7 +124,7 @@ TEST_CASE("a later part that was written first is sorted in, not taken for anoth
   std::vector<int> order;
   for (int k = 400; k < 800; ++k) order.push_back(k);
   for (int k = 0; k < 400; ++k) order.push_back(k);
-  const Recording recording = read_recording(scratch.file("parts.txt", rows_in(order)));
+  const recording::Recording recording = recording::read_recording(scratch.file("parts.txt", rows_in(order)));
   REQUIRE(recording.runs.size() == 1);
   CHECK(recording.runs[0].size() == 800);
   CHECK(recording.runs[0].report.backwards == 1);
@@ -134,7 +134,7 @@ TEST_CASE("the same points twice are one run of duplicates") {
   const Scratch scratch;
   std::vector<int> order;
   for (int k = 0; k < 300; ++k) order.insert(order.end(), {k, k});
-  const Run run = read_recording(scratch.file("double.txt", rows_in(order))).runs[0];
+  const recording::Run run = recording::read_recording(scratch.file("double.txt", rows_in(order))).runs[0];
   CHECK(run.report.duplicates == 300);
   CHECK(run.size() == 300);
 }
@@ -145,7 +145,7 @@ TEST_CASE("a block of rows that was written twice is duplicates, not another run
   const std::vector<int> block(order.begin() + 100, order.begin() + 300);
   SECTION("far behind itself") { order.insert(order.begin() + 900, block.begin(), block.end()); }
   SECTION("at the end") { order.insert(order.end(), block.begin(), block.end()); }
-  const Recording recording = read_recording(scratch.file("block.txt", rows_in(order)));
+  const recording::Recording recording = recording::read_recording(scratch.file("block.txt", rows_in(order)));
   REQUIRE(recording.runs.size() == 1);
   CHECK(recording.runs[0].report.duplicates == 200);
   CHECK(recording.runs[0].size() == 1000);
@@ -153,7 +153,7 @@ TEST_CASE("a block of rows that was written twice is duplicates, not another run
 
 TEST_CASE("a whole file written twice is one run") {
   const Scratch scratch;
-  const Recording recording = read_recording(scratch.file("copy.txt", circle_rows(600) + circle_rows(600)));
+  const recording::Recording recording = recording::read_recording(scratch.file("copy.txt", circle_rows(600) + circle_rows(600)));
   REQUIRE(recording.runs.size() == 1);
   CHECK(recording.runs[0].report.duplicates == 600);
 }

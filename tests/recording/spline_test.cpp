@@ -7,15 +7,15 @@
 #include "studies/trajectory/pieces.hpp"
 #include "studies/trajectory/sample.hpp"
 
-using namespace millscope::studies;
+using namespace millscope;
 using namespace recording_test;
 
 namespace {
 
-Run uneven(int count, const std::function<std::array<double, 3>(double)>& motion, std::uint64_t seed = 5) {
+recording::Run uneven(int count, const std::function<std::array<double, 3>(double)>& motion, std::uint64_t seed = 5) {
   std::mt19937_64 generator(seed);
   std::uniform_real_distribution<double> pause(0.001, 0.009);
-  Run run;
+  recording::Run run;
   double t = 0.3;
   for (int k = 0; k < count; ++k) {
     run.time.push_back(t += pause(generator));
@@ -59,12 +59,12 @@ double prior_velocity_position(double s, double t) { return s < t ? s * t - s * 
 }  // namespace
 
 TEST_CASE("a cubic spline passes through its points and is exact for straight motion") {
-  const Run run = uneven(40, [](double t) { return std::array{1 + 2 * t, -3 * t, 0.5}; });
-  const Points points = points_of(run, {0, run.size()});
-  Spline spline;
-  interpolate(average(points, 0, 0), {1e-3, 1e-3, 1e-3}, spline);
-  Piece piece = empty_piece(run.time.front(), run.time.back(), 1e-3);
-  sample(points.time, spline, piece);
+  const recording::Run run = uneven(40, [](double t) { return std::array{1 + 2 * t, -3 * t, 0.5}; });
+  const trajectory::Points points = trajectory::points_of(run, {0, run.size()});
+  trajectory::Spline spline;
+  trajectory::interpolate(trajectory::average(points, 0, 0), {1e-3, 1e-3, 1e-3}, spline);
+  trajectory::Piece piece = trajectory::empty_piece(run.time.front(), run.time.back(), 1e-3);
+  trajectory::sample(points.time, spline, piece);
   for (std::size_t k = 0; k < piece.size(); ++k) {
     const double t = piece.start + static_cast<double>(k) * piece.step;
     REQUIRE(piece.position[0][k] == Approx(1 + 2 * t).epsilon(1e-12));
@@ -74,10 +74,10 @@ TEST_CASE("a cubic spline passes through its points and is exact for straight mo
 }
 
 TEST_CASE("a cubic spline has no second derivative at its ends and an unbroken one within") {
-  const Run run = uneven(30, [](double t) { return std::array{std::sin(40 * t), std::cos(40 * t), t * t}; });
-  const Points points = points_of(run, {0, run.size()});
-  Spline s;
-  interpolate(average(points, 0, 0), {0, 0, 0}, s);
+  const recording::Run run = uneven(30, [](double t) { return std::array{std::sin(40 * t), std::cos(40 * t), t * t}; });
+  const trajectory::Points points = trajectory::points_of(run, {0, run.size()});
+  trajectory::Spline s;
+  trajectory::interpolate(trajectory::average(points, 0, 0), {0, 0, 0}, s);
   const auto bend = [&](std::size_t i, bool at_end, std::size_t axis) {
     const double h = points.time[i + 1] - points.time[i], mean = (s.knots[i + 1].x[axis] - s.knots[i].x[axis]) / h;
     const double c2 = (3 * mean - 2 * s.knots[i].v[axis] - s.knots[i + 1].v[axis]) / h;
@@ -94,23 +94,23 @@ TEST_CASE("a cubic spline has no second derivative at its ends and an unbroken o
 
 TEST_CASE("the variances of a cubic spline are what noise does to it") {
   // The response to each single point, squared and summed, is the variance.
-  Run run = uneven(24, [](double) { return std::array{0.0, 0.0, 0.0}; });
+  recording::Run run = uneven(24, [](double) { return std::array{0.0, 0.0, 0.0}; });
   const double noise = 1e-3;
-  Spline spline;
-  const Points points = points_of(run, {0, run.size()});
+  trajectory::Spline spline;
+  const trajectory::Points points = trajectory::points_of(run, {0, run.size()});
   const double interval = 0.003;  // averages some pairs and triples
-  const Averaged knots = average(points, interval, 0);
+  const trajectory::Averaged knots = trajectory::average(points, interval, 0);
   REQUIRE(knots.time.size() < run.size() - 3);
-  interpolate(knots, {noise, noise, noise}, spline);
-  Piece stated = empty_piece(knots.time.front(), knots.time.back(), 1e-3);
-  sample(knots.time.data(), spline, stated);
+  trajectory::interpolate(knots, {noise, noise, noise}, spline);
+  trajectory::Piece stated = trajectory::empty_piece(knots.time.front(), knots.time.back(), 1e-3);
+  trajectory::sample(knots.time.data(), spline, stated);
   std::vector<double> position(stated.size()), velocity(stated.size()), acceleration(stated.size());
   for (std::size_t i = 0; i < run.size(); ++i) {
     run.position[0].assign(run.size(), 0);
     run.position[0][i] = noise;
-    interpolate(average(points_of(run, {0, run.size()}), interval, 0), {0, 0, 0}, spline);
-    Piece response = empty_piece(knots.time.front(), knots.time.back(), 1e-3);
-    sample(knots.time.data(), spline, response);
+    trajectory::interpolate(trajectory::average(trajectory::points_of(run, {0, run.size()}), interval, 0), {0, 0, 0}, spline);
+    trajectory::Piece response = trajectory::empty_piece(knots.time.front(), knots.time.back(), 1e-3);
+    trajectory::sample(knots.time.data(), spline, response);
     for (std::size_t k = 0; k < stated.size(); ++k) {
       position[k] += std::pow(response.position[0][k], 2);
       velocity[k] += std::pow(response.velocity[0][k], 2);
@@ -128,17 +128,17 @@ TEST_CASE("the smoothing spline is the mean of the random motion that it says, w
   // Against the same conditional mean and covariance by solving the full system of equations (Rasmussen and Williams 2006, ch. 2).
   std::mt19937_64 generator(11);
   std::normal_distribution<double> normal(0, 1e-3);
-  Run run = uneven(15, [&](double t) {
+  recording::Run run = uneven(15, [&](double t) {
     return std::array{0.1 * std::sin(30 * t) + normal(generator), normal(generator), normal(generator)};
   });
   const double noise = 1e-3, q = 2.0, fastest = 10;
   const std::size_t n = run.size();
-  const Points points = points_of(run, {0, n});
-  Spline spline;
-  std::vector<Evidence> evidence;
-  smooth(points, {noise, noise, noise}, {q, q, q}, std::vector<double>(n - 1, 1.0), spline, evidence);
-  Piece piece = empty_piece(run.time.front(), run.time.back(), 1e-3);
-  sample(points.time, spline, piece);
+  const trajectory::Points points = trajectory::points_of(run, {0, n});
+  trajectory::Spline spline;
+  std::vector<trajectory::Evidence> evidence;
+  trajectory::smooth(points, {noise, noise, noise}, {q, q, q}, std::vector<double>(n - 1, 1.0), spline, evidence);
+  trajectory::Piece piece = trajectory::empty_piece(run.time.front(), run.time.back(), 1e-3);
+  trajectory::sample(points.time, spline, piece);
 
   // The filter starts from the first point with a flat prior of its position: x(0) = y(0) ± noise, v(0) = 0 ± 10 m/s.
   const double t0 = run.time[0], y0 = run.position[0][0];
@@ -175,19 +175,20 @@ TEST_CASE("the smoothing spline is the mean of the random motion that it says, w
 }
 
 TEST_CASE("roughness follows the likelihood, and the evidence is its slope") {
-  const Run run = see(Motion(), {.duration = 3});
-  const Points points = points_of(run, {0, run.size()});
+  const recording::Run run = see(Motion(), {.duration = 3});
+  const trajectory::Points points = trajectory::points_of(run, {0, run.size()});
   const double noise = 0.7e-3, q = 0.8;
   std::vector<double> factor(run.size() - 1, 1.0);
-  Spline spline;
-  std::vector<Evidence> evidence;
-  smooth(points, {noise, noise, noise}, {q, q, q}, factor, spline, evidence);
+  trajectory::Spline spline;
+  std::vector<trajectory::Evidence> evidence;
+  trajectory::smooth(points, {noise, noise, noise}, {q, q, q}, factor, spline, evidence);
   double slope = 0;
-  for (const Evidence& e : evidence) slope += e.expected - e.found;
+  for (const trajectory::Evidence& e : evidence) slope += e.expected - e.found;
   const double step = 1e-4;
   double difference = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    difference += (misfit(points, axis, noise, q * (1 + step)) - misfit(points, axis, noise, q * (1 - step))) / (2 * step);
+    difference +=
+        (trajectory::misfit(points, axis, noise, q * (1 + step)) - trajectory::misfit(points, axis, noise, q * (1 - step))) / (2 * step);
   }
   // d(−2 log L)/d log q = Σ (expected − found); the first interval, which `misfit` leaves out, makes the small difference.
   CHECK(slope == Approx(difference).epsilon(0.02).margin(0.5));

@@ -72,11 +72,11 @@ std::array<double, 3> Motion::velocity(double t) const {
 }
 bool Motion::flies(double t) const { return t - std::floor(t / period()) * period() > ride_; }
 
-millscope::studies::Run see(const Motion& motion, const Camera& camera) {
+millscope::recording::Run see(const Motion& motion, const Camera& camera) {
   std::mt19937_64 generator(camera.seed);
   std::exponential_distribution<double> pause(camera.rate);
   std::normal_distribution<double> normal;
-  millscope::studies::Run run;
+  millscope::recording::Run run;
   run.name = run.source = "seen";
   std::array<double, 3> noise{normal(generator), normal(generator), normal(generator)};
   double t = 0;

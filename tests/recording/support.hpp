@@ -46,7 +46,7 @@ struct Camera {
   std::uint64_t seed = 1;
   double grid = 1e-4;  ///< s, to which times are rounded
 };
-millscope::studies::Run see(const Motion& motion, const Camera& camera);
+millscope::recording::Run see(const Motion& motion, const Camera& camera);
 
 /// The nine lines above the rows of an `.a` file.
 std::string ctrack_head();

@@ -3,7 +3,7 @@
 
 #include "recording/support.hpp"
 
-using namespace millscope::studies;
+using namespace millscope;
 using namespace recording_test;
 using Catch::Contains;
 
@@ -58,7 +58,7 @@ std::string table(const std::string& columns, const char* separator, int count =
   return text;
 }
 
-void check_circle(const Run& run, double tolerance = 1e-8) {
+void check_circle(const recording::Run& run, double tolerance = 1e-8) {
   REQUIRE(run.size() == 200);
   CHECK(run.time[100] == Approx(0.5));
   CHECK(run.position[0][100] == Approx(0.1 * std::cos(2.0)).margin(tolerance));
@@ -70,20 +70,20 @@ void check_circle(const Run& run, double tolerance = 1e-8) {
 
 TEST_CASE("bare tables are known by the heads above their columns") {
   const Scratch scratch;
-  const auto read = [&](const std::string& text) { return read_recording(scratch.file("bare.csv", text)).runs[0]; };
+  const auto read = [&](const std::string& text) { return recording::read_recording(scratch.file("bare.csv", text)).runs[0]; };
   SECTION("in a comment, blanks above commas") {
-    const Run run = read("# t x y z error\n" + table("txyze", ","));
+    const recording::Run run = read("# t x y z error\n" + table("txyze", ","));
     check_circle(run);
     CHECK(run.spread[100] == Approx(0.6e-3));
     CHECK_THAT(run.format, Contains("comma") && Contains("error mm (column 5)"));
   }
   SECTION("error first") {
-    const Run run = read("t,e,x,y,z\n" + table("texyz", ","));
+    const recording::Run run = read("t,e,x,y,z\n" + table("texyz", ","));
     check_circle(run);
     CHECK(run.spread[100] == Approx(0.6e-3));
   }
   SECTION("with units, in any order, with other columns") {
-    const Run run = read("label;z_m;y (m);x [m];v;time/s\n" + table("lZYXvT", ";"));
+    const recording::Run run = read("label;z_m;y (m);x [m];v;time/s\n" + table("lZYXvT", ";"));
     check_circle(run, 1e-6);
     CHECK(run.spread.empty());
     CHECK_THAT(run.format, Contains("semicolon") && Contains("t s (column 6)") && Contains("x m (column 4)"));
@@ -96,15 +96,15 @@ TEST_CASE("bare tables are known by the heads above their columns") {
 
 TEST_CASE("heads in other words and with a byte-order mark are understood") {
   const Scratch scratch;
-  const auto read = [&](const std::string& text) { return read_recording(scratch.file("bare.csv", text)).runs[0]; };
+  const auto read = [&](const std::string& text) { return recording::read_recording(scratch.file("bare.csv", text)).runs[0]; };
   SECTION("capitals and synonyms") { check_circle(read("TimeStamp,Residual,X,Y,Z\n" + table("texyz", ","))); }
   SECTION("with words and units") {
-    const Run run = read("Label,Time Stamp [s],X Position (m),pos_y_m,z-pos / m\n" + table("lTXYZ", ","));
+    const recording::Run run = read("Label,Time Stamp [s],X Position (m),pos_y_m,z-pos / m\n" + table("lTXYZ", ","));
     check_circle(run, 1e-6);
     CHECK(run.spread.empty());
   }
   SECTION("a mark of UTF-8 before the heads") {
-    const Run run = read("\xEF\xBB\xBFt,error,x,y,z\n" + table("texyz", ","));
+    const recording::Run run = read("\xEF\xBB\xBFt,error,x,y,z\n" + table("texyz", ","));
     check_circle(run);
     CHECK(run.spread[100] == Approx(0.6e-3));
   }
@@ -118,7 +118,7 @@ TEST_CASE("heads that do not say where t, x, y and z are are refused, never pass
   const Scratch scratch;
   const auto why = [&](const std::string& text) {
     const auto file = scratch.file("bare.csv", text);
-    return refusal([&] { read_recording(file); });
+    return refusal([&] { recording::read_recording(file); });
   };
   CHECK_THAT(why("clock,quality,East,North,Up\n" + table("texyz", ",")),
              Contains("bare.csv:1:") && Contains("'clock', 'quality', 'East', 'North', 'Up'") && Contains("recording.yaml"));
@@ -129,18 +129,19 @@ TEST_CASE("heads that do not say where t, x, y and z are are refused, never pass
 
 TEST_CASE("four or five columns without heads are t, x, y, z, error in ms and mm. With more the user has to say") {
   const Scratch scratch;
-  check_circle(read_recording(scratch.file("four.txt", table("txyz", " "))).runs[0]);
-  const Run five = read_recording(scratch.file("five.txt", table("txyze", "  "))).runs[0];
+  check_circle(recording::read_recording(scratch.file("four.txt", table("txyz", " "))).runs[0]);
+  const recording::Run five = recording::read_recording(scratch.file("five.txt", table("txyze", "  "))).runs[0];
   check_circle(five);
   CHECK(five.spread[100] == Approx(0.6e-3));
   const auto six = scratch.file("six.txt", table("txyzev", " "));
-  CHECK_THAT(refusal([&] { read_recording(six); }), Contains("six.txt:1:") && Contains("has 6 columns") && Contains("recording.yaml"));
+  CHECK_THAT(refusal([&] { recording::read_recording(six); }),
+             Contains("six.txt:1:") && Contains("has 6 columns") && Contains("recording.yaml"));
 }
 
 TEST_CASE("columns are named in their order, skipped, numbered or named by their heads") {
   const Scratch scratch;
   const auto read = [&](const std::string& columns) {
-    return read_recording(scratch.file("r.yaml", "files: data.csv\ncolumns: " + columns + "\n")).runs[0];
+    return recording::read_recording(scratch.file("r.yaml", "files: data.csv\ncolumns: " + columns + "\n")).runs[0];
   };
   scratch.file("data.csv", "stamp,label,px,py,pz\n" + table("TlXyz", ","));
   SECTION("in order") { check_circle(read("{t: s, label: skip, x: m, y: mm, z: mm}"), 1e-6); }
@@ -162,15 +163,16 @@ TEST_CASE("one wrong separator or too few columns is named with its line") {
   const Scratch scratch;
   scratch.file("data.csv", "t,x,y,z\n" + table("txyz", ","));
   const auto yaml = scratch.file("r.yaml", "files: data.csv\nseparator: semicolon\ncolumns: {t: ms, x: mm, y: mm, z: mm}\n");
-  CHECK_THAT(refusal([&] { read_recording(yaml); }), Contains("data.csv:2:") && Contains("200 of 200 rows are unreadable"));
+  CHECK_THAT(refusal([&] { recording::read_recording(yaml); }), Contains("data.csv:2:") && Contains("200 of 200 rows are unreadable"));
   const auto more = scratch.file("m.yaml", "files: data.csv\ncolumns: {t: ms, x: mm, y: mm, z: mm, error: mm}\n");
-  CHECK_THAT(refusal([&] { read_recording(more); }), Contains("data.csv:2:") && Contains("too few columns"));
+  CHECK_THAT(refusal([&] { recording::read_recording(more); }), Contains("data.csv:2:") && Contains("too few columns"));
 }
 
 TEST_CASE("lines at the top can be skipped although they look like rows") {
   const Scratch scratch;
   scratch.file("data.txt", "1 2 3 4\n5 6 7 8\n" + table("txyz", " "));
-  const Run run = read_recording(scratch.file("r.yaml", "files: data.txt\nskip_lines: 2\ncolumns: {t: ms, x: mm, y: mm, z: mm}\n")).runs[0];
+  const recording::Run run =
+      recording::read_recording(scratch.file("r.yaml", "files: data.txt\nskip_lines: 2\ncolumns: {t: ms, x: mm, y: mm, z: mm}\n")).runs[0];
   check_circle(run);
   CHECK(run.report.rows == 200);
 }

@@ -6,7 +6,7 @@
 #include "kernel/output/track_reader.hpp"
 #include "recording/support.hpp"
 
-using namespace millscope::studies;
+using namespace millscope;
 using namespace recording_test;
 using Catch::Contains;
 
@@ -14,9 +14,9 @@ TEST_CASE("a recording written as tracks reads back to the bit") {
   const Scratch scratch;
   scratch.file("a.txt", circle_rows(3000));
   scratch.file("b.txt", circle_rows(500));
-  const Recording recording =
-      read_recording(scratch.file("r.yaml", "files: [a.txt, b.txt]\ncondition: {tracer: {diameter: 10 mm, density: 2500}}\n"));
-  write_tracks(recording, scratch / "tracks.h5");
+  const recording::Recording recording =
+      recording::read_recording(scratch.file("r.yaml", "files: [a.txt, b.txt]\ncondition: {tracer: {diameter: 10 mm, density: 2500}}\n"));
+  recording::write_tracks(recording, scratch / "tracks.h5");
   CHECK_FALSE(std::filesystem::exists(scratch / "tracks.h5.tmp"));
 
   const millscope::output::TrackReader reader(scratch / "tracks.h5");
@@ -26,7 +26,7 @@ TEST_CASE("a recording written as tracks reads back to the bit") {
   CHECK(reader.tracks()[0].diameter == 0.01);
   CHECK(reader.tracks()[0].source == "a.txt");
 
-  const Recording back = read_recording(scratch / "tracks.h5");
+  const recording::Recording back = recording::read_recording(scratch / "tracks.h5");
   REQUIRE(back.runs.size() == 2);
   for (std::size_t k = 0; k < 2; ++k) {
     CHECK(back.runs[k].time == recording.runs[k].time);
@@ -39,11 +39,11 @@ TEST_CASE("a recording written as tracks reads back to the bit") {
 
 TEST_CASE("tracks replace an older file whole") {
   const Scratch scratch;
-  const Recording recording = read_recording(scratch.file("a.txt", circle_rows(300)));
+  const recording::Recording recording = recording::read_recording(scratch.file("a.txt", circle_rows(300)));
   scratch.file("tracks.h5", "something older");
-  write_tracks(recording, scratch / "tracks.h5");
-  CHECK(read_recording(scratch / "tracks.h5").runs[0].size() == 300);
-  CHECK_THAT(refusal([&] { write_tracks(recording, scratch / "absent" / "tracks.h5"); }), Contains("absent"));
+  recording::write_tracks(recording, scratch / "tracks.h5");
+  CHECK(recording::read_recording(scratch / "tracks.h5").runs[0].size() == 300);
+  CHECK_THAT(refusal([&] { recording::write_tracks(recording, scratch / "absent" / "tracks.h5"); }), Contains("absent"));
 }
 
 TEST_CASE("beads of a simulation are read as runs, and a jump across a periodic boundary is kept") {
@@ -55,7 +55,7 @@ TEST_CASE("beads of a simulation are read as runs, and a jump across a periodic 
     writer.append(t, std::vector<double>{0.1 * std::cos(6 * t), 0.1 * std::sin(6 * t), z});
   }
   writer.close();
-  const Recording recording = read_recording(scratch / "tracks.h5");
+  const recording::Recording recording = recording::read_recording(scratch / "tracks.h5");
   REQUIRE(recording.runs.size() == 1);
   CHECK(recording.runs[0].name == "bead_7");
   CHECK(recording.runs[0].size() == 2000);

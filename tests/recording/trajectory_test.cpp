@@ -7,20 +7,20 @@
 
 #include "recording/support.hpp"
 
-using namespace millscope::studies;
+using namespace millscope;
 using namespace recording_test;
 using Catch::Contains;
 
 namespace {
 
-double weights(const Trajectory& trajectory) {
+double weights(const trajectory::Trajectory& trajectory) {
   double sum = 0;
-  for (const Piece& piece : trajectory.pieces) sum = std::accumulate(piece.weight.begin(), piece.weight.end(), sum);
+  for (const trajectory::Piece& piece : trajectory.pieces) sum = std::accumulate(piece.weight.begin(), piece.weight.end(), sum);
   return sum;
 }
 
-Run without(const Run& run, double from, double to) {
-  Run rest;
+recording::Run without(const recording::Run& run, double from, double to) {
+  recording::Run rest;
   rest.source = run.source;
   for (std::size_t i = 0; i < run.size(); ++i) {
     if (run.time[i] > from && run.time[i] < to) continue;
@@ -33,14 +33,14 @@ Run without(const Run& run, double from, double to) {
 }  // namespace
 
 TEST_CASE("no spline crosses a gap, and the weights add up to the covered time") {
-  Run run = without(see(Motion(), {.duration = 10}), 4, 6);
-  for (const SplineKind kind : {SplineKind::cubic, SplineKind::smoothing}) {
-    const Trajectory trajectory = fit_trajectory(run, {.kind = kind});
+  recording::Run run = without(see(Motion(), {.duration = 10}), 4, 6);
+  for (const trajectory::SplineKind kind : {trajectory::SplineKind::cubic, trajectory::SplineKind::smoothing}) {
+    const trajectory::Trajectory trajectory = trajectory::fit_trajectory(run, {.kind = kind});
     CHECK(trajectory.pieces.size() >= 2);
     CHECK(trajectory.covered < 8.2);
     CHECK(trajectory.span > 9.9);
     CHECK(weights(trajectory) == Approx(trajectory.covered).margin(1e-3 * static_cast<double>(trajectory.pieces.size())));
-    for (const Piece& piece : trajectory.pieces) {
+    for (const trajectory::Piece& piece : trajectory.pieces) {
       const double end = piece.start + static_cast<double>(piece.size() - 1) * piece.step;
       CHECK_FALSE((piece.start < 4.9 && end > 5.1));
       REQUIRE(piece.position_variance.size() == piece.size());
@@ -50,24 +50,24 @@ TEST_CASE("no spline crosses a gap, and the weights add up to the covered time")
 }
 
 TEST_CASE("short pieces are left out and counted, and nothing left is an error") {
-  Run run = see(Motion(), {.duration = 2});
+  recording::Run run = see(Motion(), {.duration = 2});
   const double end = run.time.back();
   for (int k = 0; k < 4; ++k) {
     run.time.push_back(end + 1 + 0.005 * k);
     for (auto& component : run.position) component.push_back(0.1);
   }
-  const Trajectory trajectory = fit_trajectory(run, {});
+  const trajectory::Trajectory trajectory = trajectory::fit_trajectory(run, {});
   CHECK(trajectory.points_left_out >= 4);
   std::size_t points = 0;
-  for (const Piece& piece : trajectory.pieces) points += piece.size();
+  for (const trajectory::Piece& piece : trajectory.pieces) points += piece.size();
   CHECK(points > 1900);
-  CHECK_THAT(refusal([&] { fit_trajectory(run, {.gap_limit = 1e-5}); }),
+  CHECK_THAT(refusal([&] { trajectory::fit_trajectory(run, {.gap_limit = 1e-5}); }),
              Contains("seen") && Contains("no trajectory") && Contains("gap_limit"));
-  CHECK_THAT(refusal([&] { fit_trajectory(run, {.step = 0}); }), Contains("step"));
+  CHECK_THAT(refusal([&] { trajectory::fit_trajectory(run, {.step = 0}); }), Contains("step"));
 }
 
 TEST_CASE("a jump that no bead can do ends a piece") {
-  Run run;
+  recording::Run run;
   run.source = "slice";
   for (int k = 0; k < 4000; ++k) {
     const double t = k / 2000.0;
@@ -76,31 +76,31 @@ TEST_CASE("a jump that no bead can do ends a piece") {
     run.position[1].push_back(0.1 * std::sin(6 * t));
     run.position[2].push_back(std::fmod(0.015 + 0.02 * t, 0.02));  // comes back at the other end of a periodic slice
   }
-  const Trajectory trajectory = fit_trajectory(run, {.kind = SplineKind::cubic});
+  const trajectory::Trajectory trajectory = trajectory::fit_trajectory(run, {.kind = trajectory::SplineKind::cubic});
   CHECK(trajectory.pieces.size() == 3);
-  for (const Piece& piece : trajectory.pieces) {
+  for (const trajectory::Piece& piece : trajectory.pieces) {
     for (const double v : piece.velocity[2]) REQUIRE(v == Approx(0.02).margin(1e-3));
   }
 }
 
 TEST_CASE("the values at a time do not depend on the step or on where the clock starts") {
-  const Run run = see(Motion(), {.duration = 3});
-  const TrajectoryOptions options{.noise = {0.7e-3, 0.7e-3, 0.7e-3}, .noise_correlation = 0};
-  TrajectoryOptions fine = options;
+  const recording::Run run = see(Motion(), {.duration = 3});
+  const trajectory::TrajectoryOptions options{.noise = {0.7e-3, 0.7e-3, 0.7e-3}, .noise_correlation = 0};
+  trajectory::TrajectoryOptions fine = options;
   fine.step = 0.5e-3;
-  const Trajectory coarse = fit_trajectory(run, options), half = fit_trajectory(run, fine);
+  const trajectory::Trajectory coarse = trajectory::fit_trajectory(run, options), half = trajectory::fit_trajectory(run, fine);
   REQUIRE(coarse.pieces.size() == half.pieces.size());
   for (std::size_t p = 0; p < coarse.pieces.size(); ++p) {
-    const Piece &a = coarse.pieces[p], &b = half.pieces[p];
+    const trajectory::Piece &a = coarse.pieces[p], &b = half.pieces[p];
     const auto offset = static_cast<std::size_t>(std::llround((a.start - b.start) / b.step));
     for (std::size_t k = 0; k < a.size(); ++k) {
       REQUIRE(b.position[0][offset + 2 * k] == Approx(a.position[0][k]).margin(1e-10));
       REQUIRE(b.velocity_variance[offset + 2 * k] == Approx(a.velocity_variance[k]).epsilon(1e-6));
     }
   }
-  Run later = run;
+  recording::Run later = run;
   for (double& t : later.time) t += 1000;
-  const Trajectory shifted = fit_trajectory(later, options);
+  const trajectory::Trajectory shifted = trajectory::fit_trajectory(later, options);
   REQUIRE(shifted.pieces.size() == coarse.pieces.size());
   for (std::size_t p = 0; p < coarse.pieces.size(); ++p) {
     REQUIRE(shifted.pieces[p].size() == coarse.pieces[p].size());
@@ -112,15 +112,16 @@ TEST_CASE("the values at a time do not depend on the step or on where the clock 
 }
 
 TEST_CASE("lengths scale, and the axis is subtracted") {
-  const Run run = see(Motion(), {.duration = 3});
-  Run larger = run;
+  const recording::Run run = see(Motion(), {.duration = 3});
+  recording::Run larger = run;
   for (auto& component : larger.position) {
     for (double& x : component) x *= 4;
   }
-  const Trajectory a = fit_trajectory(run, {.noise = {1e-3, 1e-3, 1e-3}, .noise_correlation = 0});
-  const Trajectory b = fit_trajectory(larger, {.noise = {4e-3, 4e-3, 4e-3}, .noise_correlation = 0, .axis = {0.01, -0.02}});
+  const trajectory::Trajectory a = trajectory::fit_trajectory(run, {.noise = {1e-3, 1e-3, 1e-3}, .noise_correlation = 0});
+  const trajectory::Trajectory b =
+      trajectory::fit_trajectory(larger, {.noise = {4e-3, 4e-3, 4e-3}, .noise_correlation = 0, .axis = {0.01, -0.02}});
   REQUIRE(a.pieces.size() == b.pieces.size());
-  const Piece &p = a.pieces[0], &q = b.pieces[0];
+  const trajectory::Piece &p = a.pieces[0], &q = b.pieces[0];
   for (std::size_t k = 0; k < p.size(); ++k) {
     REQUIRE(q.position[0][k] == Approx(4 * p.position[0][k] - 0.01).margin(1e-4));
     REQUIRE(q.position[1][k] == Approx(4 * p.position[1][k] + 0.02).margin(1e-4));
@@ -131,20 +132,20 @@ TEST_CASE("lengths scale, and the axis is subtracted") {
 }
 
 TEST_CASE("samples beyond the end faces are left out, counted, and end a piece") {
-  const Run run = see(Motion(), {.duration = 10});
-  const Trajectory all = fit_trajectory(run, {});
-  const Trajectory part = fit_trajectory(run, {.low = 0.002, .high = 0.02});
+  const recording::Run run = see(Motion(), {.duration = 10});
+  const trajectory::Trajectory all = trajectory::fit_trajectory(run, {});
+  const trajectory::Trajectory part = trajectory::fit_trajectory(run, {.low = 0.002, .high = 0.02});
   CHECK(all.samples_trimmed == 0);
   std::uint64_t outside = 0, kept = 0;
   double inside = 0, weight = 0;
-  for (const Piece& piece : all.pieces) {
+  for (const trajectory::Piece& piece : all.pieces) {
     for (std::size_t k = 0; k < piece.size(); ++k) {
       const bool in = piece.position[2][k] >= 0.002 && piece.position[2][k] <= 0.02;
       outside += !in;
       inside += in ? piece.weight[k] : 0;
     }
   }
-  for (const Piece& piece : part.pieces) {
+  for (const trajectory::Piece& piece : part.pieces) {
     kept += piece.size();
     REQUIRE(piece.velocity_variance.size() == piece.size());
     for (std::size_t k = 0; k < piece.size(); ++k) {
@@ -159,12 +160,12 @@ TEST_CASE("samples beyond the end faces are left out, counted, and end a piece")
   CHECK(part.pieces.size() > all.pieces.size());  // the bead leaves and comes back: no track goes across
   CHECK(weight == Approx(inside));
   CHECK(part.covered == Approx(inside));
-  CHECK(fit_trajectory(run, {.low = 10, .high = 50}).pieces.empty());
+  CHECK(trajectory::fit_trajectory(run, {.low = 10, .high = 50}).pieces.empty());
 }
 
 TEST_CASE("a simulated bead without noise is followed exactly") {
   const Motion motion;
-  Run run;
+  recording::Run run;
   run.source = "exact";
   for (int k = 0; k < 8000; ++k) {
     const double t = k / 2000.0;
@@ -172,11 +173,11 @@ TEST_CASE("a simulated bead without noise is followed exactly") {
     const auto x = motion.position(t);
     for (std::size_t axis = 0; axis < 3; ++axis) run.position[axis].push_back(x[axis]);
   }
-  for (const SplineKind kind : {SplineKind::cubic, SplineKind::smoothing}) {
-    const Trajectory trajectory = fit_trajectory(run, {.kind = kind, .gap_limit = 0.01});
+  for (const trajectory::SplineKind kind : {trajectory::SplineKind::cubic, trajectory::SplineKind::smoothing}) {
+    const trajectory::Trajectory trajectory = trajectory::fit_trajectory(run, {.kind = kind, .gap_limit = 0.01});
     double worst = 0;
     std::size_t far = 0, count = 0;
-    for (const Piece& piece : trajectory.pieces) {
+    for (const trajectory::Piece& piece : trajectory.pieces) {
       for (std::size_t k = 0; k < piece.size(); ++k) {
         const double t = piece.start + static_cast<double>(k) * piece.step;
         const auto x = motion.position(t), v = motion.velocity(t);

@@ -5,7 +5,7 @@
 
 #include "recording/support.hpp"
 
-using namespace millscope::studies;
+using namespace millscope;
 using namespace recording_test;
 using Catch::Contains;
 
@@ -13,7 +13,7 @@ namespace {
 
 /// The known motion in a mill of 0.24 m across; lengths and times multiplied.
 std::string motion_rows(double length, double time) {
-  const Run seen = see(Motion(), {.duration = 20});
+  const recording::Run seen = see(Motion(), {.duration = 20});
   std::string text;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     text += std::to_string(time * seen.time[i]);
@@ -26,7 +26,7 @@ std::string motion_rows(double length, double time) {
 std::string reason(const Scratch& scratch, double length, double time, const std::string& columns, const std::string& more = "") {
   scratch.file("run.txt", motion_rows(length, time));
   const auto yaml = scratch.file("r.yaml", "files: run.txt\ncolumns: " + columns + "\n" + more);
-  return refusal([&] { read_recording(yaml); });
+  return refusal([&] { recording::read_recording(yaml); });
 }
 
 }  // namespace
@@ -72,9 +72,9 @@ TEST_CASE("points that do not fit the stated mill are refused") {
 TEST_CASE("a bare file in the wrong unit is refused as well") {
   const Scratch scratch;
   const auto file = scratch.file("run.csv", "t,x,y,z\n" + motion_rows(1, 1));
-  CHECK(refusal([&] { read_recording(file); }).empty() == false);
+  CHECK(refusal([&] { recording::read_recording(file); }).empty() == false);
   const auto metres = scratch.file("metres.txt", "t_ms x_m y_m z_m\n" + motion_rows(1e3, 1e3));
-  CHECK_THAT(refusal([&] { read_recording(metres); }), Contains("metres.txt:") && Contains("probably in mm"));
+  CHECK_THAT(refusal([&] { recording::read_recording(metres); }), Contains("metres.txt:") && Contains("probably in mm"));
 }
 
 TEST_CASE("a tracer at rest is a recording, however fast the camera") {
@@ -89,6 +89,6 @@ TEST_CASE("a tracer at rest is a recording, however fast the camera") {
       text += "\n";
     }
     INFO(interval << " ms");
-    CHECK(read_recording(scratch.file("rest.txt", text)).runs[0].size() > 2990);
+    CHECK(recording::read_recording(scratch.file("rest.txt", text)).runs[0].size() > 2990);
   }
 }

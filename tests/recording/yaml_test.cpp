@@ -7,7 +7,7 @@
 
 #include "recording/support.hpp"
 
-using namespace millscope::studies;
+using namespace millscope;
 using namespace recording_test;
 using Catch::Contains;
 
@@ -18,7 +18,7 @@ struct Folder : Scratch {
     file("a.txt", circle_rows(300));
     file("b.txt", circle_rows(200));
   }
-  Recording read(const std::string& yaml) const { return read_recording(file("r.yaml", yaml)); }
+  recording::Recording read(const std::string& yaml) const { return recording::read_recording(file("r.yaml", yaml)); }
   std::string why(const std::string& yaml) const {
     return refusal([&] { read(yaml); });
   }
@@ -28,7 +28,7 @@ struct Folder : Scratch {
 
 TEST_CASE("several files are several runs, each with its own start") {
   const Folder folder;
-  const Recording recording = folder.read("files: [b.txt, a.txt]\n");
+  const recording::Recording recording = folder.read("files: [b.txt, a.txt]\n");
   REQUIRE(recording.runs.size() == 2);
   CHECK(recording.runs[0].name == "b");
   CHECK(recording.runs[1].name == "a");
@@ -42,7 +42,7 @@ TEST_CASE("a pattern names all files that match, by name, and runs of one name a
   const Folder folder;
   std::filesystem::create_directory(folder / "more");
   folder.file("more/a.txt", circle_rows(250));
-  const Recording recording = folder.read("files: [\"?.txt\", more/a.txt]\n");
+  const recording::Recording recording = folder.read("files: [\"?.txt\", more/a.txt]\n");
   REQUIRE(recording.runs.size() == 3);
   CHECK(recording.runs[0].name == "a");
   CHECK(recording.runs[1].name == "b");
@@ -52,8 +52,8 @@ TEST_CASE("a pattern names all files that match, by name, and runs of one name a
 
 TEST_CASE("the condition is read in SI, and what is absent stays unknown") {
   const Folder folder;
-  const Condition c = folder
-                          .read(R"(files: a.txt
+  const recording::Condition c = folder
+                                     .read(R"(files: a.txt
 condition:
   speed: 75 %critical
   direction: clockwise
@@ -67,7 +67,7 @@ condition:
   power: {value: 7.335 W, sem: 3 mW}
 encoder: none
 )")
-                          .condition;
+                                     .condition;
   const double critical = 42.3 / std::sqrt(0.29) * std::numbers::pi / 30;
   CHECK(*c.speed == Approx(0.75 * critical));
   CHECK(*c.angular_velocity == Approx(-0.75 * critical));
@@ -80,7 +80,7 @@ encoder: none
   CHECK(c.power->sem == Approx(0.003));
   CHECK(c.geometry.empty());
 
-  const Condition none = folder.read("files: a.txt\n").condition;
+  const recording::Condition none = folder.read("files: a.txt\n").condition;
   CHECK_FALSE(none.speed);
   CHECK_FALSE(none.filling);
   CHECK_FALSE(none.power);
@@ -144,7 +144,7 @@ TEST_CASE("the mill's diameter comes from the geometry's case where it is not sa
   const Folder folder;
   folder.file("mill.yaml", "mill: {diameter: 300 mm, speed: 75 %critical}\n");
   const std::string head = "files: a.txt\ncondition:\n  bead_diameter: 10 mm\n  speed: 75 %critical\n  geometry: mill.yaml\n";
-  const Condition c = folder.read(head).condition;
+  const recording::Condition c = folder.read(head).condition;
   CHECK(*c.mill_diameter == Approx(0.3));
   CHECK(c.geometry == folder / "mill.yaml");
   CHECK(*c.speed == Approx(6.169).epsilon(1e-3));
@@ -153,15 +153,15 @@ TEST_CASE("the mill's diameter comes from the geometry's case where it is not sa
 
 TEST_CASE("axes are swapped and turned, and nothing is mirrored silently") {
   const Folder folder;
-  const Run plain = folder.read("files: a.txt\n").runs[0];
-  const Run turned = folder.read("files: a.txt\naxes: {x: y, y: -x, z: +z}\n").runs[0];
+  const recording::Run plain = folder.read("files: a.txt\n").runs[0];
+  const recording::Run turned = folder.read("files: a.txt\naxes: {x: y, y: -x, z: +z}\n").runs[0];
   for (const std::size_t i : {0u, 17u, 299u}) {
     CHECK(turned.position[0][i] == plain.position[1][i]);
     CHECK(turned.position[1][i] == -plain.position[0][i]);
     CHECK(turned.position[2][i] == plain.position[2][i]);
   }
   CHECK_THAT(folder.why("files: a.txt\naxes: {x: -x, y: y, z: z}\n"), Contains("r.yaml:2:") && Contains("mirror: true"));
-  const Run mirrored = folder.read("files: a.txt\nmirror: true\naxes: {x: -x, y: y, z: z}\n").runs[0];
+  const recording::Run mirrored = folder.read("files: a.txt\nmirror: true\naxes: {x: -x, y: y, z: z}\n").runs[0];
   CHECK(mirrored.position[0][9] == -plain.position[0][9]);
   CHECK_THAT(folder.why("files: a.txt\nmirror: true\naxes: {x: y, y: z, z: x}\n"), Contains("mirrors nothing"));
   CHECK_THAT(folder.why("files: a.txt\naxes: {x: y, y: y, z: z}\n"), Contains("second time"));
@@ -170,12 +170,12 @@ TEST_CASE("axes are swapped and turned, and nothing is mirrored silently") {
 
 TEST_CASE("where the mill stands is taken as it is given") {
   const Folder folder;
-  const Recording recording = folder.read("files: a.txt\nframe: {axis: [1.4 mm, -0.9 mm], ends: [0, 60 mm]}\n");
+  const recording::Recording recording = folder.read("files: a.txt\nframe: {axis: [1.4 mm, -0.9 mm], ends: [0, 60 mm]}\n");
   REQUIRE(recording.frame);
   CHECK(recording.frame->axis[0] == Approx(0.0014));
   CHECK(recording.frame->axis[1] == Approx(-0.0009));
   CHECK(recording.frame->high == Approx(0.06));
-  const Recording bare = folder.read("files: a.txt\nframe: {axis: [1.4, -0.9, mm], ends: [0, 6, cm]}\n");
+  const recording::Recording bare = folder.read("files: a.txt\nframe: {axis: [1.4, -0.9, mm], ends: [0, 6, cm]}\n");
   CHECK(bare.frame->axis == recording.frame->axis);
   CHECK(bare.frame->high == Approx(0.06));
   CHECK_THAT(folder.why("files: a.txt\nframe: {axis: [1, 2, s]}\n"), Contains("r.yaml:2:") && Contains("length"));
@@ -210,7 +210,7 @@ TEST_CASE("the examples that come with millscope are read") {
   std::string rows;
   for (int k = 0; k < 200; ++k) rows += ctrack_row(5 * k, 100 * std::cos(0.02 * k), 100 * std::sin(0.02 * k), 30);
   for (const char* name : {"run1.a", "run2.a"}) scratch.file(name, ctrack_head() + rows);
-  const Recording runs = read_recording(scratch / "ctrack.yaml");
+  const recording::Recording runs = recording::read_recording(scratch / "ctrack.yaml");
   REQUIRE(runs.runs.size() == 2);
   CHECK(runs.runs[0].size() == 200);
   CHECK(*runs.condition.angular_velocity < 0);
@@ -221,7 +221,7 @@ TEST_CASE("the examples that come with millscope are read") {
              std::to_string(100 * std::sin(0.02 * k)) + ",tracer\n";
   }
   scratch.file("tracer.csv", table);
-  const Run run = read_recording(scratch / "table.yaml").runs[0];
+  const recording::Run run = recording::read_recording(scratch / "table.yaml").runs[0];
   REQUIRE(run.size() == 200);
   CHECK(run.position[0][100] == Approx(0.1 * std::cos(2.0)));
   CHECK(run.position[1][100] == Approx(0.1 * std::sin(2.0)));

@@ -6,7 +6,7 @@
 
 #include "studies/camera/study/study.hpp"
 
-namespace millscope::studies {
+namespace millscope::camera {
 namespace {
 
 constexpr double kFewestVisits = 10;
@@ -54,16 +54,16 @@ struct Bias {
   }
 };
 
-const ResultArray& field(const ResultSet& results, const std::string& name) {
-  const ResultArray* found = results.find("pept_grid", name);
+const analysis::ResultArray& field(const analysis::ResultSet& results, const std::string& name) {
+  const analysis::ResultArray* found = results.find("pept_grid", name);
   if (found == nullptr) throw base::UserError(fmt::format("pept_grid gives no '{}'", name));
   return *found;
 }
 
 /// The bead's true mean speed in each cell against what the recording says of the same time: what the camera alone does.
-void add_bias(const ResultSet& seen, const ResultSet& exact, Bias& bias) {
-  const ResultArray &speed = field(seen, "speed"), &truth = field(exact, "speed"), &time = field(exact, "occupancy"),
-                    &visits = field(exact, "visits");
+void add_bias(const analysis::ResultSet& seen, const analysis::ResultSet& exact, Bias& bias) {
+  const analysis::ResultArray &speed = field(seen, "speed"), &truth = field(exact, "speed"), &time = field(exact, "occupancy"),
+                              &visits = field(exact, "visits");
   for (std::size_t i = 0; i < speed.size(); ++i) {
     if (visits.value[i] >= kFewestVisits && std::isfinite(speed.value[i])) bias.add(speed.value[i], truth.value[i], time.value[i]);
   }
@@ -71,19 +71,19 @@ void add_bias(const ResultSet& seen, const ResultSet& exact, Bias& bias) {
 
 /// What one bead's recording says of every field.
 struct BeadFields {
-  std::vector<ResultArray> fields;  ///< in the order of kFields
+  std::vector<analysis::ResultArray> fields;  ///< in the order of kFields
   std::vector<double> visits;
 };
 
 /// Agreement with the truth in the cells that `counts` accepts for a bead.
 template <class Counts>
-nlohmann::json agreement(const std::vector<BeadFields>& beads, const ResultSet& truth, const Counts& counts) {
+nlohmann::json agreement(const std::vector<BeadFields>& beads, const analysis::ResultSet& truth, const Counts& counts) {
   nlohmann::json result;
   for (std::size_t f = 0; f < kFields.size(); ++f) {
-    const ResultArray& wanted = field(truth, kFields[f]);
+    const analysis::ResultArray& wanted = field(truth, kFields[f]);
     Agreement all;
     for (const BeadFields& bead : beads) {
-      const ResultArray& found = bead.fields[f];
+      const analysis::ResultArray& found = bead.fields[f];
       for (std::size_t i = 0; i < found.size(); ++i) {
         if (counts(bead, i)) all.add(found.value[i], found.sem[i], found.low[i], found.high[i], wanted.value[i]);
       }
@@ -100,7 +100,7 @@ nlohmann::json study_fields(const std::filesystem::path& run, const Camera& came
   const SimulatedBeads beads(run, registry);
   const std::string settings = fmt::format("analyzers: {{pept_grid: {{cells_x: {0}, cells_y: {0}}}}}\n", study.cells);
   const std::string trajectory = study.gap_limit > 0 ? fmt::format("trajectory: {{gap_limit: {}}}\n", study.gap_limit) : "";
-  const ResultSet truth = analyze_path(run, {}, beads.analyze_from(), settings, registry);
+  const analysis::ResultSet truth = analyze_path(run, {}, beads.analyze_from(), settings, registry);
   const Workplace workplace;
   std::vector<BeadFields> recorded;
   std::vector<double> mean_visits(field(truth, "visits").size(), 0.0);
@@ -108,8 +108,8 @@ nlohmann::json study_fields(const std::filesystem::path& run, const Camera& came
   const std::size_t count = std::min(study.most_beads, beads.tracks().size());
   for (std::size_t k = 0; k < count; ++k) {
     const std::int64_t id = beads.tracks()[k].bead;
-    const ResultSet seen = analyze_path(record(beads, camera, {id}, workplace.path(), 1), {}, 0, settings + trajectory, registry);
-    const ResultSet exact = analyze_path(run, {std::to_string(id)}, beads.analyze_from(), settings, registry);
+    const analysis::ResultSet seen = analyze_path(record(beads, camera, {id}, workplace.path(), 1), {}, 0, settings + trajectory, registry);
+    const analysis::ResultSet exact = analyze_path(run, {std::to_string(id)}, beads.analyze_from(), settings, registry);
     BeadFields bead;
     for (const std::string& name : kFields) bead.fields.push_back(field(seen, name));
     bead.visits = field(seen, "visits").value;
@@ -129,4 +129,4 @@ nlohmann::json study_fields(const std::filesystem::path& run, const Camera& came
           {"speed", bias.json()}};
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera

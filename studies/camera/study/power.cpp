@@ -4,7 +4,7 @@
 #include "kernel/config/units.hpp"
 #include "studies/camera/study/study.hpp"
 
-namespace millscope::studies {
+namespace millscope::camera {
 namespace {
 
 const std::vector<int> kCells = {15, 25, 50, 100};
@@ -17,9 +17,9 @@ std::string settings_of(const char* trajectory) {
 }
 
 /// Bbosa's sums for every size of cells, over `exact`.
-nlohmann::json ratios(const ResultSet& results, double exact) {
+nlohmann::json ratios(const analysis::ResultSet& results, double exact) {
   nlohmann::json all;
-  for (const ResultArray& a : results.arrays) {
+  for (const analysis::ResultArray& a : results.arrays) {
     if (a.name.starts_with("power_") && a.shape.empty() && a.analyzer.starts_with("power_")) {
       all[a.analyzer.substr(6)][a.name.substr(6)] = {{"over_exact", a.value[0] / exact}, {"sem", a.sem.empty() ? 0.0 : a.sem[0] / exact}};
     }
@@ -49,10 +49,10 @@ Camera louder(const std::string& file, double factor, const host::Registry& regi
 
 nlohmann::json study_power(const std::filesystem::path& run, const std::string& camera_file, const host::Registry& registry) {
   const SimulatedBeads beads(run, registry);
-  const ResultSet charge = analyze_path(run, {}, beads.analyze_from(), settings_of(""), registry);
+  const analysis::ResultSet charge = analyze_path(run, {}, beads.analyze_from(), settings_of(""), registry);
   const double exact = charge.find("power_50", "power_gravity")->value[0];
   nlohmann::json result{{"exact_W", exact}, {"whole_charge", ratios(charge, exact)}};
-  const ResultSet tracks = analyze_path(run, {"all"}, beads.analyze_from(), settings_of(""), registry);
+  const analysis::ResultSet tracks = analyze_path(run, {"all"}, beads.analyze_from(), settings_of(""), registry);
   // Against the power of these very beads, so that their number does not matter.
   const double of_beads = tracks.find("power_50", "power_gravity")->value[0];
   result["beads_W"] = of_beads;
@@ -61,11 +61,12 @@ nlohmann::json study_power(const std::filesystem::path& run, const std::string& 
   for (const double noise : kNoise) {
     const auto recording = record(beads, louder(camera_file, noise, registry), {}, workplace.path(), 1);
     for (const char* kind : {"smoothing", "cubic"}) {
-      const ResultSet seen = analyze_path(recording, {}, 0, settings_of(fmt::format("trajectory: {{kind: {}}}\n", kind).c_str()), registry);
+      const analysis::ResultSet seen =
+          analyze_path(recording, {}, 0, settings_of(fmt::format("trajectory: {{kind: {}}}\n", kind).c_str()), registry);
       result["seen"].push_back({{"noise", noise}, {"spline", kind}, {"cells", ratios(seen, of_beads)}});
     }
   }
   return result;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera

@@ -11,7 +11,7 @@
 #include "studies/analysis/open_source.hpp"
 #include "studies/camera/synthesize.hpp"
 
-namespace millscope::studies {
+namespace millscope::camera {
 
 namespace fs = std::filesystem;
 
@@ -26,22 +26,22 @@ Workplace::~Workplace() {
   fs::remove_all(path_, ignored);
 }
 
-ResultSet analyze_path(const fs::path& path, const std::vector<std::string>& tracers, double from, const std::string& settings,
-                       const host::Registry& registry) {
+analysis::ResultSet analyze_path(const fs::path& path, const std::vector<std::string>& tracers, double from, const std::string& settings,
+                                 const host::Registry& registry) {
   const config::Node node = config::parse_document(settings, "study settings");
-  SourceRequest request;
+  analysis::SourceRequest request;
   request.path = path;
   request.tracers = tracers;
   if (from > 0) request.from = from;
   if (const auto section = node.find("trajectory")) {
-    request.trajectory = read_trajectory_options(*section);
+    request.trajectory = analysis::read_trajectory_options(*section);
     request.trajectory_given = true;
   }
-  const OpenedSource opened = open_source(request, registry);
-  const AnalyzerChoice choice = choose_analyzers(node, true, {}, registry, opened.source->context());
-  EngineOptions options;
+  const analysis::OpenedSource opened = analysis::open_source(request, registry);
+  const analysis::AnalyzerChoice choice = analysis::choose_analyzers(node, true, {}, registry, opened.source->context());
+  analysis::EngineOptions options;
   options.threads = 1;
-  return run_analyzers(*opened.source, choice.instances, options);
+  return analysis::run_analyzers(*opened.source, choice.instances, options);
 }
 
 fs::path record(const SimulatedBeads& beads, const Camera& camera, const std::vector<std::int64_t>& ids, const fs::path& folder,
@@ -60,11 +60,11 @@ fs::path record(const SimulatedBeads& beads, const Camera& camera, const std::ve
   return recording;
 }
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera
 
 int main(int count, char** words) {
   using namespace millscope;
-  using namespace millscope::studies;
+  using namespace millscope::camera;
   const std::vector<std::string> arguments(words + 1, words + count);
   try {
     const host::Registry registry;

@@ -16,7 +16,7 @@
 #include "studies/camera/camera.hpp"
 #include "studies/camera/simulated_beads.hpp"
 
-namespace millscope::studies {
+namespace millscope::camera {
 
 /// A directory of its own that goes away with the object.
 class Workplace {
@@ -32,8 +32,8 @@ class Workplace {
 };
 
 /// A source of blocks and the analyzers of `settings` (YAML: the map `analyzers`, and `trajectory`) run over it.
-ResultSet analyze_path(const std::filesystem::path& path, const std::vector<std::string>& tracers, double from, const std::string& settings,
-                       const host::Registry& registry);
+analysis::ResultSet analyze_path(const std::filesystem::path& path, const std::vector<std::string>& tracers, double from,
+                                 const std::string& settings, const host::Registry& registry);
 
 /// The beads seen by the camera as recording.yaml in `folder`, with the mill's true axis, which this camera must not move.
 std::filesystem::path record(const SimulatedBeads& beads, const Camera& camera, const std::vector<std::int64_t>& ids,
@@ -48,4 +48,4 @@ nlohmann::json study_fields(const std::filesystem::path& run, const Camera& came
                             const host::Registry& registry);
 nlohmann::json study_power(const std::filesystem::path& run, const std::string& camera_file, const host::Registry& registry);
 
-}  // namespace millscope::studies
+}  // namespace millscope::camera

@@ -21,9 +21,9 @@ namespace {
 constexpr double kExact = 1e-3;  // error of a simulation's reading, of the recording's: its frame is known
 
 /// Value and standard error as such: the interval is wider than normal where few rides or flights lie behind it.
-FrameReading reading(const studies::Finding& finding) {
+FrameReading reading(const inspect::Finding& finding) {
   FrameReading r;
-  if (!finding.estimate || finding.bound != studies::Bound::both) return r;
+  if (!finding.estimate || finding.bound != inspect::Bound::both) return r;
   r.value = finding.estimate->value;
   r.sem = finding.estimate->standard_error();
   return r;
@@ -41,10 +41,10 @@ bool doubts(const Question& q, const std::string& parameter) {
 struct Reader {
   const calibrate::Recorded& recorded;
   const ExpectedMill& mill;
-  const studies::Recording& recording = recorded.tracks();
-  std::optional<studies::FreeFlight> flight = {};
+  const recording::Recording& recording = recorded.tracks();
+  std::optional<inspect::FreeFlight> flight = {};
 
-  const studies::MillMotion& rides() { return recorded.motion(); }
+  const inspect::MillMotion& rides() { return recorded.motion(); }
 
   /// An inner layer of the charge turns on a circle, too, but slower.
   bool along_shell() {
@@ -72,7 +72,7 @@ struct Reader {
 
   FrameReading tilt() {
     if (!mill.upright) return {};
-    if (!flight) flight = studies::measure_flight(recording);
+    if (!flight) flight = inspect::measure_flight(recording);
     return scaled(reading(flight->angle_degrees), std::numbers::pi / 180);
   }
 };
@@ -92,7 +92,8 @@ void append(const std::vector<FrameReading>& readings, const VectorXd& values, d
 }  // namespace
 
 ExpectedMill expected_mill(const Question& question, std::size_t condition, const host::Registry& registry) {
-  const studies::MillOfCase mill = studies::read_mill_of_case(question.study.base, registry, question.study.conditions[condition].settings);
+  const analysis::MillOfCase mill =
+      analysis::read_mill_of_case(question.study.base, registry, question.study.conditions[condition].settings);
   const AnalyzerContext& c = mill.context;
   const auto leans = [](const auto& varied) { return varied.path.starts_with("body_forces."); };
   const bool varied = std::any_of(question.study.parameters.begin(), question.study.parameters.end(), leans) ||

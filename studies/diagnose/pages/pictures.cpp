@@ -11,15 +11,15 @@ namespace millscope::diagnose {
 namespace {
 
 namespace fs = std::filesystem;
-using studies::Curve;
-using studies::CurvePicture;
+using picture::Curve;
+using picture::CurvePicture;
 
 struct Drawer {
   fs::path folder;
   std::vector<fs::path> files;
 
   void curves(const CurvePicture& picture, const std::string& name) {
-    studies::draw_curves(picture, folder / name);
+    picture::draw_curves(picture, folder / name);
     files.push_back(folder / (name + ".svg"));
   }
 };

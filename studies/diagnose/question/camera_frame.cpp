@@ -37,7 +37,7 @@ std::string camera_frame_text(const std::vector<std::pair<const Nuisance*, doubl
 
 void check_camera_frame(const Nuisance& n, const host::Registry& registry) {
   try {
-    for (const double end : {n.low, n.high}) studies::parse_camera(camera_frame_text({{&n, end}}), "its camera", registry);
+    for (const double end : {n.low, n.high}) camera::parse_camera(camera_frame_text({{&n, end}}), "its camera", registry);
   } catch (const base::UserError& e) {
     throw base::UserError(n.where, fmt::format("nuisance '{}': {}", n.name, e.what()));
   }
@@ -55,7 +55,7 @@ void check_recorded_frames(const Question& question, const calibrate::Observer& 
         throw base::UserError(n.where, fmt::format("nuisance '{}' would change its sign in condition '{}': {} turns the other way than the "
                                                    "recording; give its mill.direction as recorded",
                                                    n.name, condition.name, question.study.base.string()));
-      if (camera_frame_parameter(n).starts_with("offset_") && !studies::read_description(condition.recording).frame)
+      if (camera_frame_parameter(n).starts_with("offset_") && !recording::read_description(condition.recording).frame)
         throw base::UserError(n.where,
                               fmt::format("nuisance '{}': {} states no axis that could be doubted, it is found from the points; give "
                                           "'frame: {{axis: [x, y]}}' there, or leave the nuisance out",

@@ -14,11 +14,11 @@ constexpr const char* kName = "mean_acceleration";
 constexpr int kForceSeeds = 2;
 
 struct Side {
-  studies::ResultSet set;
-  const studies::ResultArray& of(const char* name) const { return *set.find(kName, name); }
+  analysis::ResultSet set;
+  const analysis::ResultArray& of(const char* name) const { return *set.find(kName, name); }
   /// Too few visits give no error that a p could rest on.
   bool sure(const char* name, std::size_t i) const {
-    return (of(name).flags[i] & (studies::kFewBlocks | studies::kOftenUndefined | studies::kNoUncertainty)) == 0;
+    return (of(name).flags[i] & (analysis::kFewBlocks | analysis::kOftenUndefined | analysis::kNoUncertainty)) == 0;
   }
 };
 
