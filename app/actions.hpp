@@ -9,6 +9,7 @@
 
 #include "app/commands.hpp"
 #include "app/tables.hpp"
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/document.hpp"
 
 namespace millscope::app {
@@ -50,7 +51,7 @@ inline int call_action(const ActionTable& table, const Arguments& arguments) {
     if (arguments[0] == a.name) return a.call(Arguments(arguments.begin() + 1, arguments.end()));
     names.emplace_back(a.name);
   }
-  throw base::UserError(fmt::format("'{} {}' is no action; {}", table.name, arguments[0], config::suggestion(arguments[0], names)));
+  throw base::UserError(fmt::format("'{} {}' is no action; {}", table.name, arguments[0], base::suggestion(arguments[0], names)));
 }
 
 }  // namespace millscope::app

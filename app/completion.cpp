@@ -8,6 +8,7 @@
 
 #include "app/shell_scripts.hpp"
 #include "app/tables.hpp"
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/document.hpp"
 
 namespace millscope::app {
@@ -158,7 +159,7 @@ int completion(const Arguments& arguments) {
   const std::string shell = options.text("SHELL");
   const std::optional<std::string_view> script = shell_script(shell);
   if (!script)
-    throw base::UserError(fmt::format("there is no completion for '{}'; {}", shell, config::suggestion(shell, {"bash", "zsh", "fish"})));
+    throw base::UserError(fmt::format("there is no completion for '{}'; {}", shell, base::suggestion(shell, {"bash", "zsh", "fish"})));
   fmt::print("{}", *script);
   return kDone;
 }

@@ -5,6 +5,7 @@
 
 #include "app/actions.hpp"
 #include "app/commands.hpp"
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/document.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
@@ -93,9 +94,9 @@ int analyze_plan(const Arguments& arguments) {
         fmt::format("--descent-steps {} of --descent-step {}: give 1 to 1000 steps of a positive length", descent.steps, descent.step));
   }
   const doe::TableAnalysis analysis =
-      doe::analyze_table(doe::Table::read(options.text("TABLE")), choice, model_of(options), confidence_of(options), descent);
+      doe::analyze_table(base::Table::read(options.text("TABLE")), choice, model_of(options), confidence_of(options), descent);
   std::vector<doe::PrintedFigure> printed;
-  if (options.has("printed")) printed = doe::compare_printed(analysis, doe::Table::read(options.text("printed")));
+  if (options.has("printed")) printed = doe::compare_printed(analysis, base::Table::read(options.text("printed")));
   nlohmann::ordered_json json = doe::analysis_json(analysis);
   if (!printed.empty()) json["printed"] = doe::printed_json(printed);
   if (!output.empty()) output::write_json(output, json);
@@ -143,7 +144,7 @@ doe::Design plan_of(const Options& options) {
   if (kind == "latin-hypercube") return doe::latin_hypercube(factors, runs(), static_cast<std::uint64_t>(whole(options, "seed", 1)));
   if (kind == "sobol") return doe::sobol(factors, runs());
   throw UserError(fmt::format("'doe design {}' is no plan; {}", kind,
-                              config::suggestion(kind, {"two-level", "central-composite", "latin-hypercube", "sobol"})));
+                              base::suggestion(kind, {"two-level", "central-composite", "latin-hypercube", "sobol"})));
 }
 
 int design(const Arguments& arguments) {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "app/commands.hpp"
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/case.hpp"
 #include "kernel/config/document.hpp"
 #include "kernel/config/values.hpp"
@@ -34,7 +35,7 @@ void check_unit(const Descriptor& mesh, const std::string& unit) {
     for (std::string choice; std::getline(choices, choice, '|');) known.push_back(choice);
   }
   if (std::find(known.begin(), known.end(), unit) == known.end())
-    throw UserError(fmt::format("--unit '{}' is not known; {}", unit, config::suggestion(unit, known)));
+    throw UserError(fmt::format("--unit '{}' is not known; {}", unit, base::suggestion(unit, known)));
 }
 
 host::GeometryObject from_mesh_file(const std::string& file, const std::string& unit, const host::Registry& registry) {

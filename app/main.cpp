@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "app/commands.hpp"
+#include "kernel/base/nearest.hpp"
 #include "kernel/base/program.hpp"
 #include "kernel/config/document.hpp"
 
@@ -74,7 +75,7 @@ int dispatch(const Arguments& all) {
     if (all[0] == c.name) return c.call(Arguments(all.begin() + 1, all.end()));
     if (c.what != nullptr) names.emplace_back(c.name);
   }
-  throw base::UserError(fmt::format("'{}' is no command; {}", all[0], config::suggestion(all[0], names)));
+  throw base::UserError(fmt::format("'{}' is no command; {}", all[0], base::suggestion(all[0], names)));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "app/commands.hpp"
 #include "app/tables.hpp"
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/document.hpp"
 
 namespace millscope::app {
@@ -50,7 +51,7 @@ bool Options::parse(const Arguments& arguments) {
   } catch (const po::unknown_option& e) {
     std::vector<std::string> known;
     for (const auto& option : visible_.options()) known.push_back("--" + option->long_name());
-    throw UserError(fmt::format("unknown option '{}'; {}", e.get_option_name(), config::suggestion(e.get_option_name(), known)));
+    throw UserError(fmt::format("unknown option '{}'; {}", e.get_option_name(), base::suggestion(e.get_option_name(), known)));
   } catch (const po::error& e) {
     throw UserError(fmt::format("{}; usage: millscope {}", e.what(), usage_));
   }

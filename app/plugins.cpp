@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include "app/commands.hpp"
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/document.hpp"
 #include "kernel/config/writer.hpp"
 #include "kernel/host/describe.hpp"
@@ -71,7 +72,7 @@ int plugin(const Arguments& arguments) {
   if (!kind) {
     std::vector<std::string> known;
     for (const Kind k : host::all_kinds()) known.push_back(host::text(k));
-    throw base::UserError(fmt::format("'{}' is no kind of plugin; {}", word, config::suggestion(word, known)));
+    throw base::UserError(fmt::format("'{}' is no kind of plugin; {}", word, base::suggestion(word, known)));
   }
   const std::string path = host::scaffold(*kind, options.text("NAME"), options.text("directory"));
   fmt::print("wrote {0}\nbuild and test it:\n  cmake -B {0}/build {0} && cmake --build {0}/build && ctest --test-dir {0}/build\n", path);

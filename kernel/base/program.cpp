@@ -3,7 +3,6 @@
 #include <gnu/libc-version.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 
 #include "kernel/base/hash.hpp"
@@ -21,9 +20,9 @@ std::string version_and_commit() {
   return version() + (known.empty() ? " (commit not known: built outside a git checkout)" : " (commit " + known + ")");
 }
 
-ProgramParts program_parts(std::span<const std::string_view> folders) {
+ProgramParts program_parts(std::span<const std::string> folders) {
   Hash code;
-  for (const std::string_view folder : folders) {
+  for (const std::string& folder : folders) {
     const std::vector<FolderDigest>& all = folder_digests();
     const auto found = std::find_if(all.begin(), all.end(), [&](const FolderDigest& d) { return d.folder == folder; });
     assert(found != all.end());
@@ -34,10 +33,7 @@ ProgramParts program_parts(std::span<const std::string_view> folders) {
   return {{"code", code.text()}, {"compiler", kBuildCompiler}, {"flags", kBuildFlags}, {"libraries", libraries}};
 }
 
-std::span<const std::string_view> kernel_folders() {
-  static constexpr std::array<std::string_view, 7> kFolders{"sdk/include", "kernel/base",   "kernel/config", "kernel/host",
-                                                            "kernel/dem",  "kernel/output", "kernel/run"};
-  return kFolders;
-}
+const std::vector<std::string>& simulating_folders() { return kSimulatingFolders; }
+const std::vector<std::string>& observing_folders() { return kObservingFolders; }
 
 }  // namespace millscope::base

@@ -4,7 +4,7 @@
 #include <map>
 #include <span>
 #include <string>
-#include <string_view>
+#include <vector>
 
 namespace millscope::base {
 
@@ -19,9 +19,11 @@ std::string version_and_commit();
 /// "code", "compiler", "flags" and "libraries", each with a text that differs where the numbers may. `folders`: whose code counts, of those
 /// that the build knows.
 using ProgramParts = std::map<std::string, std::string>;
-ProgramParts program_parts(std::span<const std::string_view> folders);
+ProgramParts program_parts(std::span<const std::string> folders);
 
 /// The folders that a simulation's numbers come from, its plugins apart.
-std::span<const std::string_view> kernel_folders();
+const std::vector<std::string>& simulating_folders();
+/// Those that what is seen of a simulation comes from besides: camera, splines, analyzers' host, summaries.
+const std::vector<std::string>& observing_folders();
 
 }  // namespace millscope::base

@@ -20,4 +20,7 @@ extern const char* const kBuildCompiler;
 extern const char* const kBuildFlags;
 extern const char* const kBuildLibraries;
 
+/// kernel/base/CMakeLists.txt lists them.
+extern const std::vector<std::string> kSimulatingFolders, kObservingFolders;
+
 }  // namespace millscope::base

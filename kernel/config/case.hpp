@@ -12,13 +12,14 @@
 #include <utility>
 #include <vector>
 
+#include "kernel/base/vector3.hpp"
 #include "kernel/config/document.hpp"
 #include "kernel/config/pairs.hpp"
 #include "millscope/abi.hpp"
 
 namespace millscope::config {
 
-using Vector3 = std::array<double, 3>;
+using base::Vector3;
 
 inline constexpr int kSchemaVersion = 1;
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <filesystem>
 
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/reader.hpp"
 #include "kernel/config/values.hpp"
 
@@ -60,7 +61,7 @@ const Descriptor& descriptor_of(std::span<const Descriptor* const> descriptors, 
     if (d->kind == static_cast<std::uint32_t>(kind)) names.emplace_back(d->name);
   }
   instance.node.at("kind").fail(fmt::format("is '{}', which no loaded plugin of this kind provides; {}", instance.kind,
-                                            names.empty() ? "load one with --plugin-dir" : suggestion(instance.kind, names)));
+                                            names.empty() ? "load one with --plugin-dir" : base::suggestion(instance.kind, names)));
 }
 
 void check_plugins(const Case& c, std::span<const Descriptor* const> descriptors) {

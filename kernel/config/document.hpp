@@ -89,12 +89,6 @@ Node parse_document(const std::string& text, const std::string& file, const std:
 /// are as in the base, too.
 std::string difference(const Node& base, const Node& changed, const std::vector<std::string>& named = {});
 
-/// The candidate nearest to `word` by edit distance, or "" when none is near enough to be meant.
-std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
-
-/// "did you mean 'x'?" or "known: a, b, c".
-std::string suggestion(std::string_view word, const std::vector<std::string>& candidates);
-
 /// `liner~glass` → `glass~liner`: the one spelling of an unordered pair. Keys without '~' come back unchanged.
 std::string normal_pair(std::string_view key);
 

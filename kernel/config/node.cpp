@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/node_data.hpp"
 
 namespace millscope::config {
@@ -26,7 +27,8 @@ void remember(NodeData& data, std::string_view key) {
 std::string inside(const NodeData& data) { return data.path.empty() ? "" : fmt::format(" in '{}'", data.path); }
 
 [[noreturn]] void refuse_unknown(const NodeData& map, const NodeEntry& entry) {
-  throw UserError(entry.value->where, fmt::format("unknown key '{}'{}; {}", entry.written, inside(map), suggestion(entry.key, map.asked)));
+  throw UserError(entry.value->where,
+                  fmt::format("unknown key '{}'{}; {}", entry.written, inside(map), base::suggestion(entry.key, map.asked)));
 }
 
 void finish_below(const NodeData& data) {
@@ -85,7 +87,7 @@ Node Node::at(std::string_view key, std::string_view meaning) const {
   }
   std::string message = fmt::format("missing key '{}'{}", key, inside(*data_));
   if (!meaning.empty()) message += fmt::format("; expected: {}", meaning);
-  const std::string near = nearest(key, unread);
+  const std::string near = base::nearest(key, unread);
   if (!near.empty()) message += fmt::format("; is '{}' meant for it?", near);
   throw UserError(where(), message);
 }

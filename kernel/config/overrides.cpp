@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <charconv>
 
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/node_data.hpp"
 
 namespace millscope::config {
@@ -49,7 +50,7 @@ void refuse_near_miss(const NodeData& root, const std::vector<std::string>& segm
     if (found == nullptr) {
       std::vector<std::string> keys;
       for (const NodeEntry& e : node->entries) keys.push_back(e.key);
-      const std::string near = i == 0 ? "" : nearest(segments[i], keys);
+      const std::string near = i == 0 ? "" : base::nearest(segments[i], keys);
       if (!near.empty()) throw UserError(where, fmt::format("unknown key '{}'; did you mean '{}'?", segments[i], near));
       return;
     }

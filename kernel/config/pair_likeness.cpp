@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/node_data.hpp"
 #include "kernel/config/reader.hpp"
 
@@ -41,7 +42,7 @@ class Completion {
   Node original_of(const Node& like) const {
     const std::string name = normal_pair(like.text());
     if (!section_.has(name))
-      like.fail(fmt::format("names '{}', which 'pairs' does not have; {}", like.text(), suggestion(name, section_.keys())));
+      like.fail(fmt::format("names '{}', which 'pairs' does not have; {}", like.text(), base::suggestion(name, section_.keys())));
     Node original = section_.at(name);
     if (std::find(open_.begin(), open_.end(), original.path()) != open_.end())
       like.fail(fmt::format("names '{}', which is in the end like this pair; give one of them values of its own", name));
@@ -57,7 +58,8 @@ class Completion {
         const Node factor = times->at(key);
         if (own(key)) factor.fail(fmt::format("multiplies a value that '{}' gives itself; keep one of the two", pair.path()));
         if (!original.has(key) || is_of_likeness(key))
-          factor.fail(fmt::format("multiplies a value that '{}' does not give; {}", original.path(), suggestion(key, values_of(original))));
+          factor.fail(
+              fmt::format("multiplies a value that '{}' does not give; {}", original.path(), base::suggestion(key, values_of(original))));
         data.entries.push_back({key, key, multiplied(pair, original.at(key), factor)});
       }
     }

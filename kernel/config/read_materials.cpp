@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/reader.hpp"
 
 namespace millscope::config {
@@ -49,7 +50,8 @@ void check_pair_key(const Node& section, const std::string& key, const std::vect
   }
   for (const std::string& name : {key.substr(0, tilde), key.substr(tilde + 1)}) {
     if (!contains(known, name)) {
-      throw UserError(where, fmt::format("pair '{}' names the unknown material or group '{}'; {}", key, name, suggestion(name, known)));
+      throw UserError(where,
+                      fmt::format("pair '{}' names the unknown material or group '{}'; {}", key, name, base::suggestion(name, known)));
     }
   }
 }
@@ -67,7 +69,7 @@ void check_name(const std::string& name, const Location& where, const char* what
 std::string read_material_name(const Node& node, const std::vector<MaterialCase>& materials) {
   const std::vector<std::string> names = names_of(materials);
   if (!contains(names, node.text()))
-    node.fail(fmt::format("is the unknown material '{}'; {}", node.text(), suggestion(node.text(), names)));
+    node.fail(fmt::format("is the unknown material '{}'; {}", node.text(), base::suggestion(node.text(), names)));
   return node.text();
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "kernel/base/nearest.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/config/units.hpp"
 
@@ -132,7 +133,7 @@ std::string read_choice(const Node& node, std::string_view choices) {
   for (const std::string& word : words) {
     if (word == node.text()) return word;
   }
-  const std::string near = nearest(node.text(), words);
+  const std::string near = base::nearest(node.text(), words);
   std::string list;
   for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
   node.fail(fmt::format("is '{}'; it must be one of {}{}", node.text(), list, near.empty() ? "" : "; did you mean '" + near + "'?"));

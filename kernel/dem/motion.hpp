@@ -1,11 +1,11 @@
 // Prescribed motion of a rigid body: a pure function of time, so that a restart needs no state of it.
 #pragma once
 
-#include <array>
+#include "kernel/base/vector3.hpp"
 
 namespace millscope::dem {
 
-using Vector3 = std::array<double, 3>;
+using base::Vector3;
 
 /// Rotation about a fixed axis, with a ramp from rest and a ripple, and a translation (steady or oscillating).
 struct Motion {

@@ -27,7 +27,7 @@ struct FoundContact {
   static constexpr int kOutOfReach = -1;
   int physics_index;  ///< or kOutOfReach
   bool fresh;
-  Row normal;  ///< world frame
+  Vector3 normal;  ///< world frame
 };
 
 struct Scratch {

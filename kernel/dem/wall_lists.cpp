@@ -15,7 +15,7 @@ void WallContacts::resize(std::int64_t n) {
   for (auto& h : history) h.resize(n);
 }
 
-std::optional<std::int64_t> WallContacts::take(std::int64_t& cursor, std::uint32_t of_bead, std::uint32_t of_feature, const Row& near) {
+std::optional<std::int64_t> WallContacts::take(std::int64_t& cursor, std::uint32_t of_bead, std::uint32_t of_feature, const Vector3& near) {
   while (cursor < count() && bead[cursor] < of_bead) ++cursor;
   std::optional<std::int64_t> best;
   double best_dot = -2;
@@ -68,7 +68,7 @@ std::vector<WallLists::Near> WallLists::near(const Body& body, const CellOrder& 
   const double law_reach = common_.physics.reach();
   common_.each_slab([&](int slab, int) {
     for (std::int64_t i = common_.slabs.begin(slab); i < common_.slabs.end(slab); ++i) {
-      const Row x = to_body(pose, centre(particles.position[i]));
+      const Vector3 x = to_body(pose, centre(particles.position[i]));
       for (int a = 0; a < 3; ++a) coordinate[a][i] = x[a];
       coordinate[3][i] = order.reaches()[i].radius + 0.5 * law_reach;
     }

@@ -15,7 +15,7 @@ namespace millscope::dem {
 struct WallContacts {
   std::vector<std::uint32_t> bead;  ///< index into WallList::bead
   std::vector<std::uint32_t> feature;
-  std::vector<Row> normal;                   ///< in the body's frame
+  std::vector<Vector3> normal;               ///< in the body's frame
   std::vector<std::vector<double>> history;  ///< [number][contact]
 
   static constexpr std::uint32_t kUsedUp =
@@ -25,7 +25,7 @@ struct WallContacts {
   void resize(std::int64_t n);
   /// The contact of a bead with this feature whose normal is nearest; it can be taken once. `cursor`, the first contact of this bead or of
   /// a later one, is kept from call to call: beads come in ascending order.
-  std::optional<std::int64_t> take(std::int64_t& cursor, std::uint32_t bead, std::uint32_t feature, const Row& normal);
+  std::optional<std::int64_t> take(std::int64_t& cursor, std::uint32_t bead, std::uint32_t feature, const Vector3& normal);
 };
 
 /// The beads of one slab that are near one body.
@@ -73,7 +73,7 @@ class WallLists {
   };
   struct Carried {
     std::uint32_t bead, feature;  ///< bead: its new number
-    Row normal;
+    Vector3 normal;
     std::vector<double> history;
   };
   struct Near {

@@ -68,7 +68,7 @@ void WallSweep::ask(const Chunk& chunk) {
   Scratch& scratch = pass_.scratch;
   for (std::int64_t k = 0; k < chunk.count; ++k) {
     const PositionLine& line = pass_.particles.position[list.bead[chunk.begin + k]];
-    const Row x = to_body(poses_[chunk.body], centre(line));
+    const Vector3 x = to_body(poses_[chunk.body], centre(line));
     for (int a = 0; a < 3; ++a) scratch.query_position[a][k] = x[a];
     scratch.query_radius[k] = line.radius;
   }
@@ -95,7 +95,7 @@ void WallSweep::match(Chunk& chunk) {
     const std::int64_t at = chunk.base + c;
     assert(found.bead[c] >= 0 && found.bead[c] < chunk.count);
     const std::uint32_t local = static_cast<std::uint32_t>(chunk.begin + found.bead[c]);
-    const Row normal{found.normal[0][c], found.normal[1][c], found.normal[2][c]};
+    const Vector3 normal{found.normal[0][c], found.normal[1][c], found.normal[2][c]};
     const int p = physics.of_wall(pass_.particles.material[list.bead[local]], body.material_of_slot[found.material[c]]);
     const bool acts = !(found.overlap[c] + physics[p].reach <= 0);
     if (acts) chunk.present |= std::uint64_t{1} << (p % 64);
@@ -128,14 +128,14 @@ void WallSweep::fill(const Chunk& chunk, std::int64_t c, std::int64_t m) {
   WallBatch& b = pass_.scratch.walls;
   const std::uint32_t bead = list.bead[list.next.bead[chunk.base + c]];
   const MotionLine& motion = pass_.particles.motion[bead];
-  const Row position = centre(pass_.particles.position[bead]);
+  const Vector3 position = centre(pass_.particles.position[bead]);
   const double radius = pass_.particles.position[bead].radius;
-  const Row& n = contact.normal;
+  const Vector3& n = contact.normal;
   const double arm = radius - 0.5 * overlap;
-  const Row lever{position[0] - arm * n[0] - pose.centre[0], position[1] - arm * n[1] - pose.centre[1],
-                  position[2] - arm * n[2] - pose.centre[2]};
-  const Row turning = cross(pose.omega, lever);
-  const Row surface = cross({motion.w[0], motion.w[1], motion.w[2]}, n);
+  const Vector3 lever{position[0] - arm * n[0] - pose.centre[0], position[1] - arm * n[1] - pose.centre[1],
+                      position[2] - arm * n[2] - pose.centre[2]};
+  const Vector3 turning = cross(pose.omega, lever);
+  const Vector3 surface = cross({motion.w[0], motion.w[1], motion.w[2]}, n);
   b.contact[m] = static_cast<std::uint32_t>(c);
   b.bead[m] = bead;
   b.fresh[m] = contact.fresh;
@@ -180,10 +180,10 @@ void WallSweep::scatter(const Chunk& chunk, int physics_index, std::int64_t coun
   BodyLedger& book = pass_.state.ledger.bodies[chunk.body];
   const bool post = physics.has_post();
   for (std::int64_t k = 0; k < count; ++k) {
-    const Row f{b.force[0][k], b.force[1][k], b.force[2][k]};
-    const Row n{b.normal[0][k], b.normal[1][k], b.normal[2][k]};
-    const Row lever{b.lever[0][k], b.lever[1][k], b.lever[2][k]};
-    const Row turn = cross(f, n), reaction = cross(lever, f);
+    const Vector3 f{b.force[0][k], b.force[1][k], b.force[2][k]};
+    const Vector3 n{b.normal[0][k], b.normal[1][k], b.normal[2][k]};
+    const Vector3 lever{b.lever[0][k], b.lever[1][k], b.lever[2][k]};
+    const Vector3 turn = cross(f, n), reaction = cross(lever, f);
     ForceLine& line = pass_.state.force[b.bead[k]];
     double power = 0;
     for (int a = 0; a < 3; ++a) {

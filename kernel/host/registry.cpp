@@ -8,6 +8,7 @@
 #include <map>
 #include <tuple>
 
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/document.hpp"
 #include "kernel/host/directory_check.hpp"
 
@@ -57,7 +58,7 @@ std::string hint(const std::vector<Loaded>& loaded, Kind kind, std::string_view 
     if (plugin.kind() == kind) names.emplace_back(plugin.name());
     if (plugin.name() == name && plugin.kind() != kind) return fmt::format("'{}' is of kind {}", name, text(plugin.kind()));
   }
-  return names.empty() ? fmt::format("no {} is loaded", text(kind)) : config::suggestion(name, names);
+  return names.empty() ? fmt::format("no {} is loaded", text(kind)) : base::suggestion(name, names);
 }
 
 }  // namespace
@@ -169,7 +170,7 @@ std::vector<const Loaded*> Registry::find_any(std::string_view name) const {
   }
   if (!found.empty()) return found;
   throw UserError(fmt::format("no plugin is called '{}'; {} (searched: {}; add a directory with --plugin-dir)", name,
-                              names.empty() ? "none is loaded" : config::suggestion(name, names),
+                              names.empty() ? "none is loaded" : base::suggestion(name, names),
                               searched_.empty() ? "nothing" : fmt::format("{}", fmt::join(searched_, ", "))));
 }
 

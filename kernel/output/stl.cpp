@@ -8,21 +8,21 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "kernel/base/vector3.hpp"
 #include "kernel/output/file.hpp"
 
 namespace millscope::output {
 
 namespace {
 
-using Point = std::array<double, 3>;
 struct Corners {
-  Point a, b, c, normal;
+  base::Vector3 a, b, c, normal;
 };
 
 Corners corners_of(const Surface& surface, std::uint64_t triangle) {
   const auto vertex = [&](std::uint64_t k) {
-    const double* at = surface.vertices + 3 * (surface.triangles[3 * triangle + k]);
-    return Point{at[0], at[1], at[2]};
+    const double* at = surface.vertices + 3 * surface.triangles[3 * triangle + k];
+    return base::Vector3{at[0], at[1], at[2]};
   };
   Corners t{vertex(0), vertex(1), vertex(2), {0, 0, 0}};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -67,7 +67,7 @@ void write_binary(AtomicFile& file, const Surface& surface) {
   file.write({reinterpret_cast<const char*>(&count), 4});
   for (std::uint64_t k = 0; k < surface.triangle_count; ++k) {
     const Corners t = corners_of(surface, k);
-    for (const Point* point : {&t.normal, &t.a, &t.b, &t.c}) {
+    for (const base::Vector3* point : {&t.normal, &t.a, &t.b, &t.c}) {
       const std::array<float, 3> rounded{static_cast<float>((*point)[0]), static_cast<float>((*point)[1]), static_cast<float>((*point)[2])};
       file.write({reinterpret_cast<const char*>(rounded.data()), sizeof rounded});
     }

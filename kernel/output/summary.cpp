@@ -39,7 +39,7 @@ nlohmann::ordered_json provenance(std::span<const std::string> command_line, std
   nlohmann::ordered_json json;
   json["version"] = base::version();
   json["commit"] = *base::commit() != '\0' ? nlohmann::ordered_json(base::commit()) : nlohmann::ordered_json();
-  json["program"] = base::program_parts(base::kernel_folders());
+  json["program"] = base::program_parts(base::simulating_folders());
   json["compiler"] = kCompiler;
   json["host"] = host_name();
   json["processor"] = processor_name();

@@ -99,8 +99,8 @@ void set_domain(const Assembly& a, dem::Settings& s) {
 
 double mill_speed(const Assembly& a) {
   if (a.c.mill) return a.c.mill->speed;
-  const int body = a.wall_body_of_mill();
-  return body < 0 ? 0.0 : a.c.geometry[body].motion.rotation->speed;
+  const std::optional<int> body = a.wall_body_of_mill();
+  return body ? a.c.geometry[*body].motion.rotation->speed : 0.0;
 }
 
 double shortest_rayleigh_time(const config::Case& c) {
@@ -189,11 +189,11 @@ int Assembly::index_of_material(const std::string& name) const {
   return static_cast<int>(std::find(materials.begin(), materials.end(), name) - materials.begin());
 }
 
-int Assembly::wall_body_of_mill() const {
+std::optional<int> Assembly::wall_body_of_mill() const {
   for (std::size_t g = 0; g < c.geometry.size(); ++g) {
     if (c.geometry[g].motion.rotation && c.geometry[g].motion.rotation->speed != 0) return static_cast<int>(g);
   }
-  return -1;
+  return std::nullopt;
 }
 
 Assembly assemble(config::Case c, const host::Registry& registry, const AssemblyOptions& options) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,7 +44,7 @@ struct Assembly {
   std::array<double, 3> gravity{};
 
   int index_of_material(const std::string& name) const;
-  int wall_body_of_mill() const;  ///< index of the first body that rotates; −1: none
+  std::optional<int> wall_body_of_mill() const;  ///< index of the first body that rotates
 };
 
 struct AssemblyOptions {

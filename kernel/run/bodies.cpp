@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/values.hpp"
 
 namespace millscope::run {
@@ -38,7 +39,7 @@ Made make_geometry(const config::GeometryCase& g, const host::Registry& registry
 void check_slots(const config::GeometryCase& g, const std::vector<std::string>& slots) {
   for (const auto& [name, material] : g.materials) {
     if (std::find(slots.begin(), slots.end(), name) != slots.end()) continue;
-    g.plugin.node.at("materials").at(name).fail(fmt::format("is no part of this geometry; {}", config::suggestion(name, slots)));
+    g.plugin.node.at("materials").at(name).fail(fmt::format("is no part of this geometry; {}", base::suggestion(name, slots)));
   }
 }
 
@@ -48,7 +49,7 @@ struct Corners {
 
 Corners corners_of(const Surface& s, std::uint64_t triangle) {
   Corners c{};
-  for (std::size_t k = 0; k < 3; ++k) c.vertex[k] = s.vertices + 3 * (s.triangles[3 * triangle + k]);
+  for (std::size_t k = 0; k < 3; ++k) c.vertex[k] = s.vertices + 3 * s.triangles[3 * triangle + k];
   return c;
 }
 

@@ -18,7 +18,7 @@ constexpr double kSpacing = 1.04;   // of the largest diameter: neighbouring sit
 constexpr double kMostSites = 4e9;  // of the whole lattice: beyond, walking through it takes minutes
 
 /// Sites below `top` of a hexagonal close packing with neighbour distance `spacing`, stretched to fit a periodic axis z exactly.
-std::vector<Point> sites_of(const Assembly& a, const Region& r, double diameter, double top) {
+std::vector<base::Vector3> sites_of(const Assembly& a, const Region& r, double diameter, double top) {
   const double spacing = kSpacing * diameter;
   const auto periodic = [&a](std::size_t axis) { return a.c.domain.periodic[axis]; };
   // Rows along z (periodic in slices): row distance in y, layers in x are those of a hexagonal packing.
@@ -43,12 +43,12 @@ std::vector<Point> sites_of(const Assembly& a, const Region& r, double diameter,
     step[axis] = periodic(axis) && count[axis] > 0 ? extent[axis] / count[axis] : ideal[axis];
     origin[axis] = r.box.low[axis] + (periodic(axis) ? 0.0 : 0.5 * diameter);
   }
-  std::vector<Point> sites;
+  std::vector<base::Vector3> sites;
   for (int layer = 0; layer < count[0]; ++layer) {
     for (int row = 0; row < count[1]; ++row) {
       for (int k = 0; k < count[2]; ++k) {
         const double shift_z = 0.5 * ((row + layer) % 2) * step[2], shift_y = layer % 2 ? step[1] / 3 : 0.0;
-        Point p{origin[0] + layer * step[0], origin[1] + row * step[1] + shift_y, origin[2] + k * step[2] + shift_z};
+        base::Vector3 p{origin[0] + layer * step[0], origin[1] + row * step[1] + shift_y, origin[2] + k * step[2] + shift_z};
         bool inside = true;
         for (std::size_t axis = 0; axis < 3; ++axis) {
           if (!periodic(axis)) inside = inside && p[axis] <= r.box.high[axis] - 0.5 * diameter;
@@ -92,10 +92,10 @@ std::vector<BeadType> draw_types(const Assembly& a, std::uint64_t count, Random&
 
 /// The lowest `bead_count` free sites of the lattice, or all when it has fewer. Grows from below, so that a large vessel with few beads
 /// costs little.
-std::vector<Point> lattice_sites(const Assembly& a, const Region& region, double jitter) {
+std::vector<base::Vector3> lattice_sites(const Assembly& a, const Region& region, double jitter) {
   const double diameter = a.c.largest_diameter(), cell = std::pow(kSpacing * diameter, 3) / std::numbers::sqrt2;
   for (double part = first_part(a, region, 8 * static_cast<double>(a.bead_count) * cell);; part = std::min(1.0, 2 * part)) {
-    std::vector<Point> sites = sites_of(a, region, diameter, level(a, region, part));
+    std::vector<base::Vector3> sites = sites_of(a, region, diameter, level(a, region, part));
     const std::vector<std::uint8_t> bad = blocked(a, sites, 0.5 * diameter + 2 * jitter);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < sites.size(); ++i) {
@@ -104,7 +104,7 @@ std::vector<Point> lattice_sites(const Assembly& a, const Region& region, double
     sites.resize(kept);
     if (kept >= a.bead_count) {
       // Lowest first; ties by position so that the choice is the same everywhere.
-      std::sort(sites.begin(), sites.end(), [&a](const Point& p, const Point& q) {
+      std::sort(sites.begin(), sites.end(), [&a](const base::Vector3& p, const base::Vector3& q) {
         const double hp = height(a, p), hq = height(a, q);
         return hp != hq ? hp < hq : p < q;
       });
@@ -115,7 +115,7 @@ std::vector<Point> lattice_sites(const Assembly& a, const Region& region, double
   }
 }
 
-void put_bead(Assembly& a, std::size_t i, const BeadType& type, const Point& centre) {
+void put_bead(Assembly& a, std::size_t i, const BeadType& type, const base::Vector3& centre) {
   dem::Particles& p = a.system->particles;
   const config::BeadCase& bead = a.c.beads[type.bead_class];
   const double radius = 0.5 * type.diameter, mass = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius * bead.density;
@@ -136,7 +136,7 @@ void insert_beads(Assembly& a) {
   Random random(a.c.seed);
   const double jitter = 0.25 * (kSpacing - 1) * a.c.largest_diameter();
   const Region region = region_of(a);
-  std::vector<Point> centres = lattice_sites(a, region, jitter);
+  std::vector<base::Vector3> centres = lattice_sites(a, region, jitter);
   const std::vector<BeadType> types = draw_types(a, a.bead_count, random);
   a.system->particles.resize(a.bead_count);
   if (centres.size() < a.bead_count) {
@@ -152,7 +152,7 @@ void insert_beads(Assembly& a) {
     centres = scattered(a, region, types, random);
   } else {
     const auto shake = [&random, jitter] { return jitter * (2 * random.uniform() - 1) / std::numbers::sqrt3; };
-    for (Point& c : centres) {
+    for (base::Vector3& c : centres) {
       for (double& x : c) x += shake();
     }
   }

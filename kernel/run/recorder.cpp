@@ -220,9 +220,8 @@ void Recorder::write_frame(const dem::System& system) {
   }
   output::FrameView view;
   view.time = system.time();
-  const int body = a_.wall_body_of_mill();
-  if (body >= 0) {
-    const dem::Motion& motion = system.bodies[body].motion;
+  if (const std::optional<int> body = a_.wall_body_of_mill()) {
+    const dem::Motion& motion = system.bodies[*body].motion;
     view.wall_angle = dem::pose_at(motion, view.time).angle;
     view.angular_velocity = dem::angular_speed(motion, view.time);
   }

@@ -30,7 +30,7 @@ class Cells {
     cells_.resize(count_[0] * count_[1] * count_[2]);
   }
 
-  bool is_free(const Point& p, double radius) const {
+  bool is_free(const base::Vector3& p, double radius) const {
     std::array<std::int64_t, 3> home{}, from{}, to{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       home[axis] = cell(p, axis);
@@ -51,14 +51,14 @@ class Cells {
     return true;
   }
 
-  void add(const Point& p, double radius) { cells_[index({cell(p, 0), cell(p, 1), cell(p, 2)})].push_back({p, radius}); }
+  void add(const base::Vector3& p, double radius) { cells_[index({cell(p, 0), cell(p, 1), cell(p, 2)})].push_back({p, radius}); }
 
  private:
   struct Sphere {
-    Point centre;
+    base::Vector3 centre;
     double radius;
   };
-  std::int64_t cell(const Point& p, std::size_t axis) const {
+  std::int64_t cell(const base::Vector3& p, std::size_t axis) const {
     const auto at = static_cast<std::int64_t>((p[axis] - low_[axis]) / extent_[axis] * static_cast<double>(count_[axis]));
     return std::clamp<std::int64_t>(at, 0, count_[axis] - 1);
   }
@@ -66,7 +66,7 @@ class Cells {
     for (std::size_t axis = 0; axis < 3; ++axis) at[axis] = (at[axis] + count_[axis]) % count_[axis];
     return (at[0] * count_[1] + at[1]) * count_[2] + at[2];
   }
-  double distance2(const Point& p, const Point& q) const {
+  double distance2(const base::Vector3& p, const base::Vector3& q) const {
     double sum = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double d = p[axis] - q[axis];
@@ -76,7 +76,7 @@ class Cells {
     return sum;
   }
 
-  Point low_;
+  base::Vector3 low_;
   std::array<double, 3> extent_{};
   std::array<bool, 3> periodic_{};
   std::array<std::int64_t, 3> count_{};
@@ -88,9 +88,9 @@ class Points {
  public:
   Points(const Assembly& a, const Region& r, Random& random) : a_(a), r_(r), random_(random) {}
   /// `part`: share of the region's height.
-  Point next(double radius, double part) {
+  base::Vector3 next(double radius, double part) {
     while (free_.empty()) fill(radius, part);
-    const Point p = free_.back();
+    const base::Vector3 p = free_.back();
     free_.pop_back();
     return p;
   }
@@ -99,8 +99,8 @@ class Points {
  private:
   void fill(double radius, double part) {
     const double top = level(a_, r_, part);
-    std::vector<Point> points(kBatch);
-    for (Point& p : points) p = draw(radius, top);
+    std::vector<base::Vector3> points(kBatch);
+    for (base::Vector3& p : points) p = draw(radius, top);
     const std::vector<std::uint8_t> bad = blocked(a_, points, radius * (1 + 1e-6));
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!bad[i]) free_.push_back(points[i]);
@@ -110,9 +110,9 @@ class Points {
                             "no place is clear of the walls; check the liner's unit and orientation (millscope geometry report)");
     }
   }
-  Point draw(double radius, double top) {
+  base::Vector3 draw(double radius, double top) {
     for (;;) {
-      Point p;
+      base::Vector3 p;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double margin = a_.c.domain.periodic[axis] ? 0 : radius;
         const double low = r_.box.low[axis] + margin, high = r_.box.high[axis] - margin;
@@ -127,13 +127,13 @@ class Points {
   const Assembly& a_;
   const Region& r_;
   Random& random_;
-  std::vector<Point> free_;
+  std::vector<base::Vector3> free_;
   int vain_ = 0;
 };
 
 }  // namespace
 
-std::vector<Point> scattered(const Assembly& a, const Region& region, const std::vector<BeadType>& types, Random& random) {
+std::vector<base::Vector3> scattered(const Assembly& a, const Region& region, const std::vector<BeadType>& types, Random& random) {
   std::vector<std::size_t> order(types.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&types](std::size_t p, std::size_t q) { return types[p].diameter > types[q].diameter; });
@@ -142,11 +142,11 @@ std::vector<Point> scattered(const Assembly& a, const Region& region, const std:
   double part = first_part(a, region, solid / kFirstShare);
   Cells cells(a, region, types[order.front()].diameter);
   Points points(a, region, random);
-  std::vector<Point> centres(types.size());
+  std::vector<base::Vector3> centres(types.size());
   for (std::size_t done = 0; done < order.size(); ++done) {
     const double radius = 0.5 * types[order[done]].diameter;
     for (std::size_t tries = 1;; ++tries) {
-      const Point p = points.next(radius, part);
+      const base::Vector3 p = points.next(radius, part);
       if (cells.is_free(p, radius * (1 + 1e-6))) {
         cells.add(p, radius);
         centres[order[done]] = p;

@@ -15,6 +15,6 @@ struct BeadType {
 
 /// One centre per bead, none touching another or a wall; the lower part of the region is filled first. Throws UserError when they do not
 /// fit (random addition ends near a third of the space for equal beads, later for unequal ones).
-std::vector<Point> scattered(const Assembly& a, const Region& region, const std::vector<BeadType>& types, Random& random);
+std::vector<base::Vector3> scattered(const Assembly& a, const Region& region, const std::vector<BeadType>& types, Random& random);
 
 }  // namespace millscope::run

@@ -12,7 +12,7 @@ namespace {
 using base::UserError;
 
 /// Marks the sites whose sphere touches a surface.
-void mark_touching(const GeometryUse& g, const std::vector<Point>& sites, std::vector<double> r, std::vector<std::uint8_t>& bad) {
+void mark_touching(const GeometryUse& g, const std::vector<base::Vector3>& sites, std::vector<double> r, std::vector<std::uint8_t>& bad) {
   const std::size_t n = sites.size();
   std::vector<double> x(n), y(n), z(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -42,28 +42,28 @@ void mark_touching(const GeometryUse& g, const std::vector<Point>& sites, std::v
 }
 
 /// Whether the segment p–q crosses the triangle (Möller & Trumbore 1997).
-bool crosses(const Point& p, const Point& q, const double* a, const double* b, const double* c) {
-  const auto minus = [](const double* u, const double* v) { return Point{u[0] - v[0], u[1] - v[1], u[2] - v[2]}; };
-  const auto cross = [](const Point& u, const Point& v) {
-    return Point{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+bool crosses(const base::Vector3& p, const base::Vector3& q, const double* a, const double* b, const double* c) {
+  const auto minus = [](const double* u, const double* v) { return base::Vector3{u[0] - v[0], u[1] - v[1], u[2] - v[2]}; };
+  const auto cross = [](const base::Vector3& u, const base::Vector3& v) {
+    return base::Vector3{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
   };
-  const auto dot = [](const Point& u, const Point& v) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; };
-  const Point d = minus(q.data(), p.data()), e1 = minus(b, a), e2 = minus(c, a);
-  const Point h = cross(d, e2);
+  const auto dot = [](const base::Vector3& u, const base::Vector3& v) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; };
+  const base::Vector3 d = minus(q.data(), p.data()), e1 = minus(b, a), e2 = minus(c, a);
+  const base::Vector3 h = cross(d, e2);
   const double det = dot(e1, h);
   if (std::abs(det) < 1e-300) return false;
-  const Point s = minus(p.data(), a);
+  const base::Vector3 s = minus(p.data(), a);
   const double u = dot(s, h) / det;
   if (u < 0 || u > 1) return false;
-  const Point k = cross(s, e1);
+  const base::Vector3 k = cross(s, e1);
   const double v = dot(d, k) / det, t = dot(e2, k) / det;
   return v >= 0 && u + v <= 1 && t >= 0 && t <= 1;
 }
 
 /// Marks the sites that a surface separates from the axis of its own interior (inside a lifter, outside the shell).
-void mark_hidden(const GeometryUse& g, const std::vector<Point>& sites, std::vector<std::uint8_t>& bad) {
+void mark_hidden(const GeometryUse& g, const std::vector<base::Vector3>& sites, std::vector<std::uint8_t>& bad) {
   if (!g.interior.is_bounded || !g.interior.is_cylinder || g.surface.triangle_count == 0) return;
-  const Point axis{g.interior.axis_point[0], g.interior.axis_point[1], g.interior.axis_point[2]};
+  const base::Vector3 axis{g.interior.axis_point[0], g.interior.axis_point[1], g.interior.axis_point[2]};
   // Triangles sorted into angular sectors as seen from the axis: a radial segment meets those of its own sector only.
   constexpr std::size_t kSectors = 256;
   const auto angle = [&axis](const double* v) { return std::atan2(v[1] - axis[1], v[0] - axis[0]); };
@@ -91,7 +91,7 @@ void mark_hidden(const GeometryUse& g, const std::vector<Point>& sites, std::vec
     if (bad[i]) continue;
     const std::ptrdiff_t s =
         (sector(angle(sites[i].data())) + static_cast<std::ptrdiff_t>(kSectors)) % static_cast<std::ptrdiff_t>(kSectors);
-    const Point target{axis[0], axis[1], sites[i][2]};
+    const base::Vector3 target{axis[0], axis[1], sites[i][2]};
     for (const std::uint64_t t : bins[s]) {
       const auto vertex = [&](std::uint64_t k) {
         return g.surface.vertices + 3 * static_cast<std::uint64_t>(g.surface.triangles[3 * t + k]);
@@ -144,7 +144,7 @@ Region region_of(const Assembly& a) {
   return r;
 }
 
-double height(const Assembly& a, const Point& p) { return -(p[0] * a.gravity[0] + p[1] * a.gravity[1] + p[2] * a.gravity[2]); }
+double height(const Assembly& a, const base::Vector3& p) { return -(p[0] * a.gravity[0] + p[1] * a.gravity[1] + p[2] * a.gravity[2]); }
 
 double level(const Assembly& a, const Region& r, double part) {
   double low = 0, high = 0;
@@ -163,7 +163,7 @@ double first_part(const Assembly& a, const Region& r, double volume) {
   return std::min(1.0, volume / all);
 }
 
-std::vector<std::uint8_t> blocked(const Assembly& a, const std::vector<Point>& centres, double radius) {
+std::vector<std::uint8_t> blocked(const Assembly& a, const std::vector<base::Vector3>& centres, double radius) {
   std::vector<std::uint8_t> bad(centres.size(), 0);
   for (const GeometryUse& g : a.geometries) {
     mark_touching(g, centres, std::vector<double>(centres.size(), radius), bad);

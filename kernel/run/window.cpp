@@ -14,13 +14,11 @@ constexpr double kSteadyTolerance = 0.01;
 
 /// P = M g ⟨x⟩ Ω, for any direction of gravity and any axis: Ω a · (M g × (r − p)) with the turning body's axis a through p.
 double power_of_centre(const Assembly& a, const Sample& s) {
-  const int body = a.wall_body_of_mill();
-  if (body < 0) return 0.0;
-  const dem::Motion& m = a.system->bodies[body].motion;
-  const std::array<double, 3>& g = a.gravity;
-  const std::array<double, 3> r{s.centre[0] - m.point[0], s.centre[1] - m.point[1], s.centre[2] - m.point[2]};
-  const double moment =
-      m.axis[0] * (g[1] * r[2] - g[2] * r[1]) + m.axis[1] * (g[2] * r[0] - g[0] * r[2]) + m.axis[2] * (g[0] * r[1] - g[1] * r[0]);
+  const std::optional<int> body = a.wall_body_of_mill();
+  if (!body) return 0.0;
+  const dem::Motion& m = a.system->bodies[*body].motion;
+  const base::Vector3 r{s.centre[0] - m.point[0], s.centre[1] - m.point[1], s.centre[2] - m.point[2]};
+  const double moment = base::dot(m.axis, base::cross(a.gravity, r));
   return a.system->total_mass() * dem::angular_speed(m, s.time) * moment;
 }
 

@@ -7,6 +7,8 @@
 #include <optional>
 #include <set>
 
+#include "kernel/base/nearest.hpp"
+
 namespace millscope::analysis {
 namespace {
 
@@ -81,7 +83,7 @@ std::vector<Request> pick(std::vector<Request> all, const std::vector<std::strin
       kept.back().by_name = true;
     }
     if (kept.size() == before)
-      throw UserError(fmt::format("--analyzers: '{}' is no analyzer here; {}", name, config::suggestion(name, known)));
+      throw UserError(fmt::format("--analyzers: '{}' is no analyzer here; {}", name, base::suggestion(name, known)));
   }
   return kept;
 }

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <optional>
 
+#include "kernel/base/nearest.hpp"
 #include "studies/calibrate/study_sections.hpp"
 
 #include "kernel/base/text.hpp"
@@ -39,7 +40,7 @@ Operand read_operand(const config::Node& node, const std::string& text, const st
   if (operand.parameter) return operand;
   std::vector<std::string> known;
   for (const Parameter& p : parameters) known.push_back(p.name);
-  node.fail(fmt::format("is '{}': '{}' is no parameter of this study; {}", node.text(), name, config::suggestion(name, known)));
+  node.fail(fmt::format("is '{}': '{}' is no parameter of this study; {}", node.text(), name, base::suggestion(name, known)));
 }
 
 }  // namespace

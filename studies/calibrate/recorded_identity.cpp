@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <span>
-#include <string_view>
 
 #include "kernel/base/hash.hpp"
 #include "kernel/base/program.hpp"
@@ -14,15 +11,15 @@
 
 namespace millscope::calibrate {
 
-std::string observing_program() {
-  constexpr std::array<std::string_view, 6> kRooms{"studies/recording", "studies/trajectory", "studies/inspect",
-                                                   "studies/camera",    "studies/analysis",   "studies/calibrate"};
-  const std::span<const std::string_view> kernel = base::kernel_folders();
-  std::vector<std::string_view> rooms(kernel.begin(), kernel.end());
-  rooms.insert(rooms.end(), kRooms.begin(), kRooms.end());
-  std::string text;
-  for (const auto& [part, value] : base::program_parts(rooms)) text += part + "\n" + value + "\n";
-  return text;
+const std::string& observing_program() {
+  static const std::string program = [] {
+    std::vector<std::string> folders = base::simulating_folders();
+    folders.insert(folders.end(), base::observing_folders().begin(), base::observing_folders().end());
+    std::string text;
+    for (const auto& [part, value] : base::program_parts(folders)) text += part + "\n" + value + "\n";
+    return text;
+  }();
+  return program;
 }
 
 std::string identity_of(const recording::Recording& recording, const Processing& how, std::size_t condition) {

@@ -10,7 +10,7 @@ namespace millscope::calibrate {
 
 /// What of this program decides what is seen of a recording and of a simulation: the code that runs and tracks pass, compiler, flags,
 /// libraries.
-std::string observing_program();
+const std::string& observing_program();
 
 /// Of everything that the results of a recording depend on.
 std::string identity_of(const recording::Recording& recording, const Processing& how, std::size_t condition);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 
+#include "kernel/base/table.hpp"
 #include "kernel/config/case.hpp"
 #include "kernel/config/existing_file.hpp"
 #include "kernel/config/units.hpp"
@@ -16,7 +17,6 @@
 #include "studies/analysis/frames_source.hpp"
 #include "studies/analysis/open_source.hpp"
 #include "studies/calibrate/recorded_identity.hpp"
-#include "studies/doe/table.hpp"
 #include "studies/recording/description.hpp"
 
 namespace millscope::calibrate {
@@ -38,7 +38,7 @@ bool is_profile(const fs::path& file) {
 }
 
 /// One column in SI.
-std::vector<double> column(const Node& node, const doe::Table& table, const char* unit) {
+std::vector<double> column(const Node& node, const base::Table& table, const char* unit) {
   node.expect({"column", "unit"});
   const Node name = node.at("column", "the head of the column"), in = node.at("unit", "e.g. mm or m/s");
   if (!table.has(name.text()))
@@ -70,7 +70,7 @@ VelocityProfile read_section(const Node& section) {
   VelocityProfile profile;
   const Node file = section.at("file", "the table of points, e.g. points.csv");
   profile.points = config::existing_file(file);
-  const doe::Table table = doe::Table::read(profile.points);
+  const base::Table table = base::Table::read(profile.points);
   profile.position = column(section.at("position", "{column: NAME, unit: mm}"), table, "m");
   profile.velocity = column(section.at("velocity", "{column: NAME, unit: m/s}"), table, "m/s");
   const auto error = [&](const char* key, const char* example, const char* unit) {

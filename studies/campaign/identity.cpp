@@ -83,7 +83,7 @@ std::vector<NamedFile> files_of(const config::Case& c, const host::Registry& reg
 }
 
 base::ProgramParts program_of(const config::Case& c, const host::Registry& registry) {
-  base::ProgramParts parts = base::program_parts(base::kernel_folders());
+  base::ProgramParts parts = base::program_parts(base::simulating_folders());
   each_plugin(c, [&](Kind kind, const std::string& name, const config::Node&, Scope) {
     parts[host::text(kind) + " " + name] = registry.find(kind, name).library->code_hash();
   });

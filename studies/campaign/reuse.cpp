@@ -45,7 +45,7 @@ bool add_differences(const fs::path& cache, const Entries& entries, const Identi
 
 /// How many finished simulations there are if this kernel has computed none of them, else 0.
 std::size_t all_of_others(const fs::path& cache, const Entries& entries) {
-  const base::ProgramParts kernel = base::program_parts(base::kernel_folders());
+  const base::ProgramParts kernel = base::program_parts(base::simulating_folders());
   std::size_t others = 0;
   for (const auto& [of, key] : entries) {
     const TaskRecord record = Entry(cache, key).read();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/existing_file.hpp"
 #include "kernel/config/units.hpp"
 
@@ -72,7 +73,7 @@ void check_hypothesis(const SetsOf& sets, const std::string& name, const diagnos
   for (const diagnose::Candidate& c : question.candidates) names.push_back(c.name);
   const auto found = std::find_if(question.candidates.begin(), question.candidates.end(), [&](const auto& c) { return c.name == name; });
   if (found == question.candidates.end())
-    throw base::UserError(sets.where, fmt::format("'{}' is no hypothesis of the study; {}", name, config::suggestion(name, names)));
+    throw base::UserError(sets.where, fmt::format("'{}' is no hypothesis of the study; {}", name, base::suggestion(name, names)));
   if (!found->on_or_off() && (sets.low < found->range.low || sets.high > found->range.high)) {
     throw base::UserError(sets.where, fmt::format("the strength {:.3g} … {:.3g} of '{}' leaves its range; give {:.3g} … {:.3g}", sets.low,
                                                   sets.high, name, found->range.low, found->range.high));

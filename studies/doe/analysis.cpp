@@ -18,7 +18,7 @@ Result analyze_response(const TableAnalysis& analysis, const Eigen::VectorXd& va
 
 }  // namespace
 
-TableAnalysis analyze_table(const Table& table, const Choice& choice, ModelChoice model, double confidence, const Descent& descent) {
+TableAnalysis analyze_table(const base::Table& table, const Choice& choice, ModelChoice model, double confidence, const Descent& descent) {
   TableAnalysis analysis{table.file(), recognise(table, choice), confidence, descent, {}};
   for (std::size_t r = 0; r < analysis.table.responses.size(); ++r) {
     try {

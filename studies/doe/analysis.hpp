@@ -32,7 +32,7 @@ struct TableAnalysis {
 };
 
 /// Automatic: main effects for a two-level plan, else the full quadratic. Throws base::UserError that names the file and the response.
-TableAnalysis analyze_table(const Table& table, const Choice& choice, ModelChoice model, double confidence, const Descent& descent);
+TableAnalysis analyze_table(const base::Table& table, const Choice& choice, ModelChoice model, double confidence, const Descent& descent);
 
 std::string analysis_text(const TableAnalysis& analysis);
 nlohmann::ordered_json analysis_json(const TableAnalysis& analysis);

@@ -19,7 +19,7 @@ struct Levels {
   double tolerance;
 };
 
-Levels levels_of(const Column& column) {
+Levels levels_of(const base::Column& column) {
   const auto [low, high] = std::minmax_element(column.value.begin(), column.value.end());
   Levels levels{*low, *high, (*low + *high) / 2, column.half_digit * (1 + 1e-9) + 1e-9 * (*high - *low)};
   for (const double value : column.value) {

@@ -12,7 +12,7 @@ namespace millscope::doe {
 /// A factor's column of the table.
 struct FactorColumn {
   std::string name;
-  Column column;
+  base::Column column;
 };
 
 struct Coded {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/document.hpp"
 #include "studies/doe/columns.hpp"
 #include "studies/doe/least_squares.hpp"
@@ -67,16 +68,16 @@ Figures figures_of(const Surface& surface) {
 
 /// The cells of the printed table by name.
 struct PrintedTable {
-  explicit PrintedTable(const Table& table)
+  explicit PrintedTable(const base::Table& table)
       : table(table),
         response(table.index_of("response")),
         term(table.index_of("term")),
         figure(table.index_of("figure")),
         printed(table.index_of("printed")),
         number(table.numbers(printed)) {}
-  const Table& table;
+  const base::Table& table;
   std::size_t response, term, figure, printed;
-  Column number;
+  base::Column number;
 
   std::optional<std::size_t> row_of(const std::string& of_response, const std::string& of_term, const std::string& of_figure) const {
     for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -92,7 +93,7 @@ double looked_up(const Figures& figures, const PrintedTable& printed, std::size_
   if (found != figures.value.end()) return found->second;
   std::vector<std::string> known;
   for (const auto& [name, value] : figures.value) known.push_back(name);
-  const std::string nearest = config::nearest(key, known);
+  const std::string nearest = base::nearest(key, known);
   throw UserError(fmt::format("{}: the analysis has no '{}'{}", printed.table.place(row), key,
                               nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
 }
@@ -103,16 +104,16 @@ void hold_against_F(PrintedFigure& figure, const Figures& figures, const Printed
   const auto df = figures.df.find(figure.term);
   const int against = figure.term == "lack of fit" ? figures.df.at("pure error") : figures.against;
   if (figure.figure != "p" || !F || df == figures.df.end() || df->second < 1 || against < 1) return;
-  const double half = half_digit_of(printed.table.cell(*F, printed.printed)), value = printed.number.value[*F];
+  const double half = base::half_digit_of(printed.table.cell(*F, printed.printed)), value = printed.number.value[*F];
   figure.p_of_printed = f_beyond(value, df->second, against);
   const double most = f_beyond(std::max(0.0, value - half), df->second, against), least = f_beyond(value + half, df->second, against);
-  const double digit = half_digit_of(figure.printed) * (1 + 1e-9);
+  const double digit = base::half_digit_of(figure.printed) * (1 + 1e-9);
   figure.contradicts = printed.number.value[row] > most + digit || printed.number.value[row] < least - digit;
 }
 
 }  // namespace
 
-std::vector<PrintedFigure> compare_printed(const TableAnalysis& analysis, const Table& table) {
+std::vector<PrintedFigure> compare_printed(const TableAnalysis& analysis, const base::Table& table) {
   const PrintedTable printed(table);
   std::map<std::string, Figures> of_response;
   for (std::size_t r = 0; r < analysis.results.size(); ++r) {
@@ -125,10 +126,10 @@ std::vector<PrintedFigure> compare_printed(const TableAnalysis& analysis, const 
     const auto found = of_response.find(figure.response);
     if (found == of_response.end()) {
       throw UserError(fmt::format("{}: the analysis has no response '{}'; {}", table.place(row), figure.response,
-                                  config::suggestion(figure.response, analysis.table.responses)));
+                                  base::suggestion(figure.response, analysis.table.responses)));
     }
     figure.worked_again = looked_up(found->second, printed, row);
-    figure.differs = !(std::abs(figure.worked_again - printed.number.value[row]) <= half_digit_of(figure.printed) * (1 + 1e-9));
+    figure.differs = !(std::abs(figure.worked_again - printed.number.value[row]) <= base::half_digit_of(figure.printed) * (1 + 1e-9));
     hold_against_F(figure, found->second, printed, row);
     figures.push_back(std::move(figure));
   }

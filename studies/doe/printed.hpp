@@ -20,7 +20,7 @@ struct PrintedFigure {
 /// `printed`: a table with the columns response, term, figure, printed. Figures: SS, F, p, effect, coefficient, stationary (term: a
 /// factor). Terms: names of effects and coefficients, curvature, residual, total, lack of fit, pure error. Throws base::UserError with
 /// the line.
-std::vector<PrintedFigure> compare_printed(const TableAnalysis& analysis, const Table& printed);
+std::vector<PrintedFigure> compare_printed(const TableAnalysis& analysis, const base::Table& printed);
 
 nlohmann::ordered_json printed_json(const std::vector<PrintedFigure>& figures);
 std::string printed_text(const std::vector<PrintedFigure>& figures);

@@ -31,17 +31,17 @@ bool contains(const std::vector<std::string>& list, const std::string& name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
-bool is_label(const Table& table, std::size_t column) {
+bool is_label(const base::Table& table, std::size_t column) {
   const std::string name = lower(table.names()[column]);
   return column == 0 && std::any_of(kLabels.begin(), kLabels.end(), [&](const char* label) { return name == label; });
 }
 
-bool varies(const Column& column) {
+bool varies(const base::Column& column) {
   return std::any_of(column.value.begin(), column.value.end(), [&](double v) { return v != column.value[0]; });
 }
 
 /// Few levels that repeat, even about their middle: planned rather than measured.
-bool looks_planned(const Column& column) {
+bool looks_planned(const base::Column& column) {
   const std::set<double> levels(column.value.begin(), column.value.end());
   if (levels.size() < 2 || levels.size() > kMostLevels || levels.size() + 2 > column.value.size()) return false;
   const double twice_middle = *levels.begin() + *levels.rbegin();
@@ -57,7 +57,7 @@ struct Columns {
 };
 
 /// What is neither text nor the label, in the order of the table.
-std::vector<std::string> candidates(const Table& table, std::vector<std::string>& aside) {
+std::vector<std::string> candidates(const base::Table& table, std::vector<std::string>& aside) {
   std::vector<std::string> names;
   for (std::size_t c = 0; c < table.names().size(); ++c) {
     if (is_label(table, c)) continue;
@@ -70,7 +70,7 @@ std::vector<std::string> candidates(const Table& table, std::vector<std::string>
   return names;
 }
 
-void guess_factors(const Table& table, const std::vector<std::string>& names, Columns& columns) {
+void guess_factors(const base::Table& table, const std::vector<std::string>& names, Columns& columns) {
   for (const std::string& name : names) {
     if (!looks_planned(table.numbers(table.index_of(name)))) break;
     columns.factors.push_back(name);
@@ -80,7 +80,7 @@ void guess_factors(const Table& table, const std::vector<std::string>& names, Co
                               table.file(), names.empty() ? "speed" : names.front()));
 }
 
-Columns choose_columns(const Table& table, const Choice& choice) {
+Columns choose_columns(const base::Table& table, const Choice& choice) {
   Columns columns{choice.factors, choice.responses, {}};
   for (const auto* list : {&choice.factors, &choice.responses}) {
     for (const std::string& name : *list) table.index_of(name);
@@ -113,7 +113,7 @@ Columns choose_columns(const Table& table, const Choice& choice) {
   return columns;
 }
 
-std::vector<FactorColumn> factor_columns(const Table& table, const std::vector<std::string>& names) {
+std::vector<FactorColumn> factor_columns(const base::Table& table, const std::vector<std::string>& names) {
   std::vector<FactorColumn> columns;
   for (const std::string& name : names) {
     columns.push_back({name, table.numbers(table.index_of(name))});
@@ -140,7 +140,7 @@ Eigen::MatrixXd corner_runs(const Design& design) {
   return corners.topRows(count);
 }
 
-void check_generators(const Table& table, const RecognisedTable& found, const std::vector<std::string>& texts) {
+void check_generators(const base::Table& table, const RecognisedTable& found, const std::vector<std::string>& texts) {
   if (texts.empty()) return;
   const Design& design = found.design;
   const auto generators = parse_generators(texts, design.factors);
@@ -194,7 +194,7 @@ std::string describe(const RecognisedTable& found) {
   return fmt::format("plan of {} runs without a named pattern; coded -1 to +1 over the range of the runs", found.design.kind.size());
 }
 
-void note_copies(const Table& table, RecognisedTable& found) {
+void note_copies(const base::Table& table, RecognisedTable& found) {
   std::map<std::vector<double>, std::size_t> seen;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     std::vector<double> key;
@@ -209,7 +209,7 @@ void note_copies(const Table& table, RecognisedTable& found) {
 
 }  // namespace
 
-RecognisedTable recognise(const Table& table, const Choice& choice) {
+RecognisedTable recognise(const base::Table& table, const Choice& choice) {
   const Columns columns = choose_columns(table, choice);
   Coded coded = code(factor_columns(table, columns.factors), choice.axial);
   RecognisedTable found;
@@ -222,7 +222,7 @@ RecognisedTable recognise(const Table& table, const Choice& choice) {
   find_structure(found);
   found.description = describe(found);
   for (const std::string& name : columns.responses) {
-    const Column column = table.numbers(table.index_of(name));
+    const base::Column column = table.numbers(table.index_of(name));
     found.responses.push_back(name);
     found.values.emplace_back(Eigen::Map<const Eigen::VectorXd>(column.value.data(), static_cast<Index>(column.value.size())));
   }

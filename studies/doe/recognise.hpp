@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "kernel/base/table.hpp"
 #include "studies/doe/doe.hpp"
-#include "studies/doe/table.hpp"
 
 namespace millscope::doe {
 
@@ -29,6 +29,6 @@ struct RecognisedTable {
 };
 
 /// Throws base::UserError with the file and, where one is to blame, the line.
-RecognisedTable recognise(const Table& table, const Choice& choice);
+RecognisedTable recognise(const base::Table& table, const Choice& choice);
 
 }  // namespace millscope::doe

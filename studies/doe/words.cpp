@@ -8,6 +8,7 @@
 #include <map>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/nearest.hpp"
 #include "kernel/base/text.hpp"
 #include "kernel/config/document.hpp"
 
@@ -22,7 +23,7 @@ int factor_called(const std::string& name, const std::vector<Factor>& factors, c
     if (factors[i].name == name) return static_cast<int>(i);
     names.push_back(factors[i].name);
   }
-  throw UserError(fmt::format("generator '{}': '{}' is no factor; {}", generator, name, config::suggestion(name, names)));
+  throw UserError(fmt::format("generator '{}': '{}' is no factor; {}", generator, name, base::suggestion(name, names)));
 }
 
 Generator parse_generator(const std::string& text, const std::vector<Factor>& factors) {

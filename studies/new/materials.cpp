@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/document.hpp"
 #include "kernel/config/units.hpp"
 
@@ -65,7 +66,7 @@ Material find_material(const std::string& option, const std::string& name_or_fil
   const std::vector<std::string> names = library_materials();
   if (std::find(names.begin(), names.end(), name_or_file) == names.end()) {
     throw UserError(fmt::format("{} '{}' is no material of the library; {}; or give a YAML file with one material", option, name_or_file,
-                                config::suggestion(name_or_file, names)));
+                                base::suggestion(name_or_file, names)));
   }
   return read_material(option, library() / (name_or_file + ".yaml"));
 }

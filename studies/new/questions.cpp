@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernel/base/nearest.hpp"
 #include "kernel/config/document.hpp"
 #include "kernel/config/units.hpp"
 #include "kernel/config/writer.hpp"
@@ -75,7 +76,7 @@ void ask_for_liner(const Answer& answer, Mill& m, const host::Registry& registry
   answer({"liner-unit", "unit in which it was drawn", "mm"}, [&](const std::string& unit) {
     std::vector<std::string> units = mesh_units(registry);
     if (std::find(units.begin(), units.end(), unit) == units.end())
-      throw UserError(fmt::format("--liner-unit '{}' is not known; {}", unit, config::suggestion(unit, units)));
+      throw UserError(fmt::format("--liner-unit '{}' is not known; {}", unit, base::suggestion(unit, units)));
     m.liner = look_at_liner(file, unit, registry);
   });
 }

@@ -52,12 +52,12 @@ ColumnEntry read_placed(const Node& node, Quantity quantity) {
   entry.quantity = quantity;
   const Node column = node.at("column", "the number of the column from 1, or its head");
   const std::string& text = column.text();
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), entry.number);
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error == std::errc() && end == text.data() + text.size()) {
-    if (entry.number < 1 || entry.number > 1000) column.fail(fmt::format("is {}; columns count from 1", text));
-    --entry.number;
+    if (number < 1 || number > 1000) column.fail(fmt::format("is {}; columns count from 1", text));
+    entry.number = number - 1;
   } else {
-    entry.number = -1;
     entry.header = text;
   }
   if (const auto unit = node.find("unit")) {
@@ -92,7 +92,7 @@ std::vector<ColumnEntry> read_columns(const Node& section) {
   for (const std::string& key : section.keys()) {
     entries.push_back(read_column(section, key));
     ColumnEntry& entry = entries.back();
-    const bool has_place = entry.number >= 0 || !entry.header.empty();
+    const bool has_place = entry.number || !entry.header.empty();
     placed += has_place;
     entry.placed = has_place;
     if (!has_place) entry.number = static_cast<int>(entries.size()) - 1;

@@ -26,9 +26,9 @@ struct ColumnUnit {
 struct ColumnEntry {
   std::optional<Quantity> quantity;  ///< nothing: a column that is skipped
   ColumnUnit unit;
-  int number = -1;      ///< from 0; −1: named by its head
-  std::string header;   ///< of the column
-  bool placed = false;  ///< the user said where it stands
+  std::optional<int> number;  ///< from 0; nothing: named by its head, not found yet
+  std::string header;         ///< of the column
+  bool placed = false;        ///< the user said where it stands
 };
 
 /// Where a coordinate of the mill's frame comes from: `x: -z`.

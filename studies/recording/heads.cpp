@@ -118,7 +118,7 @@ void read_units(const Top& top, const HeadLine& heads, std::vector<ColumnEntry>&
     std::vector<ColumnEntry> with_units = entries;
     try {
       for (ColumnEntry& entry : with_units) {
-        entry.unit = column_unit(*entry.quantity, without_brackets(line.words[entry.number]));
+        entry.unit = column_unit(*entry.quantity, without_brackets(line.words[*entry.number]));
       }
       entries = with_units;
       return;

@@ -78,7 +78,7 @@ void describe(KnownLayout& known, const std::string& kind, const std::vector<Col
                             : separator == '\t' ? "tab"
                                                 : "blanks");
   for (const ColumnEntry& entry : sorted) {
-    known.words += fmt::format(" {} {} (column {}),", kNames[*entry.quantity], entry.unit.text, entry.number + 1);
+    known.words += fmt::format(" {} {} (column {}),", kNames[*entry.quantity], entry.unit.text, *entry.number + 1);
     if (*entry.quantity == kTime) known.time_unit = entry.unit.text;
     if (*entry.quantity == kX) known.length_unit = entry.unit.text;
   }

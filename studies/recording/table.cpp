@@ -51,24 +51,23 @@ class RowReader {
  public:
   explicit RowReader(const Layout& layout) : layout_(layout) {
     for (int quantity = 0; quantity < kQuantities; ++quantity) {
-      const int column = layout.column[quantity];
-      if (column < 0) continue;
-      last_ = std::max(last_, column);
-      target_.resize(std::max(target_.size(), static_cast<std::size_t>(column) + 1), -1);
-      target_[column] = quantity;
+      const std::optional<int> column = layout.column[quantity];
+      if (!column) continue;
+      if (*column >= std::ssize(target_)) target_.resize(*column + 1);
+      target_[*column] = quantity;
     }
   }
 
   /// Why the line is no row; nullptr: it is one.
   const char* read(const char* p, const char* end, std::array<double, kQuantities>& values) const {
-    const int columns = std::max(last_ + 1, layout_.least_columns);
+    const int wanted = static_cast<int>(target_.size()), columns = std::max(wanted, layout_.least_columns);
     for (int column = 0; column < columns; ++column) {
       p = skip_blanks(p, end);
       if (p == end) return "has too few columns";
-      const int quantity = column <= last_ ? target_[column] : -1;
-      if (quantity < 0) {
+      const std::optional<int> quantity = column < wanted ? target_[column] : std::nullopt;
+      if (!quantity) {
         p = skip_value(p, end, layout_.separator);
-      } else if (!read_value(p, end, values[quantity])) {
+      } else if (!read_value(p, end, values[*quantity])) {
         return "has something else than a number";
       }
       if (!step_over(p, end, layout_.separator)) {
@@ -77,15 +76,14 @@ class RowReader {
       }
     }
     for (std::size_t k = 0; k < kQuantities; ++k) {
-      if (layout_.column[k] >= 0) values[k] = values[k] * layout_.multiplier[k] / layout_.divisor[k];
+      if (layout_.column[k]) values[k] = values[k] * layout_.multiplier[k] / layout_.divisor[k];
     }
     return nullptr;
   }
 
  private:
   const Layout& layout_;
-  std::vector<int> target_;  // of each column: the quantity, or −1
-  int last_ = -1;
+  std::vector<std::optional<int>> target_;  // of each column: the quantity
 };
 
 bool is_comment(const char* p, const char* end) { return *p == '#' || *p == '%' || *p == '!' || (*p == '/' && end - p > 1 && p[1] == '/'); }
@@ -116,20 +114,20 @@ std::size_t decimals(std::string_view line) {
 void append(Rows& rows, const Layout& layout, const std::array<double, kQuantities>& values) {
   rows.time.push_back(values[kTime]);
   for (std::size_t axis = 0; axis < 3; ++axis) rows.position[axis].push_back(values[kX + axis]);
-  if (layout.column[kError] >= 0) rows.spread.push_back(values[kError]);
-  if (layout.column[kEvents] >= 0) rows.events.push_back(std::llround(values[kEvents]));
+  if (layout.column[kError]) rows.spread.push_back(values[kError]);
+  if (layout.column[kEvents]) rows.events.push_back(std::llround(values[kEvents]));
 }
 
 void reserve(Rows& rows, const Layout& layout, std::size_t count) {
   rows.time.reserve(count);
   for (auto& component : rows.position) component.reserve(count);
-  if (layout.column[kError] >= 0) rows.spread.reserve(count);
-  if (layout.column[kEvents] >= 0) rows.events.reserve(count);
+  if (layout.column[kError]) rows.spread.reserve(count);
+  if (layout.column[kEvents]) rows.events.reserve(count);
 }
 
 bool all_finite(const Layout& layout, const std::array<double, kQuantities>& values) {
   for (std::size_t k = 0; k < kQuantities; ++k) {
-    if (layout.column[k] >= 0 && !std::isfinite(values[k])) return false;
+    if (layout.column[k] && !std::isfinite(values[k])) return false;
   }
   return true;
 }

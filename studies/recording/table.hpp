@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,9 +15,9 @@ namespace millscope::recording {
 
 enum Quantity { kTime, kX, kY, kZ, kError, kEvents, kQuantities };
 
-/// Which column holds what. Column numbers count from 0; −1: the file has none.
+/// Which column holds what. Column numbers count from 0.
 struct Layout {
-  std::array<int, kQuantities> column{-1, -1, -1, -1, -1, -1};
+  std::array<std::optional<int>, kQuantities> column;  ///< nothing: the file has none
   /// SI value = number · multiplier / divisor: one rounding for mm and ms, where a factor of 0.001 makes two.
   std::array<double, kQuantities> multiplier{1, 1, 1, 1, 1, 1};
   std::array<double, kQuantities> divisor{1, 1, 1, 1, 1, 1};

@@ -5,8 +5,8 @@
 #include <unistd.h>
 #include <algorithm>
 
+#include "kernel/base/table.hpp"
 #include "kernel/base/text.hpp"
-#include "studies/doe/table.hpp"
 #include "studies/report/one_section.hpp"
 
 namespace millscope::report {
@@ -33,7 +33,7 @@ std::vector<fs::path> sorted_files(const fs::path& folder, const char* ending) {
 }
 
 Json table_json(const fs::path& file) {
-  const doe::Table table = doe::Table::read(file);
+  const base::Table table = base::Table::read(file);
   Json rows = Json::array();
   for (std::size_t r = 0; r < table.rows(); ++r) {
     Json row = Json::array();

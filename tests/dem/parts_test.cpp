@@ -179,7 +179,7 @@ TEST_CASE("a contact at a wall is found again by bead, feature and the nearest n
   c.resize(4);
   c.bead = {3, 3, 3, 8};
   c.feature = {1, 1, 2, 1};
-  c.normal = {Row{1, 0, 0}, Row{0, 1, 0}, Row{1, 0, 0}, Row{1, 0, 0}};
+  c.normal = {Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{1, 0, 0}, Vector3{1, 0, 0}};
   std::int64_t cursor = 0;
   CHECK_FALSE(c.take(cursor, 2, 1, {1, 0, 0}));
   CHECK_FALSE(c.take(cursor, 3, 9, {1, 0, 0}));

@@ -13,7 +13,7 @@ namespace {
 std::string analysis_refusal(const std::string& text, ModelChoice model = ModelChoice::automatic) {
   const File file(text);
   const std::string message = refusal([&] {
-    analyze_table(Table::read(file.path()), {.factors = {"A", "B"}, .responses = {"y"}, .generators = {}}, model, 0.95, {});
+    analyze_table(base::Table::read(file.path()), {.factors = {"A", "B"}, .responses = {"y"}, .generators = {}}, model, 0.95, {});
   });
   CHECK(message.find('\n') == std::string::npos);
   CHECK_THAT(message, Contains(file.path().string()));

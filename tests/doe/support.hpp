@@ -11,10 +11,11 @@
 
 namespace doe_test {
 
+using namespace millscope;
 using namespace millscope::doe;
 
 inline TableAnalysis published(const std::string& name, ModelChoice model = ModelChoice::automatic, const Choice& choice = {}) {
-  return analyze_table(Table::read(std::string(MILLSCOPE_SOURCE_DIR) + "/tests/doe/data/" + name), choice, model, kConfidence, {});
+  return analyze_table(base::Table::read(std::string(MILLSCOPE_SOURCE_DIR) + "/tests/doe/data/" + name), choice, model, kConfidence, {});
 }
 
 inline std::vector<Factor> factors(int count) {

@@ -14,17 +14,17 @@ namespace {
 
 std::string read_refusal(const std::string& text) {
   const File file(text);
-  return refusal([&] { Table::read(file.path()); });
+  return refusal([&] { base::Table::read(file.path()); });
 }
 
 std::string recognise_refusal(const std::string& text, const Choice& choice = {}) {
   const File file(text);
-  return refusal([&] { recognise(Table::read(file.path()), choice); });
+  return refusal([&] { recognise(base::Table::read(file.path()), choice); });
 }
 
 RecognisedTable recognised(const std::string& text, const Choice& choice = {}) {
   const File file(text);
-  return recognise(Table::read(file.path()), choice);
+  return recognise(base::Table::read(file.path()), choice);
 }
 
 const std::string kSquare = "A,B,y\n1,10,3\n2,10,4\n1,20,5\n2,20,6.5\n1.5,15,4\n";
@@ -33,7 +33,7 @@ const std::string kSquare = "A,B,y\n1,10,3\n2,10,4\n1,20,5\n2,20,6.5\n1.5,15,4\n
 
 TEST_CASE("a table may have comments, quotes, a byte order mark, Windows lines and spaces") {
   const File file("\xEF\xBB\xBF# made here\r\ncase,\"a, \"\"b\"\"\" , y\r\n\r\nx 1, 2.50 ,+3e-2\r\n");
-  const Table t = Table::read(file.path());
+  const base::Table t = base::Table::read(file.path());
   CHECK(t.names() == std::vector<std::string>{"case", "a, \"b\"", "y"});
   REQUIRE(t.rows() == 1);
   CHECK(t.cell(0, 0) == "x 1");
@@ -44,7 +44,7 @@ TEST_CASE("a table may have comments, quotes, a byte order mark, Windows lines a
 }
 
 TEST_CASE("a table that cannot be read says why and where") {
-  CHECK_THAT(refusal([] { Table::read("/no/such/table.csv"); }), Contains("cannot be read"));
+  CHECK_THAT(refusal([] { base::Table::read("/no/such/table.csv"); }), Contains("cannot be read"));
   CHECK_THAT(read_refusal(""), Contains("is empty"));
   CHECK_THAT(read_refusal("A,B\n"), Contains("no rows"));
   CHECK_THAT(read_refusal("A,A\n1,2\n"), Contains(":1: column 'A' stands twice"));
@@ -133,8 +133,8 @@ TEST_CASE("a plan without a pattern is coded over its range and fitted by a quad
                         (x[0] - 4) * (x[0] - 4) + (x[1] - 0.2) * (x[1] - 0.2) * 8 + 0.01 * static_cast<double>(run * run % 7));
   }
   const File file(text);
-  const TableAnalysis a =
-      analyze_table(Table::read(file.path()), {.factors = {"A", "B"}, .responses = {}, .generators = {}}, ModelChoice::automatic, 0.95, {});
+  const TableAnalysis a = analyze_table(base::Table::read(file.path()), {.factors = {"A", "B"}, .responses = {}, .generators = {}},
+                                        ModelChoice::automatic, 0.95, {});
   const Surface& s = std::get<Surface>(a.results[0]);
   CHECK_THAT(s.stationary->natural[0], WithinAbs(4, 0.05));
   CHECK_THAT(s.stationary->natural[1], WithinAbs(0.2, 0.05));

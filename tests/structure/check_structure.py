@@ -15,6 +15,10 @@ from function_lengths import functions_of  # noqa: E402
 
 PLUGIN_FOLDERS = ("plugins", "geometry", "analyzers")
 
+DIGESTS = "kernel/base/CMakeLists.txt"
+# What calibrate chooses, spreads and draws with; what is seen of a simulation does not come from there.
+CHOOSING = {"studies/picture", "studies/doe", "studies/emulate", "studies/campaign"}
+
 LONGEST = 400
 LONG_FILES = {  # path → why it may be longer
 }
@@ -118,6 +122,30 @@ def check_tree(root):
     yield from check_functions(long)
 
 
+def reached(table, room):
+    """A room and all that it may use, and what that may use."""
+    rooms = {room}
+    for used in table.rooms[room].uses:
+        rooms |= reached(table, used)
+    return rooms
+
+
+def check_digests(table, text):
+    """The folders whose code decides what caches may give (kernel/base/CMakeLists.txt) are those that the numbers come from."""
+    def listed(name):
+        found = re.search(r"^set\(%s ([^)]*)\)" % name, text, re.M)
+        return {folder.removesuffix("/include") for folder in found.group(1).split()} if found else set()
+
+    simulating, observing = listed("simulating_folders"), listed("observing_folders")
+    simulated, seen = reached(table, "kernel/run"), reached(table, "studies/calibrate")
+    for room in sorted(simulating ^ simulated):
+        yield "%s: simulating_folders: %s is one of what kernel/run is made of, and listed, or neither" % (DIGESTS, room)
+    for room in sorted(observing - seen):
+        yield "%s: observing_folders: studies/calibrate does not use %s; take it out" % (DIGESTS, room)
+    for room in sorted(seen - observing - simulated - CHOOSING):
+        yield "%s: observing_folders: studies/calibrate uses %s; list it, or say in CHOOSING that no number comes from it" % (DIGESTS, room)
+
+
 def check_build(root, build):
     """The link lines of the plugins as they are built."""
     ninja = build / "build.ninja"
@@ -136,7 +164,8 @@ def main():
     parser.add_argument("root", type=Path)
     parser.add_argument("--build", type=Path)
     options = parser.parse_args()
-    violations = list(check_tree(options.root.resolve())) + (list(check_build(options.root, options.build)) if options.build else [])
+    table, digests = include_graph.Table(options.root), (options.root / DIGESTS).read_text(encoding="utf-8")
+    violations = list(check_tree(options.root.resolve())) + list(check_digests(table, digests)) + (list(check_build(options.root, options.build)) if options.build else [])
     for violation in violations:
         print(violation)
     return 1 if violations else 0

@@ -192,6 +192,20 @@ class StructureCheck(SmallTreeTest):
         self.assertEqual(len(found), 1, found)
         self.assertIn("kernel/dem may use run, whose row does not stand above its own", found[0])
 
+    def test_the_folders_that_caches_go_by_are_those_of_the_rooms(self):
+        self.write(PAGE, TABLE.replace("| `studies/compare` | what differs | `run` | |",
+                                       "| `studies/recording` | reads | `run` | |\n| `studies/doe` | plans | | |\n"
+                                       "| `studies/calibrate` | fits | `doe`, `recording` | |\n| `studies/compare` | what differs | `run` | |"))
+        table = include_graph.Table(self.root)
+        right = "set(simulating_folders sdk/include kernel/config kernel/dem kernel/run)\nset(observing_folders studies/recording studies/calibrate)\n"
+        self.assertEqual(list(check_structure.check_digests(table, right)), [])
+        for old, new, message in [(" kernel/dem", "", "simulating_folders: kernel/dem is"), ("kernel/run)", "kernel/run app)", "simulating_folders: app is"),
+                                  (" studies/recording", "", "uses studies/recording; list it"),
+                                  ("studies/calibrate)", "studies/calibrate studies/compare)", "does not use studies/compare; take it out")]:
+            found = list(check_structure.check_digests(table, right.replace(old, new)))
+            self.assertEqual(len(found), 1, found)
+            self.assertIn(message, found[0])
+
     def test_a_cycle_is_found(self):
         graph = {"app": ["run"], "run": ["dem", "output"], "dem": ["config"], "output": ["config", "run"], "config": []}
         self.assertEqual(include_graph.find_cycle(graph), ["output", "run", "output"])

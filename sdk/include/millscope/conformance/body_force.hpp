@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 
 #include "millscope/body_force.hpp"
 #include "millscope/conformance/values.hpp"
@@ -72,7 +73,7 @@ inline ForcedBeads random_beads(const BodyForceSetting& setting) {
   Random numbers(23);
   ForcedBeads beads(setting.bead_count);
   for (std::size_t i = 0; i < beads.count; ++i) {
-    const double r = setting.mill_radius * std::sqrt(numbers.between(0, 1)), angle = numbers.between(-3.14159, 3.14159);
+    const double r = setting.mill_radius * std::sqrt(numbers.between(0, 1)), angle = numbers.between(-std::numbers::pi, std::numbers::pi);
     beads.position[0][i] = r * std::cos(angle);
     beads.position[1][i] = r * std::sin(angle);
     beads.position[2][i] = numbers.between(0, 0.3);

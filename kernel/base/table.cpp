@@ -1,4 +1,4 @@
-#include "studies/doe/table.hpp"
+#include "kernel/base/table.hpp"
 
 #include <fmt/format.h>
 
@@ -9,19 +9,16 @@
 #include <optional>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/nearest.hpp"
 #include "kernel/base/text.hpp"
-#include "kernel/config/document.hpp"
 
-namespace millscope::doe {
+namespace millscope::base {
 namespace {
-
-using base::Location;
-using base::UserError;
 
 std::string bytes_of(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) throw UserError(fmt::format("{}: is a directory; give a table (.csv)", file.string()));
-  std::string bytes = base::text_of(file);
+  std::string bytes = text_of(file);
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);  // byte order mark of spreadsheets
   if (bytes.find('\0') != std::string::npos) throw UserError(fmt::format("{}: is no text file; give a table (.csv)", file.string()));
   return bytes;
@@ -43,7 +40,7 @@ std::vector<std::string> split(const std::string& line, const Location& where) {
     }
   }
   if (quoted) throw UserError(where, "a quote is opened and not closed; cells end with their line");
-  for (std::string& cell : cells) cell = base::trimmed(cell);
+  for (std::string& cell : cells) cell = trimmed(cell);
   return cells;
 }
 
@@ -94,7 +91,7 @@ Table Table::read(const std::filesystem::path& file) {
     at = end + 1;
     ++number;
     if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (base::trimmed(line).empty() || base::trimmed(line)[0] == '#') continue;
+    if (trimmed(line).empty() || trimmed(line)[0] == '#') continue;
     table.read_line(line, number);
   }
   if (table.names_.empty()) throw UserError(fmt::format("{}: is empty; the first line names the columns", table.file_));
@@ -108,7 +105,7 @@ bool Table::has(const std::string& name) const { return std::find(names_.begin()
 
 std::size_t Table::index_of(const std::string& name) const {
   const auto found = std::find(names_.begin(), names_.end(), name);
-  if (found == names_.end()) throw UserError(fmt::format("{}: has no column '{}'; {}", file_, name, config::suggestion(name, names_)));
+  if (found == names_.end()) throw UserError(fmt::format("{}: has no column '{}'; {}", file_, name, suggestion(name, names_)));
   return found - names_.begin();
 }
 
@@ -132,4 +129,4 @@ bool Table::has_number(std::size_t column) const {
   return std::any_of(cells_.begin(), cells_.end(), [column](const auto& row) { return number_of(row[column]).has_value(); });
 }
 
-}  // namespace millscope::doe
+}  // namespace millscope::base

@@ -1,4 +1,4 @@
-// A table of runs as a text file: CSV with a line of names. Cells stay text until a number is asked for, with the line it stands in.
+// A table as a text file: CSV with a line of names. Cells stay text until a number is asked for, with the line it stands in.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace millscope::doe {
+namespace millscope::base {
 
 /// A column of numbers, and how finely they were written.
 struct Column {
@@ -20,7 +20,7 @@ double half_digit_of(const std::string& text);
 /// Comma-separated, quotes as in RFC 4180, lines that begin with '#' and empty lines apart.
 class Table {
  public:
-  /// Throws base::UserError with file:line for a file that cannot be read, no rows, names that are empty or stand twice, rows with more
+  /// Throws UserError with file:line for a file that cannot be read, no rows, names that are empty or stand twice, rows with more
   /// or fewer cells than names, quotes that do not end.
   static Table read(const std::filesystem::path& file);
 
@@ -32,9 +32,9 @@ class Table {
   std::string place(std::size_t row) const;
 
   bool has(const std::string& name) const;
-  /// Throws base::UserError with the nearest name.
+  /// Throws UserError with the nearest name.
   std::size_t index_of(const std::string& name) const;
-  /// Throws base::UserError with file:line for the first cell that is no finite number.
+  /// Throws UserError with file:line for the first cell that is no finite number.
   Column numbers(std::size_t column) const;
   /// Some cell is a number: what else the column holds is then a gap, not words.
   bool has_number(std::size_t column) const;
@@ -47,4 +47,4 @@ class Table {
   std::vector<int> line_;
 };
 
-}  // namespace millscope::doe
+}  // namespace millscope::base
