@@ -8,29 +8,6 @@
 
 namespace millscope::dem {
 
-void WallContacts::resize(std::int64_t n) {
-  bead.resize(n);
-  feature.resize(n);
-  normal.resize(n);
-  for (auto& h : history) h.resize(n);
-}
-
-std::optional<std::int64_t> WallContacts::take(std::int64_t& cursor, std::uint32_t of_bead, std::uint32_t of_feature, const Vector3& near) {
-  while (cursor < count() && bead[cursor] < of_bead) ++cursor;
-  std::optional<std::int64_t> best;
-  double best_dot = -2;
-  for (std::int64_t q = cursor; q < count() && bead[q] == of_bead; ++q) {
-    if (feature[q] != of_feature) continue;
-    const double d = dot(normal[q], near);
-    if (d > best_dot) {
-      best_dot = d;
-      best = q;
-    }
-  }
-  if (best) feature[*best] = kUsedUp;
-  return best;
-}
-
 void WallLists::clear() {
   WallList empty;
   empty.active.history.resize(common_.layout.history_count());

@@ -22,10 +22,29 @@ struct WallContacts {
       std::numeric_limits<std::uint32_t>::max();  ///< feature of a contact that is not to be found again
 
   std::int64_t count() const { return std::ssize(bead); }
-  void resize(std::int64_t n);
+  void resize(std::int64_t n) {
+    bead.resize(n);
+    feature.resize(n);
+    normal.resize(n);
+    for (auto& h : history) h.resize(n);
+  }
   /// The contact of a bead with this feature whose normal is nearest; it can be taken once. `cursor`, the first contact of this bead or of
   /// a later one, is kept from call to call: beads come in ascending order.
-  std::optional<std::int64_t> take(std::int64_t& cursor, std::uint32_t bead, std::uint32_t feature, const Vector3& normal);
+  std::optional<std::int64_t> take(std::int64_t& cursor, std::uint32_t of_bead, std::uint32_t of_feature, const Vector3& near) {
+    while (cursor < count() && bead[cursor] < of_bead) ++cursor;
+    std::optional<std::int64_t> best;
+    double best_dot = -2;
+    for (std::int64_t q = cursor; q < count() && bead[q] == of_bead; ++q) {
+      if (feature[q] != of_feature) continue;
+      const double d = dot(normal[q], near);
+      if (d > best_dot) {
+        best_dot = d;
+        best = q;
+      }
+    }
+    if (best) feature[*best] = kUsedUp;
+    return best;
+  }
 };
 
 /// The beads of one slab that are near one body.

@@ -47,6 +47,7 @@ WallSweep::Chunk WallSweep::next_chunk(int body, std::int64_t end) {
 
 void WallSweep::run(Chunk& chunk) {
   ask(chunk);
+  if (pass_.scratch.found.count == 0) return;
   match(chunk);
   for (int p = 0; p < pass_.common.physics.count(); ++p) {
     const PairPhysics& physics = pass_.common.physics[p];

@@ -29,7 +29,7 @@ function condition(held, key, index) {
     gained.length ? figure("What the correction gains on each rival model, with 90 % intervals: right of zero, it predicts better.", intervals(`${id}-gain`, {
       label: gained.map((model) => `${model.model} ${number(gain(model).value, 3)}`).join(", "), rows: gained.map((model) => model.model),
       groups: [{ name: "", values: gained.map((model) => ({ value: gain(model).value, low: gain(model).low90, high: gain(model).high90 })) }],
-      x: { name: "misfit of the rival model less that of the corrected model" }, zero: 0 })) : null,
+      x: { name: "misfit of the rival model less the corrected one's" }, zero: 0 })) : null,
     table({ caption: `Predictions for ${held.condition}`, rows: models, classOf: (model) => (model.model === "corrected" ? "strong" : null), columns: [
       { label: "model", value: (model) => model.model }, { label: "what it is", wide: true, value: (model) => model.is },
       { label: "simulated", value: (model) => (model.simulated ? "yes" : "computed from others") }, { label: "misfit", number: true, value: (model) => number(model.misfit, 3) },
