@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/base/error.hpp"
@@ -27,7 +28,7 @@ void wrap(std::vector<double>& z, double low, double period) {
 Outcome follow_one(const BeadRun& bead, const FollowRequest& request) {
   const recording::Run& run = *bead.run;
   if (std::ssize(run.time) < bead.options.least_points)
-    return {{}, fmt::format("{}: its {} points in the span asked for are too few; widen the span", run.source, run.size())};
+    return {{}, fmt::format("{}: its {} points are too few, at least {} are needed", run.source, run.size(), bead.options.least_points)};
   try {
     Outcome outcome{trajectory::fit_trajectory(run, bead.options), {}};
     trajectory::Trajectory& t = *outcome.trajectory;
@@ -43,7 +44,8 @@ Outcome follow_one(const BeadRun& bead, const FollowRequest& request) {
   }
 }
 
-std::string left_out_note(const std::vector<Outcome>& outcomes, const FollowRequest& request) {
+/// "2 of 40 runs are left out: …"
+std::string left_out(const std::vector<Outcome>& outcomes, const FollowRequest& request) {
   std::size_t count = 0;
   std::string reasons;
   for (const Outcome& outcome : outcomes) {
@@ -51,7 +53,7 @@ std::string left_out_note(const std::vector<Outcome>& outcomes, const FollowRequ
     if (++count <= kNamed) reasons += (count > 1 ? "; " : "") + outcome.reason;
   }
   if (count > kNamed) reasons += fmt::format("; and {} more", count - kNamed);
-  return fmt::format("{} of {} {} cannot be followed, and are left out: {}", count, outcomes.size(), request.many, reasons);
+  return fmt::format("{} of {} {} {} left out: {}", count, outcomes.size(), request.many, count == 1 ? "is" : "are", reasons);
 }
 
 }  // namespace
@@ -92,7 +94,13 @@ Followed follow(std::span<const BeadRun> runs, FollowRequest request) {
                                      : fmt::format("{}: none of its {} {} can be followed{}", request.of, runs.size(), request.many,
                                                    runs.empty() ? "" : "; the first: " + outcomes.front().reason));
   }
-  if (trajectories.size() < runs.size()) followed.notes.push_back(left_out_note(outcomes, request));
+  if (trajectories.size() < runs.size()) {
+    if (request.named) {
+      const auto first = std::find_if(outcomes.begin(), outcomes.end(), [](const Outcome& outcome) { return !outcome.trajectory; });
+      throw UserError(first->reason + "; it was asked for by name: leave it out, or widen the span");
+    }
+    followed.notes.push_back(left_out(outcomes, request));
+  }
   std::string description = fmt::format("{}: {} {}, {} points, {:.6g} s covered", request.of, trajectories.size(),
                                         trajectories.size() == 1 ? request.one : request.many, followed.points, seconds);
   followed.source = std::make_unique<TrajectorySource>(std::move(trajectories), request.mill, std::move(request.motion), request.exact,

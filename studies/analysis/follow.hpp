@@ -29,6 +29,7 @@ struct FollowRequest {
   ShellMotion motion = {};
   double period = 0;   ///< along z from mill.mill_low, m, into which places are put back; 0: not periodic
   bool exact = false;  ///< positions without noise
+  bool named = false;  ///< the user named each run: one that cannot be followed is an error
   int threads = 0;     ///< 0: all cores; no influence on results
 };
 
@@ -44,7 +45,7 @@ struct Followed {
 std::vector<BeadRun> tracer_runs(const recording::Recording& recording, const trajectory::TrajectoryOptions& options);
 
 /// A run of which no stretch is long enough between its gaps is left out and named: of many runs some are always short, and they must not
-/// take the others with them. Throws base::UserError, with the reason of the first, where nothing is left.
+/// take the others with them. Throws base::UserError, with the reason of the first, where nothing is left, or where it was `named`.
 Followed follow(std::span<const BeadRun> runs, FollowRequest request);
 
 /// Ω as it is stated or found, the same at all times; unknown where it is 0.

@@ -104,6 +104,7 @@ OpenedSource open_tracks(const SourceRequest& request, MillOfCase mill) {
                                      .motion = shell_motion(mill.motion),
                                      .period = mill.period,
                                      .exact = !request.trajectory_given,
+                                     .named = !request.tracers.empty(),
                                      .threads = request.threads});
   opened.source = std::move(followed.source);
   opened.meta.notes = std::move(followed.notes);

@@ -31,7 +31,7 @@ ObservableKind kind_named(const std::string& name);
 struct Observable {
   std::string name;  ///< "speed 0.3–0.45 of the shell's"
   std::string unit;  ///< SI or %
-  ObservableKind kind = ObservableKind::power;
+  ObservableKind kind = ObservableKind::term;
   bool operator==(const Observable&) const = default;
 };
 

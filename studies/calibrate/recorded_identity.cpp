@@ -7,7 +7,9 @@
 #include "kernel/base/hash.hpp"
 #include "kernel/base/program.hpp"
 #include "kernel/base/text.hpp"
+#include "kernel/config/case.hpp"
 #include "studies/analysis/open_source.hpp"
+#include "studies/campaign/identity.hpp"
 
 namespace millscope::calibrate {
 
@@ -22,6 +24,10 @@ const std::string& observing_program() {
   return program;
 }
 
+std::string content_of_base(const Processing& how, std::size_t condition) {
+  return campaign::content_of(config::read_case(how.study.base.string(), how.study.conditions[condition].settings), how.registry);
+}
+
 std::string identity_of(const recording::Recording& recording, const Processing& how, std::size_t condition) {
   const Study& study = how.study;
   std::vector<std::string> parts{observing_program(), std::to_string(study.observing.draws), std::to_string(study.observing.beads),
@@ -29,13 +35,13 @@ std::string identity_of(const recording::Recording& recording, const Processing&
   for (const UsedAnalyzer& a : kUsedAnalyzers) parts.push_back(fmt::format("{}: {}", a.plugin, a.parameters));
   if (study.observing.camera_is_file()) parts.push_back(base::text_of(study.observing.camera));
   if (study.observing.z_low) parts.push_back(fmt::format("{:.17g} {:.17g}", *study.observing.z_low, *study.observing.z_high));
-  parts.push_back(analysis::file_hash(study.base) + analysis::file_hash(recording.file));
+  parts.push_back(content_of_base(how, condition) + analysis::file_hash(recording.file));
+  if (const auto& geometry = recording.condition.geometry; !geometry.empty())
+    parts.push_back(campaign::content_of(config::read_case(geometry.string()), how.registry));
   for (const recording::Run& run : recording.runs) parts.push_back(run.name + analysis::file_hash(run.source));
   for (const ObservableKind kind : study.objective.without) parts.push_back(fmt::format("without {}", name_of(kind)));
   for (const Term& term : study.objective.terms) parts.push_back(term.name());
   if (const auto own = study.root.valid() ? study.root.find("analyzers") : std::nullopt) parts.push_back(dump(*own));
-  const auto& settings = study.conditions[condition].settings;
-  parts.insert(parts.end(), settings.begin(), settings.end());
   // A plugin that is not asked changes nothing; a study with analyzers of its own may ask any.
   const bool own_analyzers = !study.objective.terms.empty() || (study.root.valid() && study.root.has("analyzers"));
   for (const host::PluginRecord& r : how.registry.records()) {

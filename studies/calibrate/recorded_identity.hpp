@@ -12,6 +12,9 @@ namespace millscope::calibrate {
 /// libraries.
 const std::string& observing_program();
 
+/// Case, files and plugins' code of a condition's simulations: what the mill that a recording is held against rests on.
+std::string content_of_base(const Processing& how, std::size_t condition);
+
 /// Of everything that the results of a recording depend on.
 std::string identity_of(const recording::Recording& recording, const Processing& how, std::size_t condition);
 

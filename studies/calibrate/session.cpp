@@ -13,6 +13,7 @@ campaign::Options campaign_options(const Study& study, const SessionOptions& o) 
   c.slots = o.slots;
   c.plugin_directories = o.plugin_directories;
   c.quiet = o.quiet;
+  c.retry_failed = o.retry_failed;
   c.slurm_options = o.slurm_options;
   c.say = o.say;
   return c;
@@ -28,10 +29,10 @@ Session::Session(const Study& study, const host::Registry& registry, SessionOpti
   std::filesystem::create_directories(options_.cache);
   observer_ = std::make_unique<Observer>(study_, registry, std::move(recordings),
                                          ObserverOptions{options_.cache / "observations", 0, options_.say});
-  machinery_.run = [campaign_setup = campaign_options(study_, options_),
-                    retry = options_.retry_failed](std::span<const campaign::Simulation> simulations) {
-    campaign::Options once = campaign_setup;
-    once.retry_failed = retry;
+  // A study asks many times; what other programs left is said at the first.
+  machinery_.run = [how = campaign_options(study_, options_)](std::span<const campaign::Simulation> simulations) mutable {
+    campaign::Options once = how;
+    how.say_of_other_programs = false;
     return campaign::run(simulations, once);
   };
   machinery_.observe = [observer = observer_.get()](std::size_t condition, const campaign::Outcome& outcome, const std::string& camera) {

@@ -161,9 +161,8 @@ std::string range_text(const VelocityProfile& p, const Condition& c, const analy
 
 std::string identity(const VelocityProfile& profile, const Processing& how, std::size_t condition) {
   const Condition& c = how.study.conditions[condition];
-  std::vector<std::string> parts{observing_program(), std::to_string(how.study.observing.draws), analysis::file_hash(how.study.base),
+  std::vector<std::string> parts{observing_program(), std::to_string(how.study.observing.draws), content_of_base(how, condition),
                                  analysis::file_hash(c.recording), analysis::file_hash(profile.points)};
-  parts.insert(parts.end(), c.settings.begin(), c.settings.end());
   for (const host::PluginRecord& r : how.registry.records()) {
     if (r.kind == "analyzer") parts.push_back(r.name + r.code_hash);
   }

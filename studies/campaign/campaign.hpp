@@ -51,6 +51,7 @@ struct Options {
   bool quiet = false;
   std::function<void(std::size_t index, const Outcome&)> finished;  ///< called once for each simulation, as it ends
   std::function<void(const std::string&)> say = {};                 ///< one line on what is used again, and why something is not
+  bool say_of_other_programs = true;                                ///< that what they computed is not used; costs reading the whole cache
   bool retry_failed = false;                                        ///< compute failed ones again
   std::uint64_t memory_bytes = 0;          ///< that simulations may use together (local); 0: what the machine has free
   std::filesystem::path program;           ///< the millscope command to run; empty: this very program

@@ -82,12 +82,19 @@ std::vector<NamedFile> files_of(const config::Case& c, const host::Registry& reg
   return files;
 }
 
-base::ProgramParts program_of(const config::Case& c, const host::Registry& registry) {
-  base::ProgramParts parts = base::program_parts(base::simulating_folders());
+/// The code of each plugin that the case loads.
+base::ProgramParts plugins_of(const config::Case& c, const host::Registry& registry) {
+  base::ProgramParts parts;
   each_plugin(c, [&](Kind kind, const std::string& name, const config::Node&, Scope) {
     parts[host::text(kind) + " " + name] = registry.find(kind, name).library->code_hash();
   });
   return parts;
+}
+
+std::string text_of(const base::ProgramParts& parts) {
+  std::string text;
+  for (const auto& [part, value] : parts) text += part + "\n" + value + "\n";
+  return text;
 }
 
 /// The case without what has no influence on what the run writes, and with contents in the place of paths.
@@ -130,6 +137,10 @@ host::RegistryOptions registry_options(const Options& options) {
 
 }  // namespace
 
+std::string content_of(const config::Case& c, const host::Registry& registry) {
+  return essence(c, registry, files_of(c, registry)) + text_of(plugins_of(c, registry));
+}
+
 std::string content_hash(const std::string& bytes) {
   // The namespace is part of the cache's format.
   constexpr boost::uuids::uuid kNamespace{{0x6d, 0x69, 0x6c, 0x6c, 0x73, 0x63, 0x6f, 0x70, 0x65, 0, 0, 0, 0, 0, 0, 1}};
@@ -153,11 +164,10 @@ Identity Identifier::identify(const Simulation& simulation) const {
   config::finish(c, registry_.descriptors());
   Identity id;
   id.files = files_of(c, registry_);
-  id.program = program_of(c, registry_);
-  std::string program;
-  for (const auto& [part, text] : id.program) program += part + "\n" + text + "\n";
+  id.program = plugins_of(c, registry_);
+  id.program.merge(base::program_parts(base::simulating_folders()));
   id.key = content_hash(fmt::format("cache {}\n{}", kCacheVersion, essence(c, registry_, id.files))) + "-" +
-           content_hash(program).substr(0, kProgramDigits);
+           content_hash(text_of(id.program)).substr(0, kProgramDigits);
   id.case_yaml = config::resolved_yaml(c, registry_.descriptors());
   const double beads = beads_of(simulation, c, registry_);
   id.work = std::max(1.0, beads) * (c.time.end + c.fill.settle);

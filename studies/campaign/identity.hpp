@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kernel/base/program.hpp"
+#include "kernel/config/case.hpp"
 #include "kernel/host/registry.hpp"
 #include "studies/campaign/campaign.hpp"
 
@@ -38,6 +39,10 @@ class Identifier {
  private:
   host::Registry registry_;
 };
+
+/// A text that differs where the case, the content of a file that it names or the code of a plugin that it loads does; its name, threads
+/// and checkpoints apart. Throws UserError for a file that cannot be read.
+std::string content_of(const config::Case& c, const host::Registry& registry);
 
 /// SHA-1 of bytes as 32 hexadecimal digits (a version 5 UUID).
 std::string content_hash(const std::string& bytes);

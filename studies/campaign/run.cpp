@@ -62,6 +62,7 @@ Board::Board(std::span<const Simulation> simulations, const Options& options)
   }
   if (!options.say) return;
   if (found > 0) options.say(fmt::format("simulations found in the cache: {} of {}", found, simulations.size()));
+  if (!options.say_of_other_programs) return;
   if (const std::string others = other_programs_sentence(options.cache, missing); !others.empty()) options.say(others);
 }
 

@@ -69,7 +69,7 @@ TEST_CASE("runs that cannot be followed are left out and named with the reason, 
   CHECK(followed.source->context().largest_id == 1);
   CHECK_THAT(followed.source->description(), Contains("all.yaml: 2 runs, 700 points, 3.4"));
   REQUIRE(followed.notes.size() == 1);
-  CHECK_THAT(followed.notes[0], Contains("2 of 4 runs cannot be followed, and are left out: short.a: its 3 points"));
+  CHECK_THAT(followed.notes[0], Contains("2 of 4 runs are left out: short.a: its 3 points"));
   CHECK_THAT(followed.notes[0], Contains("; torn.a: no trajectory: none of its 50 points"));
 }
 
@@ -79,6 +79,12 @@ TEST_CASE("of many that cannot be followed the first are named and the others co
   const analysis::Followed followed = analysis::follow(analysis::tracer_runs(recording, steady()), {.of = "all.yaml"});
   REQUIRE(followed.notes.size() == 1);
   CHECK_THAT(followed.notes[0], Contains("9 of 10 runs") && Contains("s2.a") && !Contains("s3.a") && Contains("and 6 more"));
+}
+
+TEST_CASE("a run that was asked for by name is not left out in silence") {
+  const recording::Recording recording = recording_of({circle("first", 400), circle("short", 3)});
+  CHECK_THAT(refusal([&] { analysis::follow(analysis::tracer_runs(recording, steady()), {.of = "all.yaml", .named = true}); }),
+             Contains("short.a: its 3 points are too few") && Contains("asked for by name"));
 }
 
 TEST_CASE("where nothing can be followed it says why") {

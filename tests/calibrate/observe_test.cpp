@@ -141,6 +141,25 @@ TEST_CASE("two runs of one condition do not share the camera's chance, one run a
   CHECK(power("one") != power("other"));
 }
 
+TEST_CASE("a recording is looked through anew when a file that its case includes has changed") {
+  const testing::Folder folder;
+  const calibrate::Study study = study_in(folder);
+  std::string text = kDrum;
+  const std::string beads = "beads: {charge: {material: glass, diameter: 4 mm}}\n";
+  text.replace(text.find(beads), beads.size(), "include: [beads.yaml]\n");
+  folder.write("drum.yaml", text);
+  const auto times_looked_through = [&](const std::string& diameter) {
+    folder.write("beads.yaml", "beads: {charge: {material: glass, diameter: " + diameter + "}}\n");
+    observer_of(study, registry(), folder.path / "observations");
+    const std::filesystem::directory_iterator files(folder.path / "observations");
+    return std::count_if(begin(files), end(files),
+                         [](const auto& file) { return file.path().filename().string().starts_with("recording-"); });
+  };
+  CHECK(times_looked_through("4 mm") == 1);
+  CHECK(times_looked_through("4.0 mm") == 1);
+  CHECK(times_looked_through("4.1 mm") == 2);
+}
+
 TEST_CASE("what was seen is seen again when a camera's code has changed, not when its comments have") {
   const testing::Folder folder;
   const std::filesystem::path run = folder.path / "run", cache = folder.path / "observations";

@@ -257,8 +257,7 @@ naming::BankData data_of(const Question& question, const Bank& bank, const std::
     std::vector<double> row;
     bool whole = true;
     for (const std::size_t c : conditions) {
-      const std::size_t k = bank.place_of(c);
-      const auto& seen = bank.seen[p].at(k);
+      const auto& seen = bank.seen[p][bank.place_of(c).value()];
       if (!seen) {
         whole = false;
         break;

@@ -72,9 +72,10 @@ struct Bank {
   std::vector<std::string> failures;                                     ///< one line each
   std::vector<std::vector<std::filesystem::path>> runs = {};             ///< [points][conditions] where each simulation is
 
-  /// Where a condition of the study stands among `conditions`; their number: nowhere.
-  std::size_t place_of(std::size_t condition) const {
-    return std::find(conditions.begin(), conditions.end(), condition) - conditions.begin();
+  /// Where a condition of the study stands among `conditions`.
+  std::optional<std::size_t> place_of(std::size_t condition) const {
+    const auto found = std::find(conditions.begin(), conditions.end(), condition);
+    return found == conditions.end() ? std::nullopt : std::optional<std::size_t>(found - conditions.begin());
   }
 };
 

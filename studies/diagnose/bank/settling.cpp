@@ -126,10 +126,11 @@ std::string sentence(const std::string& condition, const Quantity& quantity, con
 std::vector<std::string> unsettled(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions) {
   std::vector<std::string> told;
   for (const std::size_t condition : conditions) {
-    const std::size_t k = bank.place_of(condition);
+    const std::optional<std::size_t> k = bank.place_of(condition);
+    if (!k) continue;
     std::vector<std::optional<Parts>> of_point(bank.points.size());
     base::for_each_item(of_point.size(), base::worker_count(0, of_point.size()), [&](std::size_t p, std::size_t) {
-      if (bank.points[p].active.empty() && bank.seen[p][k]) of_point[p] = parts_of(bank.runs[p][k]);
+      if (bank.points[p].active.empty() && bank.seen[p][*k]) of_point[p] = parts_of(bank.runs[p][*k]);
     });
     std::vector<Parts> runs;
     for (const std::optional<Parts>& parts : of_point) {

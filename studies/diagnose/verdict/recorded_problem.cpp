@@ -10,13 +10,14 @@ namespace {
 
 /// Mean correlation of the simulated observations of a condition; the identity where the bank has none.
 MatrixXd correlation_of(const Bank& bank, std::size_t condition, Index size) {
-  const std::size_t k = bank.place_of(condition);
+  const std::optional<std::size_t> k = bank.place_of(condition);
   MatrixXd sum = MatrixXd::Zero(size, size);
   int runs = 0;
   for (const auto& seen : bank.seen) {
-    if (k >= seen.size() || !seen[k]) continue;
-    const VectorXd scale = seen[k]->covariance.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    sum += scale.asDiagonal() * seen[k]->covariance * scale.asDiagonal();
+    if (!k || !seen[*k]) continue;
+    const MatrixXd& covariance = seen[*k]->covariance;
+    const VectorXd scale = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    sum += scale.asDiagonal() * covariance * scale.asDiagonal();
     ++runs;
   }
   return runs == 0 ? MatrixXd(MatrixXd::Identity(size, size)) : MatrixXd(sum / runs);

@@ -54,7 +54,7 @@ function drawing(section, key) {
     if (surface.stationary?.inside)
       groups.push({ name: surface.stationary.kind, symbol: "diamond", size: 16, fill: "#d55e00", points: [{ x: surface.stationary.natural[across], y: surface.stationary.natural[up],
         text: [["value", number(surface.stationary.value, 3)]] }] });
-    const flat = plane(`${key}-contour`, { label: `Contours of the surface over ${x.name} and ${y.name}`, x, y, field, colour: scale.colour, groups, height: 400 });
+    const flat = plane(`${key}-contour`, { label: `Contours of the surface over ${x.name} and ${y.name}`, x, y, field, colour: scale ? scale.colour : () => "transparent", groups, height: 400 });
     if (!surfaces.has(key)) surfaces.set(key, new Surface(`The quadratic surface over ${words(a.name)} and ${words(b.name)}`));
     const turned = surfaces.get(key);
     if (turned.works) turned.show({ x, y, field });
