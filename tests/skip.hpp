@@ -7,7 +7,8 @@
 
 namespace testing {
 
-/// Says that this test does not run here; it returns then. tests/CMakeLists.txt tells ctest the words.
+/// Says that this test does not run here; it returns then. To be called before the first CHECK: ctest takes a test that says this for
+/// skipped, also when it fails. tests/CMakeLists.txt tells ctest the words.
 inline void skip(const std::string& why) { WARN("this test is skipped: " << why); }
 
 /// A recording, or the folder of all; they are large and lie beside the repository, where they are there at all.

@@ -14,8 +14,8 @@ HEADING = "## Rooms and arrows"
 OUTSIDE = ("tests", "docs")  # tests may include any room
 SOURCES = (".cpp", ".hpp", ".c", ".h", ".in", ".S")
 INCLUDE = re.compile(r'^\s*#\s*include\s+(["<])([^">]+)[">]', re.M)
-SYSTEM_HEADER = re.compile(r"(sys/|gnu/|experimental/)?[a-z0-9_-]+(\.h)?")  # <vector>, <unistd.h>, <sys/stat.h>
-NOT_SYSTEM = ("hdf5.h", "nlopt.h", "zlib.h", "cairo.h")
+SYSTEM_HEADER = re.compile(r"(experimental/)?[a-z0-9_]+|(sys|gnu)/[a-z0-9_-]+\.h")  # <vector>, <sys/stat.h>
+SYSTEM_FILES = set("dlfcn elf fcntl fnmatch grp link malloc poll pwd sched spawn termios unistd".split())  # <unistd.h>
 TICKED = re.compile(r"`([^`]+)`")
 
 
@@ -28,8 +28,8 @@ class Room:
 
 
 def files_of(root):
-    """What git tracks; in a tree without git, everything but builds."""
-    listed = subprocess.run(["git", "ls-files", "-z"], cwd=root, capture_output=True) if (root / ".git").exists() else None
+    """What git tracks or would; in a tree without git, everything but builds."""
+    listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=root, capture_output=True) if (root / ".git").exists() else None
     if listed is not None and listed.returncode == 0:
         paths = [root / p for p in listed.stdout.decode().split("\0") if p]
     else:
@@ -64,6 +64,8 @@ class Table:
                 self.faults.append("%s:%d: a row is | `folder/` | holds | may use | libraries |" % (PAGE, number))
                 continue
             room = Room(number, cells)
+            if room.folder in self.rooms:
+                self.faults.append("%s:%d: %s has a row above already" % (PAGE, number, room.folder))
             self.rooms[room.folder] = room
         for room in self.rooms.values():
             room.uses = [used for used in (self.named(room, name) for name in room.uses) if used]
@@ -101,7 +103,7 @@ class Arrow:
 
 
 def is_standard(header):
-    return SYSTEM_HEADER.fullmatch(header) is not None and header not in NOT_SYSTEM
+    return SYSTEM_HEADER.fullmatch(header) is not None or header.removesuffix(".h") in SYSTEM_FILES
 
 
 def target_of(root, table, path, header):

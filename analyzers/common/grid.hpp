@@ -1,6 +1,7 @@
 // Equal bins along one coordinate, and the means that they hold.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -25,17 +26,15 @@ struct Bins {
   /// Number of the bin that holds `value`; none outside and for NaN.
   std::optional<std::int64_t> at(double value) const {
     const double place = (value - low) * per_unit;
-    if (!(place >= 0 && place <= static_cast<double>(count))) return std::nullopt;
-    const auto bin = static_cast<std::int64_t>(place);
-    return bin - (bin == count ? 1 : 0);
+    if (!(place >= 0 && value <= high)) return std::nullopt;
+    return std::min(static_cast<std::int64_t>(place), count - 1);  // at `high`, place may round to more than count
   }
   /// 0: below; 1 … count: bin + 1; count + 1: above (and NaN).
   std::int64_t slot(double value) const {
     const double place = (value - low) * per_unit;
     if (place < 0) return 0;
-    if (!(place <= static_cast<double>(count))) return count + 1;
-    const auto bin = static_cast<std::int64_t>(place);
-    return bin + (bin == count ? 0 : 1);
+    if (!(value <= high)) return count + 1;
+    return std::min(static_cast<std::int64_t>(place), count - 1) + 1;
   }
   double width() const { return (high - low) / static_cast<double>(count); }
   double edge(std::int64_t i) const { return i == count ? high : low + static_cast<double>(i) * width(); }

@@ -69,10 +69,11 @@ class Slip {
         const double x = block.position[0][s], y = block.position[1][s], radius_square = x * x + y * y;
         const std::optional<std::int64_t> ring = rings_.at(std::sqrt(radius_square));
         if (!ring || !range_.contains(block.position[2][s]) || !in_sector(x, y)) continue;
-        const std::int64_t phase = pitch_ > 0 ? *phases_.at(lifter_phase(x, y, shell_angle)) : 0;
+        const std::optional<std::int64_t> phase = pitch_ > 0 ? phases_.at(lifter_phase(x, y, shell_angle)) : 0;
+        if (!phase) continue;  // the shell's angle is not known
         const double weight = block.weight[s];
         const double turning = sense_ * (x * block.velocity[1][s] - y * block.velocity[0][s]) / std::max(radius_square, 1e-14);
-        double* m = sums[0] + (*ring * phases_.count + phase) * kMoments;
+        double* m = sums[0] + (*ring * phases_.count + *phase) * kMoments;
         m[kTime] += weight;
         m[kTurning] += weight * turning;
         m[kSquare] += weight * turning * turning;

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -35,6 +36,7 @@ struct Interval90 {
 /// The value of a rank; `values` is left in another order.
 template <class Number>
 Number value_of_rank(std::vector<Number>& values, std::size_t rank) {
+  assert(rank < values.size());
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank);
   std::nth_element(values.begin(), at, values.end());
   return *at;
@@ -53,12 +55,14 @@ Number quantile_below(std::vector<Number>& values, double fraction) {
 
 /// The largest where there are too few. `values`: not empty, left in another order.
 inline double quantile_of_next(std::vector<double>& values, double fraction) {
+  assert(!values.empty() && fraction > 0);
   const auto count = static_cast<std::size_t>(std::ceil(fraction * static_cast<double>(values.size() + 1)));
   return value_of_rank(values, std::min(count, values.size()) - 1);
 }
 
 /// `sorted`: rising, not empty.
 inline double interpolated_quantile(std::span<const double> sorted, double fraction) {
+  assert(!sorted.empty());
   const double at = fraction * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(at);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);

@@ -68,10 +68,10 @@ Extent CellOrder::measure(Particles& p, double time) {
 
 /// Brings values into the new order, over other memory that is free.
 template <class Values>
-void CellOrder::permute(Values& values, AlignedVector<ForceLine>& free) {
+void CellOrder::permute(Values& values, AlignedVector<ForceLine>& other_half) {
   using Item = typename Values::value_type;
   static_assert(sizeof(Item) <= sizeof(ForceLine));
-  unsigned char* const there = reinterpret_cast<unsigned char*>(free.data());
+  unsigned char* const there = reinterpret_cast<unsigned char*>(other_half.data());
   common_.each_slab([&](int slab, int) {
     for (std::int64_t i = common_.slabs.begin(slab); i < common_.slabs.end(slab); ++i) {
       std::memcpy(there + new_index_[i] * sizeof(Item), &values[i], sizeof(Item));

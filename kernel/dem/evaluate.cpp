@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <type_traits>
 
 #include "millscope/pack.hpp"
 
@@ -10,6 +11,7 @@ namespace millscope::dem {
 namespace {
 
 static_assert(kPadding == kLanes);
+static_assert(std::extent_v<decltype(ContactArrays::power)> == kMaxChannels);
 
 void fill(double* array, std::int64_t count, double value) { std::fill(array, array + count, value); }
 

@@ -8,10 +8,11 @@
 namespace millscope::dem {
 
 std::optional<Alike> alike_of(const Particles& particles, const PairPhysics& physics) {
+  if (physics.wall) return std::nullopt;
   double radius = -1, mass = 0;
   for (std::int64_t i = 0; i < particles.count(); ++i) {
     const int material = particles.material[i];
-    if (material != physics.first && (physics.wall || material != physics.second)) continue;
+    if (material != physics.first && material != physics.second) continue;
     const double own_radius = particles.position[i].radius, own_mass = 1.0 / particles.motion[i].inverse_mass;
     if (radius < 0) {
       radius = own_radius;

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "kernel/dem/parts.hpp"
@@ -124,6 +125,7 @@ template <class Self, class Visit>
 void Step::each_work(Self& self, int body, Visit& visit) {
   const std::string at = fmt::format("walls/{}/", body);
   const auto slabs = pointers_to(self.slabs_);
+  assert(!slabs.empty());  // `start` makes them
   const std::vector<std::int64_t> triangles(slabs.size(), std::ssize(slabs[0]->impact[body]));
   visit.parts(
       at + "impact", triangles, slabs, [body](auto& slab) -> auto& { return slab.impact[body]; });

@@ -99,6 +99,7 @@ class StateWriter {
   template <class Values, class Numbers>
   static void append(const Values& values, std::int64_t count, Numbers& all) {
     using Item = typename Values::value_type;
+    all.reserve(all.size() + count * std::tuple_size_v<Record<Item>>);
     for (std::int64_t k = 0; k < count; ++k) {
       const auto record = std::bit_cast<Record<Item>>(values[k]);
       all.insert(all.end(), record.begin(), record.end());

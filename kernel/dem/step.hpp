@@ -50,7 +50,7 @@ class Step {
   std::vector<SlabState> slabs_;
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< [worker]
   std::vector<std::optional<Alike>> alike_;        ///< [physics]
-  double largest_drift_ = 0;                       ///< in one step that no sound run reaches, m
+  double largest_drift_ = 0;                       ///< a drift in one step that no sound run reaches, m
   bool has_general_body_force_ = false;            ///< one that differs from bead to bead
 
   // of this step

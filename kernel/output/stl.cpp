@@ -21,7 +21,7 @@ struct Corners {
 
 Corners corners_of(const Surface& surface, std::uint64_t triangle) {
   const auto vertex = [&](std::uint64_t k) {
-    const double* at = surface.vertices + 3 * surface.triangles[3 * triangle + k];
+    const double* at = surface.vertices + std::size_t{3} * surface.triangles[3 * triangle + k];
     return base::Vector3{at[0], at[1], at[2]};
   };
   Corners t{vertex(0), vertex(1), vertex(2), {0, 0, 0}};

@@ -75,9 +75,9 @@ std::vector<float> speeds_of(std::span<const double> velocity) {
 
 double area_of(const MeshPicture& mesh, std::size_t triangle) {
   double edge[2][3];
-  const double* first = mesh.vertices.data() + 3 * mesh.triangles[3 * triangle];
+  const double* first = mesh.vertices.data() + std::size_t{3} * mesh.triangles[3 * triangle];
   for (std::size_t e = 0; e < 2; ++e) {
-    const double* to = mesh.vertices.data() + 3 * mesh.triangles[3 * triangle + 1 + e];
+    const double* to = mesh.vertices.data() + std::size_t{3} * mesh.triangles[3 * triangle + 1 + e];
     for (std::size_t k = 0; k < 3; ++k) edge[e][k] = to[k] - first[k];
   }
   return 0.5 * std::hypot(edge[0][1] * edge[1][2] - edge[0][2] * edge[1][1], edge[0][2] * edge[1][0] - edge[0][0] * edge[1][2],

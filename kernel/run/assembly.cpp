@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <thread>
@@ -186,7 +187,9 @@ double rayleigh_time(double radius, double density, double young, double poisson
 }
 
 int Assembly::index_of_material(const std::string& name) const {
-  return static_cast<int>(std::find(materials.begin(), materials.end(), name) - materials.begin());
+  const auto found = std::find(materials.begin(), materials.end(), name);
+  assert(found != materials.end());
+  return static_cast<int>(found - materials.begin());
 }
 
 std::optional<int> Assembly::wall_body_of_mill() const {

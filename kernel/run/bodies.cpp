@@ -49,7 +49,7 @@ struct Corners {
 
 Corners corners_of(const Surface& s, std::uint64_t triangle) {
   Corners c{};
-  for (std::size_t k = 0; k < 3; ++k) c.vertex[k] = s.vertices + 3 * s.triangles[3 * triangle + k];
+  for (std::size_t k = 0; k < 3; ++k) c.vertex[k] = s.vertices + std::size_t{3} * s.triangles[3 * triangle + k];
   return c;
 }
 

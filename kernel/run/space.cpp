@@ -44,10 +44,8 @@ void mark_touching(const GeometryUse& g, const std::vector<base::Vector3>& sites
 /// Whether the segment p–q crosses the triangle (Möller & Trumbore 1997).
 bool crosses(const base::Vector3& p, const base::Vector3& q, const double* a, const double* b, const double* c) {
   const auto minus = [](const double* u, const double* v) { return base::Vector3{u[0] - v[0], u[1] - v[1], u[2] - v[2]}; };
-  const auto cross = [](const base::Vector3& u, const base::Vector3& v) {
-    return base::Vector3{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  };
-  const auto dot = [](const base::Vector3& u, const base::Vector3& v) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; };
+  using base::cross;
+  using base::dot;
   const base::Vector3 d = minus(q.data(), p.data()), e1 = minus(b, a), e2 = minus(c, a);
   const base::Vector3 h = cross(d, e2);
   const double det = dot(e1, h);

@@ -102,7 +102,7 @@ std::vector<ResultPair> pair_results(const analysis::ResultSet& a, const analysi
   require_known(options.only, "only", a, b);
   require_known(options.without, "without", a, b);
   std::vector<ResultPair> pairs;
-  const auto find = [](const analysis::ResultSet& results, const analysis::ResultArray& like) {
+  const auto find = [](const analysis::ResultSet& results, const analysis::ResultArray& like) -> std::size_t {
     const auto same = [&](const analysis::ResultArray& x) { return x.analyzer == like.analyzer && x.name == like.name; };
     return std::find_if(results.arrays.begin(), results.arrays.end(), same) - results.arrays.begin();
   };

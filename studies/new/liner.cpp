@@ -32,7 +32,7 @@ bool has_wall(const Surface& s, double z, double radius, double length) {
     const double* v[3];
     bool here = true;
     for (std::size_t k = 0; k < 3; ++k) {
-      v[k] = s.vertices + 3 * s.triangles[3 * t + k];
+      v[k] = s.vertices + std::size_t{3} * s.triangles[3 * t + k];
       here = here && std::fabs(v[k][2] - z) < 1e-3 * length;
     }
     if (here) area += 0.5 * std::fabs((v[1][0] - v[0][0]) * (v[2][1] - v[0][1]) - (v[2][0] - v[0][0]) * (v[1][1] - v[0][1]));

@@ -55,7 +55,7 @@ Source resample(const std::vector<std::vector<double>>& blocks, std::size_t draw
   for (std::size_t r = 0; r < draws; ++r) {
     std::vector<double> sum(kAll, 0);
     for (std::size_t i = 0; i < n; ++i) {
-      const auto& block = blocks[random.uniform() * static_cast<double>(n)];
+      const auto& block = blocks[static_cast<std::size_t>(random.uniform() * static_cast<double>(n))];
       for (std::size_t k = 0; k < kAll; ++k) sum[k] += block[k];
     }
     for (std::size_t k = 0; k < kAll; ++k)

@@ -72,10 +72,10 @@ struct OtherHypothesis {
 template <>
 struct millscope::Layout<OtherHypothesis> {
   using S = OtherHypothesis;
-  static constexpr std::size_t offsets[] = {offsetof(S, name),     offsetof(S, sentence),  offsetof(S, equation),
-                                            offsetof(S, citation), offsetof(S, parameter), offsetof(S, null_value),
-                                            offsetof(S, added),    offsetof(S, prior_low), offsetof(S, prior_high),
-                                            offsetof(S, excludes), offsetof(S, two_sided), offsetof(S, reserved)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, name),     MILLSCOPE_MEMBER(S, sentence),  MILLSCOPE_MEMBER(S, equation),
+                                       MILLSCOPE_MEMBER(S, citation), MILLSCOPE_MEMBER(S, parameter), MILLSCOPE_MEMBER(S, null_value),
+                                       MILLSCOPE_MEMBER(S, added),    MILLSCOPE_MEMBER(S, prior_low), MILLSCOPE_MEMBER(S, prior_high),
+                                       MILLSCOPE_MEMBER(S, excludes), MILLSCOPE_MEMBER(S, two_sided), MILLSCOPE_MEMBER(S, reserved)};
 };
 
 namespace {

@@ -316,7 +316,14 @@ TEST_CASE("draws do not depend on the number of threads") {
   Options one = quick(120), two = quick(120);
   one.threads = 1, two.threads = 3;
   const Result a = name_candidates(p, one), b = name_candidates(p, two);
-  for (std::size_t j = 0; j < a.judged.size(); ++j) CHECK(a.judged[j].p_family == b.judged[j].p_family);
+  CHECK(a.base_p == b.base_p);
+  for (std::size_t j = 0; j < a.judged.size(); ++j) {
+    CHECK(a.judged[j].p_family == b.judged[j].p_family);
+    CHECK(a.judged[j].p == b.judged[j].p);
+    CHECK(a.judged[j].delta_q == b.judged[j].delta_q);
+    CHECK(a.judged[j].goodness_p == b.judged[j].goodness_p);
+    CHECK(a.judged[j].lambda == b.judged[j].lambda);
+  }
 }
 
 TEST_CASE("a bank that is too small is refused with the remedy") {

@@ -53,7 +53,7 @@ TEST_CASE("the surrogate's error is the same whether the noise of the observable
   const auto difference = [](Problem p) {
     const MatrixXd independent = Surrogate(p.data).residual_covariance(p.covariance);
     const Index n = independent.rows();
-    MatrixXd mixed = MatrixXd::Zero(n, n);  // every observable strengths nine tenths with the one before
+    MatrixXd mixed = MatrixXd::Zero(n, n);  // every observable shares nine tenths with the one before
     for (Index i = 0; i < n; ++i) {
       for (Index j = 0; j <= i; ++j) mixed(i, j) = std::pow(0.9, static_cast<double>(i - j));
     }

@@ -35,9 +35,10 @@ void check_struct() {
   INFO(__PRETTY_FUNCTION__);
   CHECK(std::is_standard_layout_v<Struct>);
   CHECK(std::is_trivially_copyable_v<Struct>);
-  CHECK(std::size(Layout<Struct>::offsets) == member_count<Struct>());
-  CHECK(Layout<Struct>::offsets[0] == 0);
-  CHECK(std::is_sorted(std::begin(Layout<Struct>::offsets), std::end(Layout<Struct>::offsets)));
+  CHECK(std::size(Layout<Struct>::members) == member_count<Struct>());
+  CHECK(Layout<Struct>::members[0].offset == 0);
+  CHECK(std::is_sorted(std::begin(Layout<Struct>::members), std::end(Layout<Struct>::members),
+                       [](const Member& a, const Member& b) { return a.offset < b.offset; }));
 }
 
 template <class... Structs>
@@ -68,15 +69,17 @@ constexpr std::uint64_t hash_of() {
 
 template <>
 struct millscope::Layout<Bead2> {
-  static constexpr std::size_t offsets[] = {offsetof(Bead2, radius), offsetof(Bead2, mass), offsetof(Bead2, touching)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(Bead2, radius), MILLSCOPE_MEMBER(Bead2, mass), MILLSCOPE_MEMBER(Bead2, touching)};
 };
 template <>
 struct millscope::Layout<Exchanged> {
-  static constexpr std::size_t offsets[] = {offsetof(Exchanged, radius), offsetof(Exchanged, mass), offsetof(Exchanged, touching)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(Exchanged, mass), MILLSCOPE_MEMBER(Exchanged, radius),
+                                       MILLSCOPE_MEMBER(Exchanged, touching)};
 };
 template <>
 struct millscope::Layout<Longer> {
-  static constexpr std::size_t offsets[] = {offsetof(Longer, radius), offsetof(Longer, mass), offsetof(Longer, touching)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(Longer, radius), MILLSCOPE_MEMBER(Longer, mass),
+                                       MILLSCOPE_MEMBER(Longer, touching)};
 };
 
 TEST_CASE("every member of every struct that crosses is in its list of offsets") {

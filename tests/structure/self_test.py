@@ -63,6 +63,7 @@ WRONG_ROWS = [
     ("| | `fcl` |", "| | `fcl`, `assimp` |", "the row of geometry allows assimp, which nothing there includes"),
     ("| `dem` |", "| `dem`, `report` |", "kernel/run may use report, which is no room of the table"),
     ("| `app/` |", "| `studies/report` | pages | | |\n| `app/` |", "the row of studies/report matches no source"),
+    ("| `app/` |", "| `app/` | | | |\n| `app/` |", "app has a row above already"),
     ("| `run` | |", "| `run` |", "a row is | `folder/` | holds | may use | libraries |"),
 ]
 
@@ -78,6 +79,7 @@ WRONG = [
     ("kernel/dem/a.cpp", "#include \"geometry/mesh/mesh.hpp\"\n", "kernel/dem may not include"),
     ("kernel/run/a.cpp", "#include \"plugins/laws/options.hpp\"\n", "kernel/run may not include"),
     ("kernel/config/a.cpp", "#include \"kernel/dem/system.hpp\"\n", "kernel/config may not include"),
+    ("kernel/run/c.cpp", "#include <png.h>\n", "kernel/run may not include png.h"),
     ("kernel/run/b.cpp", "#include \"nowhere.hpp\"\n", "kernel/run may not include nowhere.hpp; it may use kernel/dem"),
     ("studies/compare/a.cpp", "#include \"app/commands.hpp\"\n", "studies/compare may not include"),
     ("studies/compare/b.cpp", "#include \"studies/diagnose/outputs.hpp\"\n", "studies/compare may not include"),

@@ -71,37 +71,37 @@ struct FrameBlock {
 template <>
 struct Layout<FrameBlock> {
   using S = FrameBlock;
-  static constexpr std::size_t offsets[] = {offsetof(S, has),
-                                            offsetof(S, duration),
-                                            offsetof(S, frame_count),
-                                            offsetof(S, time),
-                                            offsetof(S, piece),
-                                            offsetof(S, omega),
-                                            offsetof(S, phase),
-                                            offsetof(S, wall_work),
-                                            offsetof(S, dissipation),
-                                            offsetof(S, channel_count),
-                                            offsetof(S, channel_name),
-                                            offsetof(S, first),
-                                            offsetof(S, weight),
-                                            offsetof(S, id),
-                                            offsetof(S, position),
-                                            offsetof(S, velocity),
-                                            offsetof(S, spin),
-                                            offsetof(S, radius),
-                                            offsetof(S, mass),
-                                            offsetof(S, position_variance),
-                                            offsetof(S, velocity_variance),
-                                            offsetof(S, location_count),
-                                            offsetof(S, location_time),
-                                            offsetof(S, location_position),
-                                            offsetof(S, location_variance),
-                                            offsetof(S, location_id),
-                                            offsetof(S, impacts),
-                                            offsetof(S, impact_pair_count),
-                                            offsetof(S, impact_bin_count),
-                                            offsetof(S, impact_pair),
-                                            offsetof(S, impact_energy_edge)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, has),
+                                       MILLSCOPE_MEMBER(S, duration),
+                                       MILLSCOPE_MEMBER(S, frame_count),
+                                       MILLSCOPE_MEMBER(S, time),
+                                       MILLSCOPE_MEMBER(S, piece),
+                                       MILLSCOPE_MEMBER(S, omega),
+                                       MILLSCOPE_MEMBER(S, phase),
+                                       MILLSCOPE_MEMBER(S, wall_work),
+                                       MILLSCOPE_MEMBER(S, dissipation),
+                                       MILLSCOPE_MEMBER(S, channel_count),
+                                       MILLSCOPE_MEMBER(S, channel_name),
+                                       MILLSCOPE_MEMBER(S, first),
+                                       MILLSCOPE_MEMBER(S, weight),
+                                       MILLSCOPE_MEMBER(S, id),
+                                       MILLSCOPE_MEMBER(S, position),
+                                       MILLSCOPE_MEMBER(S, velocity),
+                                       MILLSCOPE_MEMBER(S, spin),
+                                       MILLSCOPE_MEMBER(S, radius),
+                                       MILLSCOPE_MEMBER(S, mass),
+                                       MILLSCOPE_MEMBER(S, position_variance),
+                                       MILLSCOPE_MEMBER(S, velocity_variance),
+                                       MILLSCOPE_MEMBER(S, location_count),
+                                       MILLSCOPE_MEMBER(S, location_time),
+                                       MILLSCOPE_MEMBER(S, location_position),
+                                       MILLSCOPE_MEMBER(S, location_variance),
+                                       MILLSCOPE_MEMBER(S, location_id),
+                                       MILLSCOPE_MEMBER(S, impacts),
+                                       MILLSCOPE_MEMBER(S, impact_pair_count),
+                                       MILLSCOPE_MEMBER(S, impact_bin_count),
+                                       MILLSCOPE_MEMBER(S, impact_pair),
+                                       MILLSCOPE_MEMBER(S, impact_energy_edge)};
 };
 
 /// What is the same for all blocks; 0 where unknown.
@@ -132,30 +132,30 @@ struct AnalyzerContext {
 template <>
 struct Layout<AnalyzerContext> {
   using S = AnalyzerContext;
-  static constexpr std::size_t offsets[] = {offsetof(S, mill_radius),
-                                            offsetof(S, mill_low),
-                                            offsetof(S, mill_high),
-                                            offsetof(S, omega),
-                                            offsetof(S, gravity),
-                                            offsetof(S, charge_mass),
-                                            offsetof(S, charge_count),
-                                            offsetof(S, bead_radius),
-                                            offsetof(S, bead_density),
-                                            offsetof(S, start),
-                                            offsetof(S, end),
-                                            offsetof(S, largest_id),
-                                            offsetof(S, has),
-                                            offsetof(S, is_recording),
-                                            offsetof(S, is_periodic),
-                                            offsetof(S, filling),
-                                            offsetof(S, porosity),
-                                            offsetof(S, channel_count),
-                                            offsetof(S, channel_name),
-                                            offsetof(S, impact_pair_count),
-                                            offsetof(S, impact_bin_count),
-                                            offsetof(S, impact_pair),
-                                            offsetof(S, impact_energy_edge),
-                                            offsetof(S, mill_length)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, mill_radius),
+                                       MILLSCOPE_MEMBER(S, mill_low),
+                                       MILLSCOPE_MEMBER(S, mill_high),
+                                       MILLSCOPE_MEMBER(S, omega),
+                                       MILLSCOPE_MEMBER(S, gravity),
+                                       MILLSCOPE_MEMBER(S, charge_mass),
+                                       MILLSCOPE_MEMBER(S, charge_count),
+                                       MILLSCOPE_MEMBER(S, bead_radius),
+                                       MILLSCOPE_MEMBER(S, bead_density),
+                                       MILLSCOPE_MEMBER(S, start),
+                                       MILLSCOPE_MEMBER(S, end),
+                                       MILLSCOPE_MEMBER(S, largest_id),
+                                       MILLSCOPE_MEMBER(S, has),
+                                       MILLSCOPE_MEMBER(S, is_recording),
+                                       MILLSCOPE_MEMBER(S, is_periodic),
+                                       MILLSCOPE_MEMBER(S, filling),
+                                       MILLSCOPE_MEMBER(S, porosity),
+                                       MILLSCOPE_MEMBER(S, channel_count),
+                                       MILLSCOPE_MEMBER(S, channel_name),
+                                       MILLSCOPE_MEMBER(S, impact_pair_count),
+                                       MILLSCOPE_MEMBER(S, impact_bin_count),
+                                       MILLSCOPE_MEMBER(S, impact_pair),
+                                       MILLSCOPE_MEMBER(S, impact_energy_edge),
+                                       MILLSCOPE_MEMBER(S, mill_length)};
 };
 
 /// One additive array.
@@ -169,8 +169,8 @@ struct ArrayInfo {
 template <>
 struct Layout<ArrayInfo> {
   using S = ArrayInfo;
-  static constexpr std::size_t offsets[] = {offsetof(S, name), offsetof(S, unit), offsetof(S, rank), offsetof(S, reserved),
-                                            offsetof(S, shape)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, name), MILLSCOPE_MEMBER(S, unit), MILLSCOPE_MEMBER(S, rank),
+                                       MILLSCOPE_MEMBER(S, reserved), MILLSCOPE_MEMBER(S, shape)};
 };
 
 /// What the host must know of a result beyond its numbers. Bits of Result::traits.
@@ -206,8 +206,9 @@ struct Result {
 template <>
 struct Layout<Result> {
   using S = Result;
-  static constexpr std::size_t offsets[] = {offsetof(S, name),   offsetof(S, unit),  offsetof(S, doc),    offsetof(S, rank),
-                                            offsetof(S, traits), offsetof(S, shape), offsetof(S, values), offsetof(S, axis)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, name),   MILLSCOPE_MEMBER(S, unit),   MILLSCOPE_MEMBER(S, doc),
+                                       MILLSCOPE_MEMBER(S, rank),   MILLSCOPE_MEMBER(S, traits), MILLSCOPE_MEMBER(S, shape),
+                                       MILLSCOPE_MEMBER(S, values), MILLSCOPE_MEMBER(S, axis)};
 };
 
 /// Receives results; everything is copied before `add` returns.
@@ -218,7 +219,7 @@ struct ResultSink {
 template <>
 struct Layout<ResultSink> {
   using S = ResultSink;
-  static constexpr std::size_t offsets[] = {offsetof(S, host), offsetof(S, add)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, host), MILLSCOPE_MEMBER(S, add)};
 };
 
 struct AnalyzerTable {
@@ -235,8 +236,8 @@ struct AnalyzerTable {
 template <>
 struct Layout<AnalyzerTable> {
   using S = AnalyzerTable;
-  static constexpr std::size_t offsets[] = {offsetof(S, needs),  offsetof(S, create),     offsetof(S, destroy),
-                                            offsetof(S, arrays), offsetof(S, accumulate), offsetof(S, finish)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, needs),  MILLSCOPE_MEMBER(S, create),     MILLSCOPE_MEMBER(S, destroy),
+                                       MILLSCOPE_MEMBER(S, arrays), MILLSCOPE_MEMBER(S, accumulate), MILLSCOPE_MEMBER(S, finish)};
 };
 
 inline constexpr std::uint64_t kAnalyzerLayout =

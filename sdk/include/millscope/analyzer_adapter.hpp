@@ -101,7 +101,7 @@ concept AnalyzerClass = requires {
 };
 
 template <AnalyzerClass C>
-struct Adapter<C> {
+struct [[gnu::visibility("hidden")]] Adapter<C> {
   static constexpr Kind kind = Kind::analyzer;
   static constexpr std::uint64_t layout = kAnalyzerLayout;
   static constexpr std::uint64_t features = 0;

@@ -23,9 +23,10 @@ struct BodyForceBatch {
 template <>
 struct Layout<BodyForceBatch> {
   using S = BodyForceBatch;
-  static constexpr std::size_t offsets[] = {offsetof(S, count),    offsetof(S, time),   offsetof(S, time_step),  offsetof(S, position),
-                                            offsetof(S, velocity), offsetof(S, spin),   offsetof(S, radius),     offsetof(S, mass),
-                                            offsetof(S, force),    offsetof(S, moment), offsetof(S, added_mass), offsetof(S, power_sum)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, count),    MILLSCOPE_MEMBER(S, time),       MILLSCOPE_MEMBER(S, time_step),
+                                       MILLSCOPE_MEMBER(S, position), MILLSCOPE_MEMBER(S, velocity),   MILLSCOPE_MEMBER(S, spin),
+                                       MILLSCOPE_MEMBER(S, radius),   MILLSCOPE_MEMBER(S, mass),       MILLSCOPE_MEMBER(S, force),
+                                       MILLSCOPE_MEMBER(S, moment),   MILLSCOPE_MEMBER(S, added_mass), MILLSCOPE_MEMBER(S, power_sum)};
 };
 
 struct BodyForceTable {
@@ -38,7 +39,8 @@ struct BodyForceTable {
 template <>
 struct Layout<BodyForceTable> {
   using S = BodyForceTable;
-  static constexpr std::size_t offsets[] = {offsetof(S, create), offsetof(S, destroy), offsetof(S, uniform), offsetof(S, evaluate)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, create), MILLSCOPE_MEMBER(S, destroy), MILLSCOPE_MEMBER(S, uniform),
+                                       MILLSCOPE_MEMBER(S, evaluate)};
 };
 
 inline constexpr std::uint64_t kBodyForceLayout = layout_hash(Kind::body_force, {}, KindStructs<BodyForceBatch, BodyForceTable>{});

@@ -95,7 +95,7 @@ template <class C>
 concept BodyForceClass = detail::HasUniform<C> || detail::HasAct<C>;
 
 template <BodyForceClass C>
-struct Adapter<C> {
+struct [[gnu::visibility("hidden")]] Adapter<C> {
   static constexpr Kind kind = Kind::body_force;
   static constexpr std::uint64_t layout = kBodyForceLayout;
   static constexpr std::uint64_t features = 0;

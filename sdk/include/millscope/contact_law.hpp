@@ -28,11 +28,13 @@ struct ContactBatch {
 template <>
 struct Layout<ContactBatch> {
   using S = ContactBatch;
-  static constexpr std::size_t offsets[] = {
-      offsetof(S, count),   offsetof(S, time_step),   offsetof(S, overlap),      offsetof(S, normal),           offsetof(S, velocity),
-      offsetof(S, radius),  offsetof(S, mass),        offsetof(S, restitution),  offsetof(S, friction),         offsetof(S, added_cap),
-      offsetof(S, history), offsetof(S, force),       offsetof(S, normal_force), offsetof(S, normal_stiffness), offsetof(S, elastic_energy),
-      offsetof(S, power),   offsetof(S, elastic_sum), offsetof(S, power_sum)};
+  static constexpr Member members[] = {
+      MILLSCOPE_MEMBER(S, count),        MILLSCOPE_MEMBER(S, time_step),        MILLSCOPE_MEMBER(S, overlap),
+      MILLSCOPE_MEMBER(S, normal),       MILLSCOPE_MEMBER(S, velocity),         MILLSCOPE_MEMBER(S, radius),
+      MILLSCOPE_MEMBER(S, mass),         MILLSCOPE_MEMBER(S, restitution),      MILLSCOPE_MEMBER(S, friction),
+      MILLSCOPE_MEMBER(S, added_cap),    MILLSCOPE_MEMBER(S, history),          MILLSCOPE_MEMBER(S, force),
+      MILLSCOPE_MEMBER(S, normal_force), MILLSCOPE_MEMBER(S, normal_stiffness), MILLSCOPE_MEMBER(S, elastic_energy),
+      MILLSCOPE_MEMBER(S, power),        MILLSCOPE_MEMBER(S, elastic_sum),      MILLSCOPE_MEMBER(S, power_sum)};
 };
 
 struct ContactLawTable {
@@ -47,12 +49,12 @@ struct ContactLawTable {
 template <>
 struct Layout<ContactLawTable> {
   using S = ContactLawTable;
-  static constexpr std::size_t offsets[] = {offsetof(S, info),        offsetof(S, create),   offsetof(S, destroy),
-                                            offsetof(S, reach),       offsetof(S, evaluate), offsetof(S, evaluate_scalar),
-                                            offsetof(S, contact_time)};
+  static constexpr Member members[] = {
+      MILLSCOPE_MEMBER(S, info),     MILLSCOPE_MEMBER(S, create),          MILLSCOPE_MEMBER(S, destroy),     MILLSCOPE_MEMBER(S, reach),
+      MILLSCOPE_MEMBER(S, evaluate), MILLSCOPE_MEMBER(S, evaluate_scalar), MILLSCOPE_MEMBER(S, contact_time)};
 };
 
-inline constexpr std::uint64_t kContactLawLayout =
-    layout_hash(Kind::contact_law, {kMaxHistory, kMaxChannels}, PairStructs<PairTermInfo, Channel, ContactBatch, ContactLawTable>{});
+inline constexpr std::uint64_t kContactLawLayout = layout_hash(Kind::contact_law, {kMaxHistory, kMaxChannels, kLanes},
+                                                               PairStructs<PairTermInfo, Channel, ContactBatch, ContactLawTable>{});
 
 }  // namespace millscope

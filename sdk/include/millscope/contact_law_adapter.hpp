@@ -115,7 +115,7 @@ concept ContactLawClass = requires(const C& law) {
 };
 
 template <ContactLawClass C>
-struct Adapter<C> {
+struct [[gnu::visibility("hidden")]] Adapter<C> {
   static constexpr Kind kind = Kind::contact_law;
   static constexpr std::uint64_t layout = kContactLawLayout;
   static constexpr std::uint64_t features = 0;

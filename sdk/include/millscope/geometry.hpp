@@ -16,7 +16,7 @@ struct CandidateSink {
 template <>
 struct Layout<CandidateSink> {
   using S = CandidateSink;
-  static constexpr std::size_t offsets[] = {offsetof(S, host), offsetof(S, add)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, host), MILLSCOPE_MEMBER(S, add)};
 };
 
 /// Beads in the geometry's own frame.
@@ -28,7 +28,7 @@ struct GeometryBeads {
 template <>
 struct Layout<GeometryBeads> {
   using S = GeometryBeads;
-  static constexpr std::size_t offsets[] = {offsetof(S, count), offsetof(S, position), offsetof(S, radius)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, count), MILLSCOPE_MEMBER(S, position), MILLSCOPE_MEMBER(S, radius)};
 };
 
 struct GeometryQuery {
@@ -40,7 +40,8 @@ struct GeometryQuery {
 template <>
 struct Layout<GeometryQuery> {
   using S = GeometryQuery;
-  static constexpr std::size_t offsets[] = {offsetof(S, beads), offsetof(S, first), offsetof(S, candidates), offsetof(S, reach)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, beads), MILLSCOPE_MEMBER(S, first), MILLSCOPE_MEMBER(S, candidates),
+                                       MILLSCOPE_MEMBER(S, reach)};
 };
 
 /// Contacts found, at most `capacity` of them, ordered by bead.
@@ -57,8 +58,9 @@ struct GeometryContacts {
 template <>
 struct Layout<GeometryContacts> {
   using S = GeometryContacts;
-  static constexpr std::size_t offsets[] = {offsetof(S, capacity), offsetof(S, count),   offsetof(S, bead),     offsetof(S, overlap),
-                                            offsetof(S, normal),   offsetof(S, feature), offsetof(S, triangle), offsetof(S, material)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, capacity), MILLSCOPE_MEMBER(S, count),   MILLSCOPE_MEMBER(S, bead),
+                                       MILLSCOPE_MEMBER(S, overlap),  MILLSCOPE_MEMBER(S, normal),  MILLSCOPE_MEMBER(S, feature),
+                                       MILLSCOPE_MEMBER(S, triangle), MILLSCOPE_MEMBER(S, material)};
 };
 
 /// Triangles for pictures and per-triangle work, and for export. Owned by the plugin, valid until destroy.
@@ -72,8 +74,9 @@ struct Surface {
 template <>
 struct Layout<Surface> {
   using S = Surface;
-  static constexpr std::size_t offsets[] = {offsetof(S, vertex_count), offsetof(S, vertices), offsetof(S, triangle_count),
-                                            offsetof(S, triangles), offsetof(S, triangle_materials)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, vertex_count), MILLSCOPE_MEMBER(S, vertices),
+                                       MILLSCOPE_MEMBER(S, triangle_count), MILLSCOPE_MEMBER(S, triangles),
+                                       MILLSCOPE_MEMBER(S, triangle_materials)};
 };
 
 /// The space that the charge may fill: a cylinder round the axis (mills) or a box.
@@ -88,8 +91,9 @@ struct Interior {
 template <>
 struct Layout<Interior> {
   using S = Interior;
-  static constexpr std::size_t offsets[] = {offsetof(S, is_cylinder), offsetof(S, is_bounded), offsetof(S, axis_point), offsetof(S, axis),
-                                            offsetof(S, radius),      offsetof(S, low),        offsetof(S, high)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, is_cylinder), MILLSCOPE_MEMBER(S, is_bounded), MILLSCOPE_MEMBER(S, axis_point),
+                                       MILLSCOPE_MEMBER(S, axis),        MILLSCOPE_MEMBER(S, radius),     MILLSCOPE_MEMBER(S, low),
+                                       MILLSCOPE_MEMBER(S, high)};
 };
 
 struct GeometryTable {
@@ -109,9 +113,9 @@ struct GeometryTable {
 template <>
 struct Layout<GeometryTable> {
   using S = GeometryTable;
-  static constexpr std::size_t offsets[] = {offsetof(S, create),     offsetof(S, destroy),  offsetof(S, material_slots),
-                                            offsetof(S, surface),    offsetof(S, interior), offsetof(S, report),
-                                            offsetof(S, candidates), offsetof(S, contacts)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, create),     MILLSCOPE_MEMBER(S, destroy),  MILLSCOPE_MEMBER(S, material_slots),
+                                       MILLSCOPE_MEMBER(S, surface),    MILLSCOPE_MEMBER(S, interior), MILLSCOPE_MEMBER(S, report),
+                                       MILLSCOPE_MEMBER(S, candidates), MILLSCOPE_MEMBER(S, contacts)};
 };
 
 /// A bead touches at most this many places of one geometry.

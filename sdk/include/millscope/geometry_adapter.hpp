@@ -113,7 +113,7 @@ concept GeometryClass = requires(const C& wall) {
 };
 
 template <GeometryClass C>
-struct Adapter<C> {
+struct [[gnu::visibility("hidden")]] Adapter<C> {
   static constexpr Kind kind = Kind::geometry;
   static constexpr std::uint64_t layout = kGeometryLayout;
   static constexpr std::uint64_t features = 0;

@@ -31,11 +31,26 @@ struct InteractionBatch {
 template <>
 struct Layout<InteractionBatch> {
   using S = InteractionBatch;
-  static constexpr std::size_t offsets[] = {
-      offsetof(S, count),     offsetof(S, time_step),    offsetof(S, overlap),          offsetof(S, normal),      offsetof(S, velocity),
-      offsetof(S, spin_i),    offsetof(S, spin_j),       offsetof(S, radius_i),         offsetof(S, radius_j),    offsetof(S, radius),
-      offsetof(S, mass),      offsetof(S, normal_force), offsetof(S, normal_stiffness), offsetof(S, history),     offsetof(S, added_force),
-      offsetof(S, added_cap), offsetof(S, moment_i),     offsetof(S, moment_j),         offsetof(S, elastic_sum), offsetof(S, power_sum)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, count),
+                                       MILLSCOPE_MEMBER(S, time_step),
+                                       MILLSCOPE_MEMBER(S, overlap),
+                                       MILLSCOPE_MEMBER(S, normal),
+                                       MILLSCOPE_MEMBER(S, velocity),
+                                       MILLSCOPE_MEMBER(S, spin_i),
+                                       MILLSCOPE_MEMBER(S, spin_j),
+                                       MILLSCOPE_MEMBER(S, radius_i),
+                                       MILLSCOPE_MEMBER(S, radius_j),
+                                       MILLSCOPE_MEMBER(S, radius),
+                                       MILLSCOPE_MEMBER(S, mass),
+                                       MILLSCOPE_MEMBER(S, normal_force),
+                                       MILLSCOPE_MEMBER(S, normal_stiffness),
+                                       MILLSCOPE_MEMBER(S, history),
+                                       MILLSCOPE_MEMBER(S, added_force),
+                                       MILLSCOPE_MEMBER(S, added_cap),
+                                       MILLSCOPE_MEMBER(S, moment_i),
+                                       MILLSCOPE_MEMBER(S, moment_j),
+                                       MILLSCOPE_MEMBER(S, elastic_sum),
+                                       MILLSCOPE_MEMBER(S, power_sum)};
 };
 
 struct InteractionTable {
@@ -49,11 +64,11 @@ struct InteractionTable {
 template <>
 struct Layout<InteractionTable> {
   using S = InteractionTable;
-  static constexpr std::size_t offsets[] = {offsetof(S, info),  offsetof(S, create),   offsetof(S, destroy),
-                                            offsetof(S, reach), offsetof(S, evaluate), offsetof(S, evaluate_scalar)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, info),  MILLSCOPE_MEMBER(S, create),   MILLSCOPE_MEMBER(S, destroy),
+                                       MILLSCOPE_MEMBER(S, reach), MILLSCOPE_MEMBER(S, evaluate), MILLSCOPE_MEMBER(S, evaluate_scalar)};
 };
 
-inline constexpr std::uint64_t kInteractionLayout =
-    layout_hash(Kind::interaction, {kMaxHistory, kMaxChannels}, PairStructs<PairTermInfo, Channel, InteractionBatch, InteractionTable>{});
+inline constexpr std::uint64_t kInteractionLayout = layout_hash(Kind::interaction, {kMaxHistory, kMaxChannels, kLanes},
+                                                                PairStructs<PairTermInfo, Channel, InteractionBatch, InteractionTable>{});
 
 }  // namespace millscope

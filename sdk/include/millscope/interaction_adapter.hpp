@@ -173,7 +173,7 @@ concept InteractionClass = requires(const C& interaction) {
 &&!requires(const C& law) { law.contact_time(0.0, 0.0, 0.0); };
 
 template <InteractionClass C>
-struct Adapter<C> {
+struct [[gnu::visibility("hidden")]] Adapter<C> {
   static constexpr Kind kind = Kind::interaction;
   static constexpr std::uint64_t layout = kInteractionLayout;
   static constexpr std::uint64_t features = detail::HasPre<C> ? kPreInteraction : kPostInteraction;

@@ -19,8 +19,8 @@ struct TrackView {
 template <>
 struct Layout<TrackView> {
   using S = TrackView;
-  static constexpr std::size_t offsets[] = {offsetof(S, count), offsetof(S, time), offsetof(S, position), offsetof(S, weight),
-                                            offsetof(S, visible)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, count), MILLSCOPE_MEMBER(S, time), MILLSCOPE_MEMBER(S, position),
+                                       MILLSCOPE_MEMBER(S, weight), MILLSCOPE_MEMBER(S, visible)};
 };
 
 /// The same to be written.
@@ -34,8 +34,8 @@ struct TrackBuffer {
 template <>
 struct Layout<TrackBuffer> {
   using S = TrackBuffer;
-  static constexpr std::size_t offsets[] = {offsetof(S, count), offsetof(S, time), offsetof(S, position), offsetof(S, weight),
-                                            offsetof(S, visible)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, count), MILLSCOPE_MEMBER(S, time), MILLSCOPE_MEMBER(S, position),
+                                       MILLSCOPE_MEMBER(S, weight), MILLSCOPE_MEMBER(S, visible)};
 };
 
 /// Receives the new track: the plugin asks once for room for `count` samples and fills the buffer.
@@ -46,7 +46,7 @@ struct TrackSink {
 template <>
 struct Layout<TrackSink> {
   using S = TrackSink;
-  static constexpr std::size_t offsets[] = {offsetof(S, host), offsetof(S, resize)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, host), MILLSCOPE_MEMBER(S, resize)};
 };
 
 /// What a camera may know of the bead and the mill; 0 where unknown.
@@ -61,9 +61,9 @@ struct TrackContext {
 template <>
 struct Layout<TrackContext> {
   using S = TrackContext;
-  static constexpr std::size_t offsets[] = {offsetof(S, seed),     offsetof(S, bead_radius), offsetof(S, mill_radius),
-                                            offsetof(S, mill_low), offsetof(S, mill_high),   offsetof(S, omega),
-                                            offsetof(S, period)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, seed),     MILLSCOPE_MEMBER(S, bead_radius), MILLSCOPE_MEMBER(S, mill_radius),
+                                       MILLSCOPE_MEMBER(S, mill_low), MILLSCOPE_MEMBER(S, mill_high),   MILLSCOPE_MEMBER(S, omega),
+                                       MILLSCOPE_MEMBER(S, period)};
 };
 
 struct ObservationTable {
@@ -75,7 +75,7 @@ struct ObservationTable {
 template <>
 struct Layout<ObservationTable> {
   using S = ObservationTable;
-  static constexpr std::size_t offsets[] = {offsetof(S, create), offsetof(S, destroy), offsetof(S, observe)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, create), MILLSCOPE_MEMBER(S, destroy), MILLSCOPE_MEMBER(S, observe)};
 };
 
 inline constexpr std::uint64_t kObservationLayout =

@@ -66,7 +66,7 @@ concept ObservationClass = requires(const C& camera, const TrackView& view, cons
 };
 
 template <ObservationClass C>
-struct Adapter<C> {
+struct [[gnu::visibility("hidden")]] Adapter<C> {
   static constexpr Kind kind = Kind::observation;
   static constexpr std::uint64_t layout = kObservationLayout;
   static constexpr std::uint64_t features = 0;

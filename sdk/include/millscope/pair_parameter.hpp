@@ -14,7 +14,7 @@ struct PairParameterInfo {
 template <>
 struct Layout<PairParameterInfo> {
   using S = PairParameterInfo;
-  static constexpr std::size_t offsets[] = {offsetof(S, history_count), offsetof(S, reserved), offsetof(S, histories)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, history_count), MILLSCOPE_MEMBER(S, reserved), MILLSCOPE_MEMBER(S, histories)};
 };
 
 /// From a list: pair_parameter_info({{"impact_speed", 1}}).
@@ -41,9 +41,10 @@ struct PairParameterBatch {
 template <>
 struct Layout<PairParameterBatch> {
   using S = PairParameterBatch;
-  static constexpr std::size_t offsets[] = {offsetof(S, count),       offsetof(S, time_step), offsetof(S, overlap), offsetof(S, normal),
-                                            offsetof(S, velocity),    offsetof(S, radius),    offsetof(S, mass),    offsetof(S, history),
-                                            offsetof(S, restitution), offsetof(S, friction)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, count),   MILLSCOPE_MEMBER(S, time_step), MILLSCOPE_MEMBER(S, overlap),
+                                       MILLSCOPE_MEMBER(S, normal),  MILLSCOPE_MEMBER(S, velocity),  MILLSCOPE_MEMBER(S, radius),
+                                       MILLSCOPE_MEMBER(S, mass),    MILLSCOPE_MEMBER(S, history),   MILLSCOPE_MEMBER(S, restitution),
+                                       MILLSCOPE_MEMBER(S, friction)};
 };
 
 struct PairParameterTable {
@@ -55,10 +56,11 @@ struct PairParameterTable {
 template <>
 struct Layout<PairParameterTable> {
   using S = PairParameterTable;
-  static constexpr std::size_t offsets[] = {offsetof(S, info), offsetof(S, create), offsetof(S, destroy), offsetof(S, evaluate)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, info), MILLSCOPE_MEMBER(S, create), MILLSCOPE_MEMBER(S, destroy),
+                                       MILLSCOPE_MEMBER(S, evaluate)};
 };
 
 inline constexpr std::uint64_t kPairParameterLayout =
-    layout_hash(Kind::pair_parameter, {kMaxHistory}, PairStructs<PairParameterInfo, PairParameterBatch, PairParameterTable>{});
+    layout_hash(Kind::pair_parameter, {kMaxHistory, kLanes}, PairStructs<PairParameterInfo, PairParameterBatch, PairParameterTable>{});
 
 }  // namespace millscope

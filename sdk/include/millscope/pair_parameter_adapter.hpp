@@ -77,7 +77,7 @@ concept PairParameterClass = requires {
 };
 
 template <PairParameterClass C>
-struct Adapter<C> {
+struct [[gnu::visibility("hidden")]] Adapter<C> {
   static constexpr Kind kind = Kind::pair_parameter;
   static constexpr std::uint64_t layout = kPairParameterLayout;
   static constexpr std::uint64_t features = C::kGives;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "millscope/layout.hpp"
+#include "millscope/pack.hpp"
 
 namespace millscope {
 
@@ -22,7 +23,8 @@ struct Material {
 template <>
 struct Layout<Material> {
   using S = Material;
-  static constexpr std::size_t offsets[] = {offsetof(S, name), offsetof(S, density), offsetof(S, young), offsetof(S, poisson)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, name), MILLSCOPE_MEMBER(S, density), MILLSCOPE_MEMBER(S, young),
+                                       MILLSCOPE_MEMBER(S, poisson)};
 };
 
 /// What a law knows of its pair. A wall is body j with R = ∞ and m = ∞, so R* = R_i and m* = m_i.
@@ -41,10 +43,11 @@ struct PairContext {
 template <>
 struct Layout<PairContext> {
   using S = PairContext;
-  static constexpr std::size_t offsets[] = {offsetof(S, first),           offsetof(S, second),          offsetof(S, effective_young),
-                                            offsetof(S, effective_shear), offsetof(S, smallest_radius), offsetof(S, largest_radius),
-                                            offsetof(S, smallest_mass),   offsetof(S, largest_mass),    offsetof(S, typical_speed),
-                                            offsetof(S, with_wall),       offsetof(S, reserved)};
+  static constexpr Member members[] = {
+      MILLSCOPE_MEMBER(S, first),           MILLSCOPE_MEMBER(S, second),          MILLSCOPE_MEMBER(S, effective_young),
+      MILLSCOPE_MEMBER(S, effective_shear), MILLSCOPE_MEMBER(S, smallest_radius), MILLSCOPE_MEMBER(S, largest_radius),
+      MILLSCOPE_MEMBER(S, smallest_mass),   MILLSCOPE_MEMBER(S, largest_mass),    MILLSCOPE_MEMBER(S, typical_speed),
+      MILLSCOPE_MEMBER(S, with_wall),       MILLSCOPE_MEMBER(S, reserved)};
 };
 
 /// One number that is kept per contact while the pair is within reach.
@@ -56,7 +59,7 @@ struct History {
 template <>
 struct Layout<History> {
   using S = History;
-  static constexpr std::size_t offsets[] = {offsetof(S, name), offsetof(S, sign), offsetof(S, reserved)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, name), MILLSCOPE_MEMBER(S, sign), MILLSCOPE_MEMBER(S, reserved)};
 };
 
 /// Which relative motion feeds a channel. At a wall the work of `normal` counts as impact, the rest as shear.
@@ -75,7 +78,7 @@ struct Channel {
 template <>
 struct Layout<Channel> {
   using S = Channel;
-  static constexpr std::size_t offsets[] = {offsetof(S, name), offsetof(S, part), offsetof(S, nature)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, name), MILLSCOPE_MEMBER(S, part), MILLSCOPE_MEMBER(S, nature)};
 };
 
 /// What a law or an interaction keeps and where it books energy; the first `…_count` entries count.
@@ -87,8 +90,8 @@ struct PairTermInfo {
 template <>
 struct Layout<PairTermInfo> {
   using S = PairTermInfo;
-  static constexpr std::size_t offsets[] = {offsetof(S, history_count), offsetof(S, channel_count), offsetof(S, histories),
-                                            offsetof(S, channels)};
+  static constexpr Member members[] = {MILLSCOPE_MEMBER(S, history_count), MILLSCOPE_MEMBER(S, channel_count),
+                                       MILLSCOPE_MEMBER(S, histories), MILLSCOPE_MEMBER(S, channels)};
 };
 
 /// The structs of a kind that acts on pairs.
