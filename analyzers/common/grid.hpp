@@ -31,10 +31,8 @@ struct Bins {
   }
   /// 0: below; 1 … count: bin + 1; count + 1: above (and NaN).
   std::int64_t slot(double value) const {
-    const double place = (value - low) * per_unit;
-    if (place < 0) return 0;
-    if (!(value <= high)) return count + 1;
-    return std::min(static_cast<std::int64_t>(place), count - 1) + 1;
+    if ((value - low) * per_unit < 0) return 0;
+    return at(value).value_or(count) + 1;
   }
   double width() const { return (high - low) / static_cast<double>(count); }
   double edge(std::int64_t i) const { return i == count ? high : low + static_cast<double>(i) * width(); }

@@ -142,7 +142,7 @@ Region region_of(const Assembly& a) {
   return r;
 }
 
-double height(const Assembly& a, const base::Vector3& p) { return -(p[0] * a.gravity[0] + p[1] * a.gravity[1] + p[2] * a.gravity[2]); }
+double height(const Assembly& a, const base::Vector3& p) { return -base::dot(p, a.gravity); }
 
 double level(const Assembly& a, const Region& r, double part) {
   double low = 0, high = 0;

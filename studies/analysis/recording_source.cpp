@@ -11,6 +11,8 @@ namespace millscope::analysis {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
 void cut(recording::Run& run, const SourceRequest& request) {
   if (!request.from && !request.to) return;
   const auto begin = run.time.begin();
@@ -24,8 +26,6 @@ void cut(recording::Run& run, const SourceRequest& request) {
   keep(run.events);
   keep(run.time);
 }
-
-using Json = nlohmann::ordered_json;
 
 /// What of a file is used, and by which rules the rest was set aside.
 Json run_json(const recording::Run& run) {

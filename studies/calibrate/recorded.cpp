@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/calibrate/json.hpp"
 #include "studies/calibrate/power.hpp"
 #include "studies/calibrate/recorded_camera.hpp"
@@ -59,10 +59,9 @@ AxialPlace place_of(const recording::Recording& recording, const Observing& obse
     }
   }
   if (z.empty()) throw UserError(fmt::format("{}: no location lies between z_low and z_high; correct 'observe'", recording.file.string()));
-  std::sort(z.begin(), z.end());
-  const auto at = [&](double part) { return z[static_cast<std::size_t>(part * static_cast<double>(z.size() - 1))]; };
   const bool ends = recording.frame && recording.frame->high > recording.frame->low;
-  return {at(0.05), at(0.95), ends ? 0.5 * (recording.frame->low + recording.frame->high) : at(0.5)};
+  return {base::quantile_below(z, 0.05), base::quantile_below(z, 0.95),
+          ends ? 0.5 * (recording.frame->low + recording.frame->high) : base::quantile_below(z, 0.5)};
 }
 
 RecordedCondition look(const Recorded& recorded, std::size_t condition, const Processing& how) {

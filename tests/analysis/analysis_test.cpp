@@ -24,7 +24,7 @@ analysis::AnalysisRequest request_for(const fs::path& path) {
   return request;
 }
 
-analysis::ResultSet run(const analysis::AnalysisRequest& request) { return analysis::analyze(request, build_registry()); }
+analysis::ResultSet run(const analysis::AnalysisRequest& request) { return analysis::analyze(request, testing::registry()); }
 
 /// A bead on a circle of 50 mm about the axis at (1.4, −0.9) mm, once round in π s, clockwise, seen at 200 Hz with noise of 0.2 mm.
 void write_recording(const fs::path& file) {

@@ -343,7 +343,7 @@ TEST_CASE("analyzers that were read once are created without their document, by 
   std::vector<analysis::AskedAnalyzer> asked;
   {
     const config::Node settings = config::parse_document("analyzers:\n  fine: {kind: pept_grid, cells_x: 30}\n  power: {}\n", "a.yaml");
-    asked = analysis::read_analyzers(settings, true, {}, build_registry());
+    asked = analysis::read_analyzers(settings, true, {}, testing::registry());
   }
   REQUIRE(asked.size() == 2);
   CHECK(asked[0].name == "fine");

@@ -125,7 +125,7 @@ TEST_CASE("rows that were set aside are told in notes and in the results") {
   analysis::SourceRequest request;
   request.path = scratch / "run.csv";
   request.trajectory.gap_limit = 0;
-  const analysis::OpenedSource opened = analysis::open_source(request, build_registry());
+  const analysis::OpenedSource opened = analysis::open_source(request, testing::registry());
   std::string all;
   for (const std::string& note : opened.meta.notes) all += note + "\n";
   CHECK_THAT(all, Contains("run read as table, comma: t s (column 1)"));

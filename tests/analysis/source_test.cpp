@@ -22,7 +22,7 @@ analysis::OpenedSource open(const fs::path& path, std::vector<std::string> trace
   request.tracers = std::move(tracers);
   request.from = from;
   request.to = to;
-  return analysis::open_source(request, build_registry());
+  return analysis::open_source(request, testing::registry());
 }
 
 /// Sums over all chunks of weight and of what changes from frame to frame.

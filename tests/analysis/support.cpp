@@ -86,9 +86,4 @@ void Drum::write(const fs::path& directory) const {
   write_tracks(directory);
 }
 
-const host::Registry& build_registry() {
-  static const host::Registry registry({{MILLSCOPE_BINARY_DIR "/lib/millscope/plugins"}, false, {}});
-  return registry;
-}
-
 }  // namespace analysis_test

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "kernel/host/registry.hpp"
 #include "millscope/analyzer_adapter.hpp"
 #include "millscope/observation_adapter.hpp"
 #include "studies/analysis/instances.hpp"
+#include "tests/plugins.hpp"
 #include "tests/scratch.hpp"
 
 namespace analysis_test {
@@ -38,9 +38,6 @@ struct Drum {
   /// All three.
   void write(const fs::path& directory) const;
 };
-
-/// The plugins of this build.
-const host::Registry& build_registry();
 
 /// An instance of an analyzer of the test itself; A as `describe` wants it.
 template <class A>

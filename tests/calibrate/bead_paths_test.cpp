@@ -7,20 +7,17 @@
 
 #include "kernel/output/frames.hpp"
 #include "tests/calibrate/made_up_mill.hpp"
+#include "tests/plugins.hpp"
 
 using namespace millscope;
 using calibrate::BeadPaths;
 using Catch::WithinRel;
+using testing::registry;
 
 namespace {
 
 constexpr double kRadius = 0.002, kHeavier = 2;
 constexpr double kX[] = {0.02, 0.04, 0.06, 0.06};  // m; the last two are tracers
-
-const host::Registry& registry() {
-  static const host::Registry registry({{MILLSCOPE_BINARY_DIR "/lib/millscope/plugins"}, false, {}});
-  return registry;
-}
 
 const std::string kCharge = "charge: {material: glass, diameter: 4 mm, share: 50 %}, ";
 const std::string kHeavy = kCharge + "heavy: {material: glass, density: 5000, diameter: 4 mm, share: 50 %}";

@@ -39,6 +39,22 @@ Study study_of(const Folder& folder, const std::string& parameters, const std::s
                                      parameters + more));
 }
 
+std::string drum_case(int beads, double end) {
+  return fmt::format(R"(schema_version: 1
+materials: {{glass: {{density: 2500, young_modulus: 1e8, poisson_ratio: 0.23}}}}
+beads: {{charge: {{material: glass, diameter: 4 mm}}}}
+fill: {{count: {}}}
+contact: {{law: {{kind: hertz_mindlin}}}}
+pairs: {{glass~glass: {{restitution: 0.8, static_friction: 0.3}}}}
+body_forces: {{gravity: {{kind: gravity}}}}
+mill: {{diameter: 200 mm, speed: 2 rad/s}}
+geometry: {{shell: {{kind: cylinder, radius: 100 mm, length: 50 mm, end_faces: false, material: glass, motion: mill}}}}
+domain: {{periodic: {{z: [0, 50 mm]}}}}
+time: {{end_s: {}, analyze_from_s: 0}}
+)",
+                     beads, end);
+}
+
 MadeUpMill::MadeUpMill(const Study& study, const Eigen::VectorXd& truth, double noise) : study_(study), truth_(truth), noise_(noise) {}
 
 Observation MadeUpMill::observation(const Eigen::VectorXd& point, const std::string& settings) const {

@@ -24,6 +24,9 @@ struct Folder {
 /// study.yaml beside an empty base and recordings; `more`: further sections.
 millscope::calibrate::Study study_of(const Folder& folder, const std::string& parameters, const std::string& more);
 
+/// A periodic drum of glass beads of 4 mm, 200 mm wide, turning at 2 rad/s until `end` in s.
+std::string drum_case(int beads, double end);
+
 /// The message of the UserError that `body` throws; "" when it throws none.
 template <class Body>
 std::string message_of(Body&& body) {

@@ -11,32 +11,18 @@
 #include "kernel/base/text.hpp"
 #include "kernel/output/frames.hpp"
 #include "tests/calibrate/made_up_mill.hpp"
+#include "tests/plugins.hpp"
 
 using namespace millscope;
 using calibrate::Observation;
 using calibrate::Observer;
+using testing::registry;
 
 namespace {
 
 constexpr double kSpeed = 2;  // rad/s
 
-const host::Registry& registry() {
-  static const host::Registry registry({{MILLSCOPE_BINARY_DIR "/lib/millscope/plugins"}, false, {}});
-  return registry;
-}
-
-const std::string kDrum = R"(schema_version: 1
-materials: {glass: {density: 2500, young_modulus: 1e8, poisson_ratio: 0.23}}
-beads: {charge: {material: glass, diameter: 4 mm}}
-fill: {count: 12}
-contact: {law: {kind: hertz_mindlin}}
-pairs: {glass~glass: {restitution: 0.8, static_friction: 0.3}}
-body_forces: {gravity: {kind: gravity}}
-mill: {diameter: 200 mm, speed: 2 rad/s}
-geometry: {shell: {kind: cylinder, radius: 100 mm, length: 50 mm, end_faces: false, material: glass, motion: mill}}
-domain: {periodic: {z: [0, 50 mm]}}
-time: {end_s: 4, analyze_from_s: 0}
-)";
+const std::string kDrum = testing::drum_case(12, 4);
 
 constexpr const char* kCamera =
     "schema_version: 1\nobservations:\n  rate: {{kind: sampling, rate: 200 Hz}}\n  noise: {{kind: {}, white: [0.3, 0.3, 0.3, mm]}}\n";

@@ -8,17 +8,14 @@
 #include "studies/calibrate/power.hpp"
 #include "tests/calibrate/made_up_mill.hpp"
 #include "tests/inspect/synthetic.hpp"
+#include "tests/plugins.hpp"
 
 using namespace millscope;
 using namespace millscope::calibrate;
 using Catch::Contains;
+using testing::registry;
 
 namespace {
-
-const host::Registry& registry() {
-  static const host::Registry registry({{MILLSCOPE_BINARY_DIR "/lib/millscope/plugins"}, false, {}});
-  return registry;
-}
 
 /// A clockwise mill of 6 rad/s, its tracer on a circle of 145 mm.
 const recording::Recording& made_recording() {

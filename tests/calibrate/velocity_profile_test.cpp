@@ -10,33 +10,19 @@
 #include "studies/calibrate/observe.hpp"
 #include "studies/calibrate/validate.hpp"
 #include "tests/calibrate/made_up_mill.hpp"
+#include "tests/plugins.hpp"
 
 using namespace millscope;
 using calibrate::RecordedCondition;
 using Catch::WithinAbs;
 using Catch::WithinRel;
+using testing::registry;
 
 namespace {
 
 constexpr double kRadius = 0.1, kSurface = -0.02;  // m
 
-const host::Registry& registry() {
-  static const host::Registry registry({{MILLSCOPE_BINARY_DIR "/lib/millscope/plugins"}, false, {}});
-  return registry;
-}
-
-const std::string kDrum = R"(schema_version: 1
-materials: {glass: {density: 2500, young_modulus: 1e8, poisson_ratio: 0.23}}
-beads: {charge: {material: glass, diameter: 4 mm}}
-fill: {count: 10}
-contact: {law: {kind: hertz_mindlin}}
-pairs: {glass~glass: {restitution: 0.8, static_friction: 0.3}}
-body_forces: {gravity: {kind: gravity}}
-mill: {diameter: 200 mm, speed: 2 rad/s}
-geometry: {shell: {kind: cylinder, radius: 100 mm, length: 50 mm, end_faces: false, material: glass, motion: mill}}
-domain: {periodic: {z: [0, 50 mm]}}
-time: {end_s: 1, analyze_from_s: 0}
-)";
+const std::string kDrum = testing::drum_case(10, 1);
 
 /// Positions in mm and velocities in mm/s, in no order.
 const std::string kPoints = "# digitised\np,v\n-90,180\n-30,-120\n-80,150\n-70,110\n-60,60\n-50,0\n-40,-60\n";

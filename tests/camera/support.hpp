@@ -9,17 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "kernel/host/registry.hpp"
 #include "studies/camera/camera.hpp"
+#include "tests/plugins.hpp"
 
 namespace camera_test {
 
 using namespace millscope;
 
-inline const host::Registry& registry() {
-  static const host::Registry r({{std::string(MILLSCOPE_BINARY_DIR) + "/lib/millscope/plugins"}, false, {}});
-  return r;
-}
+using testing::registry;
 
 /// A chain of one link: chain_of("{kind: noise, …}").
 inline camera::Camera chain_of(const std::string& link) {

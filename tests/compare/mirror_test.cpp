@@ -12,6 +12,7 @@
 #include "millscope/observation_adapter.hpp"
 #include "studies/analysis/analysis.hpp"
 #include "studies/compare/compare.hpp"
+#include "tests/plugins.hpp"
 
 using namespace millscope;
 
@@ -97,11 +98,10 @@ std::filesystem::path write_recording(const std::filesystem::path& folder, const
 }
 
 analysis::ResultSet analyze_file(const std::filesystem::path& file) {
-  static const millscope::host::Registry registry({{MILLSCOPE_BINARY_DIR "/lib/millscope/plugins"}, false, {}});
   analysis::AnalysisRequest request;
   request.path = file;
   request.overrides = {"resampling.draws=60"};
-  return analysis::analyze(request, registry);
+  return analysis::analyze(request, testing::registry());
 }
 
 bool same(double a, double b, double size) { return (std::isnan(a) && std::isnan(b)) || std::abs(a - b) <= 1e-7 * size; }
