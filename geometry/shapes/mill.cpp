@@ -9,8 +9,6 @@ namespace millscope::geometry {
 
 namespace {
 
-// Candidates of a mill name what is near: the outline or one of the ends.
-constexpr std::uint32_t kOutline = 0, kLowEnd = 1, kHighEnd = 2;
 constexpr std::uint32_t kNoTriangle = 0xffffffffU;
 constexpr double kMaxTriangles = 20e6;  // of the tessellation: about 1 GB
 
@@ -80,38 +78,75 @@ void Mill::candidates(const GeometryBeads& beads, double margin, const Candidate
   for (std::int64_t i = 0; i < beads.count; ++i) {
     const double x = beads.position[0][i], y = beads.position[1][i], z = beads.position[2][i], reach = beads.radius[i] + margin;
     const double safe = free - reach;
-    if (safe <= 0 || x * x + y * y > safe * safe) sink.add(sink.host, i, kOutline);
+    const auto add = [&](std::uint32_t candidate) { sink.add(sink.host, i, candidate); };
+    if (safe <= 0 || x * x + y * y > safe * safe) {
+      profile_.near_bays(x, y, reach, [&](int k) { add(static_cast<std::uint32_t>(k)); });
+      profile_.near_lifters(x, y, reach, [&](int k) { add(bay_count() + static_cast<std::uint32_t>(k)); });
+    }
     if (!slots_.end) continue;
-    if (z < reach) sink.add(sink.host, i, kLowEnd);
-    if (z > length - reach) sink.add(sink.host, i, kHighEnd);
+    if (z < reach) add(low_end());
+    if (z > length - reach) add(low_end() + 1);
   }
 }
 
-/// Shell of each bay, then three faces of each lifter; the corners belong to the top.
-std::uint32_t Mill::feature_of(const ProfileContact& c) const {
-  const int bays = std::max(1, profile_.shape().lifters);
-  if (c.piece == Piece::shell) return static_cast<std::uint32_t>(c.sector);
-  return static_cast<std::uint32_t>(bays + 3 * c.sector + static_cast<int>(c.piece));
+void Mill::add(Neighbours& n, const GeometryQuery& query, std::int64_t bead, std::uint32_t candidate) const {
+  const int at = n.count++;
+  const double x = query.beads.position[0][bead], y = query.beads.position[1][bead];
+  n.bead[at] = bead;
+  n.candidate[at] = candidate;
+  n.radius[at] = query.beads.radius[bead];
+  const bool bay = is_bay(candidate), lifter = !bay && candidate < low_end();
+  const ProfileFrame frame = bay      ? profile_.bay(static_cast<int>(candidate))
+                             : lifter ? profile_.lifter(static_cast<int>(candidate - bay_count()))
+                                      : ProfileFrame{1, 0};
+  n.u[at] = x * frame.cosine + y * frame.sine;
+  n.v[at] = y * frame.cosine - x * frame.sine;
 }
 
-void Mill::touch(const WallBead& bead, const std::uint32_t* candidates, std::size_t count, WallContacts& out) const {
-  const Point& p = bead.position;
-  const auto ends = static_cast<std::uint32_t>(4 * std::max(1, profile_.shape().lifters));
-  for (std::size_t i = 0; i < count; ++i) {
-    if (candidates[i] == kOutline) {
-      ProfileContact found[kMaxProfileContacts];
-      const int n = profile_.touch({p.x, p.y}, bead.radius, bead.reach, found);
-      for (int k = 0; k < n; ++k) {
-        const ProfileContact& c = found[k];
-        const std::uint32_t slot = c.piece == Piece::shell ? slots_.shell : *slots_.lifter;
-        out.add({c.overlap, {c.normal[0], c.normal[1], 0}, feature_of(c), surface_->triangle_at(c, p.z), slot});
-      }
-    } else if (candidates[i] == kLowEnd) {
-      out.add({bead.radius - p.z, {0, 0, 1}, ends, kNoTriangle, *slots_.end});
-    } else {
-      out.add({bead.radius - (profile_.shape().length - p.z), {0, 0, -1}, ends + 1, kNoTriangle, *slots_.end});
+/// The last of them again, up to a whole number of packs.
+void Mill::pad(Neighbours& n) {
+  for (int k = n.count; k % kLanes != 0; ++k) {
+    n.candidate[k] = n.candidate[k - 1];
+    n.u[k] = n.u[k - 1];
+    n.v[k] = n.v[k - 1];
+    n.radius[k] = n.radius[k - 1];
+  }
+}
+
+void Mill::keep(const Neighbours& n, const GeometryQuery& query, GeometryContacts& out) const {
+  for (int k = 0; k < n.count && out.count < out.capacity; ++k) {
+    if (n.candidate[k] >= low_end()) {
+      keep_end(n, k, query, out);
+    } else if (n.overlap[k] > -query.reach) {
+      keep_outline(n, k, query, out);
     }
   }
+}
+
+void Mill::keep_end(const Neighbours& n, int at, const GeometryQuery& query, GeometryContacts& out) const {
+  const bool low = n.candidate[at] == low_end();
+  const double z = query.beads.position[2][n.bead[at]], overlap = n.radius[at] - (low ? z : profile_.shape().length - z);
+  if (!(overlap > -query.reach)) return;
+  const auto ends = static_cast<std::uint32_t>(4 * profile_.bays());
+  append_contact({overlap, {0, 0, low ? 1.0 : -1.0}, low ? ends : ends + 1, kNoTriangle, *slots_.end}, n.bead[at], &out);
+}
+
+/// Features: the shell of each bay, then three faces of each lifter; the corners belong to the top.
+void Mill::keep_outline(const Neighbours& n, int at, const GeometryQuery& query, GeometryContacts& out) const {
+  const std::uint32_t candidate = n.candidate[at];
+  const bool shell = is_bay(candidate);
+  const int k = static_cast<int>(shell ? candidate : candidate - bay_count());
+  const auto piece = static_cast<Piece>(static_cast<int>(n.piece[at]));
+  const ProfileFrame& frame = shell ? profile_.bay(k) : profile_.lifter(k);
+  const double u = n.normal_u[at], v = n.normal_v[at];
+  const Point normal{u * frame.cosine - v * frame.sine, u * frame.sine + v * frame.cosine, 0};
+  const std::uint32_t feature = shell ? candidate : bay_count() + static_cast<std::uint32_t>(3 * k + static_cast<int>(piece));
+  std::uint32_t triangle = kNoTriangle;
+  if (out.triangle != nullptr) {
+    const ProfilePlace place = shell ? profile_.place_on_shell(k, n.u[at], n.v[at]) : profile_.place_on_lifter(k, n.u[at], n.v[at], piece);
+    triangle = surface_->triangle_at(place, query.beads.position[2][n.bead[at]]);
+  }
+  append_contact({n.overlap[at], normal, feature, triangle, shell ? slots_.shell : *slots_.lifter}, n.bead[at], &out);
 }
 
 }  // namespace millscope::geometry

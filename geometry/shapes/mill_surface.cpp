@@ -136,13 +136,13 @@ void MillSurface::add_end_face(std::uint32_t material, bool at_top) {
   }
 }
 
-std::uint32_t MillSurface::triangle_at(const ProfileContact& contact, double z) const {
+std::uint32_t MillSurface::triangle_at(const ProfilePlace& at, double z) const {
   const int start[4] = {0, face_cuts_, face_cuts_ + top_cuts_, 2 * face_cuts_ + top_cuts_};
   const int count[4] = {face_cuts_, top_cuts_, face_cuts_, shell_cuts_};
-  const auto piece = as_size(contact.piece);
-  const double place = contact.fraction * count[piece], height = std::clamp(z / profile_.shape().length, 0.0, 1.0) * rows_;
+  const auto piece = as_size(at.piece);
+  const double place = at.fraction * count[piece], height = std::clamp(z / profile_.shape().length, 0.0, 1.0) * rows_;
   const int chord = std::min(static_cast<int>(place), count[piece] - 1), row = std::min(static_cast<int>(height), rows_ - 1);
-  const int segment = contact.sector * (start[3] + shell_cuts_) + start[piece] + chord;
+  const int segment = at.sector * (start[3] + shell_cuts_) + start[piece] + chord;
   return static_cast<std::uint32_t>(2 * (segment * rows_ + row) + (place - chord >= height - row ? 0 : 1));
 }
 

@@ -21,8 +21,8 @@ class MillSurface {
   /// `facet`: longest chord, m; `rows`: cuts along z.
   MillSurface(const MillProfile& profile, const MillSlots& slots, double facet, int rows);
 
-  /// Triangle under a contact at height z.
-  std::uint32_t triangle_at(const ProfileContact& contact, double z) const;
+  /// Triangle under a place of the outline at height z.
+  std::uint32_t triangle_at(const ProfilePlace& place, double z) const;
   Surface view() const { return triangles_.view(); }
 
  private:

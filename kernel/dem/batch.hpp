@@ -83,6 +83,9 @@ struct WallBatch : ContactArrays {
   double* arm;               ///< from the bead's centre to the contact: r − δ/2
   double* lever[3];          ///< from the body's centre to the contact
   double* wall_velocity[3];  ///< of the body at the contact
+  double* torque[3];         ///< on the bead
+  double* body_torque[3];    ///< on the body, about its centre
+  double* wall_power;        ///< of the body, W
 };
 
 }  // namespace millscope::dem

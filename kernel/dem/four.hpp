@@ -1,4 +1,4 @@
-// Four doubles side by side, for the files that are built once per instruction set: g++'s vector types, no intrinsics. Internal linkage
+// Four doubles side by side, for the files that are built once per instruction set: g++'s vector types. Internal linkage
 // on purpose: each build has its own.
 #pragma once
 
@@ -12,6 +12,23 @@ namespace {
 typedef double Four __attribute__((vector_size(32)));
 typedef double FourAlias __attribute__((vector_size(32), may_alias));
 typedef std::int64_t FourBits __attribute__((vector_size(32)));
+
+typedef std::uint32_t FourIndices __attribute__((vector_size(16)));
+
+inline FourIndices indices(std::uint32_t a) { return FourIndices{a, a, a, a}; }
+inline void store_indices(std::uint32_t* p, FourIndices v) { __builtin_memcpy(p, &v, sizeof v); }
+
+/// Truth values as the bits of a number.
+inline int bits_of(FourBits truth) {
+#if defined(__AVX__)
+  return __builtin_ia32_movmskpd256((Four)truth);
+#else
+  typedef double Two __attribute__((vector_size(16)));
+  Two halves[2];
+  __builtin_memcpy(halves, &truth, sizeof halves);
+  return __builtin_ia32_movmskpd(halves[0]) | __builtin_ia32_movmskpd(halves[1]) << 2;
+#endif
+}
 
 inline Four four(double a) { return Four{a, a, a, a}; }
 inline Four load4(const void* p) { return *static_cast<const FourAlias*>(p); }
@@ -44,6 +61,13 @@ Box4 box4(const PeriodicBox& b) {
 }
 
 inline Four minimum_image(Four d, const Box4& b) { return d - b.length * nearest(d * b.inverse); }
+
+/// The same of four differences at once, x, y and z one after the other; axes that do not repeat cost nothing.
+inline void each_minimum_image(Four (&d)[4], const Box4& b) {
+  for (int a = 0; a < 3; ++a) {
+    if (b.length[a] > 0) d[a] -= four(b.length[a]) * nearest(d[a] * four(b.inverse[a]));
+  }
+}
 
 /// 4 × 4 transpose.
 inline void transpose(Four& a, Four& b, Four& c, Four& d) {

@@ -1,25 +1,26 @@
-// Vectors of three numbers where nothing is wide: walls.
+// Vectors of three numbers where nothing is wide, and the way from there to the wide loops: walls.
 #pragma once
 
 #include "kernel/dem/lines.hpp"
 #include "kernel/dem/motion.hpp"
+#include "kernel/dem/wide.hpp"
 
 namespace millscope::dem {
 
 using base::cross;
 using base::dot;
 
-inline Vector3 to_body(const Pose& p, const Vector3& x) {
-  const Vector3 d{x[0] - p.offset[0], x[1] - p.offset[1], x[2] - p.offset[2]};
-  Vector3 r{};
-  for (std::size_t a = 0; a < 3; ++a) r[a] = p.rotation[0][a] * d[0] + p.rotation[1][a] * d[1] + p.rotation[2][a] * d[2];
-  return r;
-}
-
-inline Vector3 to_world(const Pose& p, const Vector3& n) {
-  Vector3 r{};
-  for (std::size_t a = 0; a < 3; ++a) r[a] = p.rotation[a][0] * n[0] + p.rotation[a][1] * n[1] + p.rotation[a][2] * n[2];
-  return r;
+/// For the wide loops.
+inline WallPose plain(const Pose& p) {
+  WallPose w{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b < 3; ++b) w.rotation[a][b] = p.rotation[a][b];
+    w.offset[a] = p.offset[a];
+    w.centre[a] = p.centre[a];
+    w.velocity[a] = p.velocity[a];
+    w.omega[a] = p.omega[a];
+  }
+  return w;
 }
 
 /// Centre of a bead. Periodic coordinates are wrapped at list rebuilds only: wrapped here, a bead that crosses the boundary would jump away

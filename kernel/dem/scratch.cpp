@@ -43,7 +43,7 @@ Scratch::Scratch(int history_count) {
   doubles.deal(doubles_);
 
   Arrays<std::uint32_t> integers;
-  integers.add(p.owner, p.partner, p.slot, p.source, found.feature, found.triangle, found.material);
+  integers.add(p.owner, p.partner, p.slot, p.source, found.feature, triangle, found.material);
   integers.deal(integers_);
   Arrays<std::int32_t> indices;
   indices.add(found.bead);
@@ -57,9 +57,12 @@ Scratch::Scratch(int history_count) {
   walls.bead = p.owner;
   walls.contact = p.slot;
   walls.arm = p.arm_i;
+  walls.wall_power = p.arm_j;
   for (int a = 0; a < 3; ++a) {
     walls.lever[a] = p.difference[a];
     walls.wall_velocity[a] = p.spin_sum[a];
+    walls.torque[a] = p.torque_i[a];
+    walls.body_torque[a] = p.torque_j[a];
   }
 }
 

@@ -25,9 +25,9 @@ struct BodyForceArrays {
 /// What the kernel notes of a contact that the geometry found.
 struct FoundContact {
   static constexpr int kOutOfReach = -1;
+  static constexpr std::int64_t kFresh = -1;
   int physics_index;  ///< or kOutOfReach
-  bool fresh;
-  Vector3 normal;  ///< world frame
+  std::int64_t last;  ///< its place in WallList::active, or kFresh
 };
 
 struct Scratch {
@@ -40,6 +40,7 @@ struct Scratch {
   double* query_position[3];
   double* query_radius;
   GeometryContacts found{};
+  std::uint32_t* triangle;             ///< for found.triangle, where a body keeps work per triangle
   std::vector<FoundContact> contacts;  ///< one for each of `found`
   BodyForceArrays bodies{};
   AlignedVector<ForceLine> ring;  ///< for ForceWindow; zero between steps

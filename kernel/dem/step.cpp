@@ -52,7 +52,7 @@ IntegrateResult Step::make(std::int64_t step, const std::function<void()>& obser
     for (int a = 0; a < 3; ++a) acceleration_[a] += g[a];
   }
   poses_.clear();
-  for (const Body& body : walls_.bodies()) poses_.push_back(pose_at(body.motion, time()));
+  for (const Body& body : walls_.bodies()) poses_.push_back(plain(pose_at(body.motion, time())));
   const Slabs& slabs = common_.slabs;
   if (observe) {
     common_.each_slab([this](int slab, int worker) { contacts(slab, worker, false); });

@@ -55,7 +55,7 @@ class Step {
 
   // of this step
   std::int64_t step_ = 0;
-  std::vector<Pose> poses_;
+  std::vector<WallPose> poses_;
   std::array<double, 3> acceleration_{};
 };
 

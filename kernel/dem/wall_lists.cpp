@@ -44,11 +44,13 @@ std::vector<WallLists::Near> WallLists::near(const Body& body, const CellOrder& 
   // Half of the laws' reach is in `reaches`, for two beads share it; a wall has none of its own.
   const double law_reach = common_.physics.reach();
   common_.each_slab([&](int slab, int) {
-    for (std::int64_t i = common_.slabs.begin(slab); i < common_.slabs.end(slab); ++i) {
-      const Vector3 x = to_body(pose, centre(particles.position[i]));
-      for (int a = 0; a < 3; ++a) coordinate[a][i] = x[a];
+    const BeadRange beads = common_.slabs.range(slab);
+    for (std::int64_t i = beads.begin; i < beads.end; ++i) {
+      for (int a = 0; a < 3; ++a) coordinate[a][i] = particles.position[i].centre[a];
       coordinate[3][i] = order.reaches()[i].radius + 0.5 * law_reach;
     }
+    common_.wide.to_frame(plain(pose), beads.end - beads.begin,
+                          {coordinate[0] + beads.begin, coordinate[1] + beads.begin, coordinate[2] + beads.begin});
   });
   const GeometryBeads beads{n, {coordinate[0], coordinate[1], coordinate[2]}, coordinate[3]};
   std::vector<Near> found;

@@ -12,7 +12,8 @@ constexpr std::int64_t kBeadsPerQuery = kBatch / kMaxWallContacts;
 
 }  // namespace
 
-WallSweep::WallSweep(const SlabPass& pass, WallLists& walls, const std::vector<Pose>& poses) : pass_(pass), walls_(walls), poses_(poses) {
+WallSweep::WallSweep(const SlabPass& pass, WallLists& walls, const std::vector<WallPose>& poses)
+    : pass_(pass), walls_(walls), poses_(poses) {
   for (int body = 0; body < std::ssize(poses_); ++body) {
     WallList& list = walls_.of(pass_.slab, body);
     list.next.resize(0);
@@ -69,16 +70,17 @@ void WallSweep::ask(const Chunk& chunk) {
   Scratch& scratch = pass_.scratch;
   for (std::int64_t k = 0; k < chunk.count; ++k) {
     const PositionLine& line = pass_.particles.position[list.bead[chunk.begin + k]];
-    const Vector3 x = to_body(poses_[chunk.body], centre(line));
-    for (int a = 0; a < 3; ++a) scratch.query_position[a][k] = x[a];
+    for (int a = 0; a < 3; ++a) scratch.query_position[a][k] = line.centre[a];
     scratch.query_radius[k] = line.radius;
   }
+  pass_.common.wide.to_frame(poses_[chunk.body], chunk.count, scratch.query_position);
   const GeometryQuery query{
       {chunk.count, {scratch.query_position[0], scratch.query_position[1], scratch.query_position[2]}, scratch.query_radius},
       list.first.data() + chunk.begin,
       list.candidates.data(),
       pass_.common.physics.wall_reach()};
   scratch.found.count = 0;
+  scratch.found.triangle = body.per_triangle ? scratch.triangle : nullptr;
   body.table->contacts(body.self, &query, &scratch.found);
   assert(scratch.found.count <= scratch.found.capacity);
 }
@@ -105,101 +107,61 @@ void WallSweep::match(Chunk& chunk) {
     list.next.bead[at] = local;
     list.next.feature[at] = acts ? found.feature[c] : WallContacts::kUsedUp;
     list.next.normal[at] = normal;
-    for (int h = 0; h < std::ssize(list.next.history); ++h) list.next.history[h][at] = last ? list.active.history[h][*last] : 0.0;
-    pass_.scratch.contacts[c] = {acts ? p : FoundContact::kOutOfReach, !last, to_world(poses_[chunk.body], normal)};
+    pass_.scratch.contacts[c] = {acts ? p : FoundContact::kOutOfReach, last.value_or(FoundContact::kFresh)};
   }
 }
 
 /// Fills the batch with the chunk's contacts of one physics. Returns their number.
 std::int64_t WallSweep::gather(const Chunk& chunk, int physics_index) {
-  std::int64_t count = 0;
-  for (std::int64_t c = 0; c < pass_.scratch.found.count; ++c) {
-    if (pass_.scratch.contacts[c].physics_index == physics_index) fill(chunk, c, count++);
-  }
-  if (count > 0) pad(count);
-  return count;
-}
-
-/// Place `m` of the batch, with contact `c` of those found.
-void WallSweep::fill(const Chunk& chunk, std::int64_t c, std::int64_t m) {
   const WallList& list = walls_.of(pass_.slab, chunk.body);
-  const Pose& pose = poses_[chunk.body];
-  const FoundContact& contact = pass_.scratch.contacts[c];
-  const double overlap = pass_.scratch.found.overlap[c];
+  const GeometryContacts& found = pass_.scratch.found;
   WallBatch& b = pass_.scratch.walls;
-  const std::uint32_t bead = list.bead[list.next.bead[chunk.base + c]];
-  const MotionLine& motion = pass_.particles.motion[bead];
-  const Vector3 position = centre(pass_.particles.position[bead]);
-  const double radius = pass_.particles.position[bead].radius;
-  const Vector3& n = contact.normal;
-  const double arm = radius - 0.5 * overlap;
-  const Vector3 lever{position[0] - arm * n[0] - pose.centre[0], position[1] - arm * n[1] - pose.centre[1],
-                      position[2] - arm * n[2] - pose.centre[2]};
-  const Vector3 turning = cross(pose.omega, lever);
-  const Vector3 surface = cross({motion.w[0], motion.w[1], motion.w[2]}, n);
-  b.contact[m] = static_cast<std::uint32_t>(c);
-  b.bead[m] = bead;
-  b.fresh[m] = contact.fresh;
-  b.overlap[m] = overlap;
-  b.radius[m] = b.radius_i[m] = radius;
-  b.radius_j[m] = 0.0;
-  b.mass[m] = 1.0 / motion.inverse_mass;
-  b.arm[m] = arm;
-  for (int a = 0; a < 3; ++a) {
-    b.normal[a][m] = n[a];
-    b.lever[a][m] = lever[a];
-    b.wall_velocity[a][m] = pose.velocity[a] + turning[a];
-    b.velocity[a][m] = motion.v[a] - arm * surface[a] - b.wall_velocity[a][m];
-    b.spin_i[a][m] = motion.w[a];
-    b.spin_j[a][m] = pose.omega[a];
+  const std::int64_t histories = std::ssize(list.next.history);
+  std::int64_t count = 0;
+  for (std::int64_t c = 0; c < found.count; ++c) {
+    const FoundContact& contact = pass_.scratch.contacts[c];
+    if (contact.physics_index != physics_index) continue;
+    b.contact[count] = static_cast<std::uint32_t>(c);
+    b.bead[count] = list.bead[list.next.bead[chunk.base + c]];
+    b.fresh[count] = contact.last == FoundContact::kFresh;
+    for (std::int64_t h = 0; h < histories; ++h) b.history[h][count] = b.fresh[count] ? 0.0 : list.active.history[h][contact.last];
+    ++count;
   }
-  for (int h = 0; h < std::ssize(list.next.history); ++h) b.history[h][m] = list.next.history[h][chunk.base + c];
-}
-
-/// The padding behind the batch's contacts is a gap of 1 m at rest.
-void WallSweep::pad(std::int64_t count) {
-  WallBatch& b = pass_.scratch.walls;
-  for (std::int64_t k = count; k < padded_count(count); ++k) {
-    b.overlap[k] = -1.0;
-    b.radius[k] = b.mass[k] = b.radius_i[k] = 1.0;
-    b.radius_j[k] = 0.0;
-    for (int a = 0; a < 3; ++a) {
-      b.normal[a][k] = a == 0 ? 1.0 : 0.0;
-      b.velocity[a][k] = b.spin_i[a][k] = b.spin_j[a][k] = 0.0;
-    }
-    for (int h = 0; h < pass_.common.layout.history_count(); ++h) b.history[h][k] = 0.0;
-  }
+  if (count == 0) return 0;
+  for (std::int64_t h = 0; h < histories; ++h) std::fill(b.history[h] + count, b.history[h] + padded_count(count), 0.0);
+  const WallGather from{
+      pass_.particles.position.data(), pass_.particles.motion.data(), found.overlap, {found.normal[0], found.normal[1], found.normal[2]}};
+  pass_.common.wide.gather_walls(from, poses_[chunk.body], count, b);
+  return count;
 }
 
 /// Forces on the beads and on the body, work, histories.
 void WallSweep::scatter(const Chunk& chunk, int physics_index, std::int64_t count) {
   WallList& list = walls_.of(pass_.slab, chunk.body);
-  const WallBatch& b = pass_.scratch.walls;
+  WallBatch& b = pass_.scratch.walls;
   const Body& body = walls_.bodies()[chunk.body];
-  const Pose& pose = poses_[chunk.body];
   const PairPhysics& physics = pass_.common.physics[physics_index];
   BodyLedger& book = pass_.state.ledger.bodies[chunk.body];
-  const bool post = physics.has_post();
+  pass_.common.wide.wall_torques(poses_[chunk.body], padded_count(count), physics.has_post(), b);
+  double power = 0;
   for (std::int64_t k = 0; k < count; ++k) {
-    const Vector3 f{b.force[0][k], b.force[1][k], b.force[2][k]};
-    const Vector3 n{b.normal[0][k], b.normal[1][k], b.normal[2][k]};
-    const Vector3 lever{b.lever[0][k], b.lever[1][k], b.lever[2][k]};
-    const Vector3 turn = cross(f, n), reaction = cross(lever, f);
     ForceLine& line = pass_.state.force[b.bead[k]];
-    double power = 0;
     for (int a = 0; a < 3; ++a) {
-      const double moment_i = post ? b.moment_i[a][k] : 0.0, moment_j = post ? b.moment_j[a][k] : 0.0;
-      line.f[a] += f[a];
-      line.t[a] += b.arm[k] * turn[a] + moment_i;
-      book.force[a] -= f[a];
-      book.torque[a] += moment_j - reaction[a];
-      power += f[a] * b.wall_velocity[a][k] - moment_j * pose.omega[a];
+      line.f[a] += b.force[a][k];
+      line.t[a] += b.torque[a][k];
+      book.force[a] -= b.force[a][k];
+      book.torque[a] += b.body_torque[a][k];
     }
-    book.power += power;
-    book.work += power * pass_.common.settings.time_step;
-    for (int h = 0; h < std::ssize(list.next.history); ++h) list.next.history[h][chunk.base + b.contact[k]] = b.history[h][k];
-    if (body.per_triangle) book_triangle(chunk, physics, k);
+    power += b.wall_power[k];
   }
+  book.power += power;
+  book.work += power * pass_.common.settings.time_step;
+  for (std::int64_t h = 0; h < std::ssize(list.next.history); ++h) {
+    double* const to = list.next.history[h].data() + chunk.base;
+    for (std::int64_t k = 0; k < count; ++k) to[b.contact[k]] = b.history[h][k];
+  }
+  if (!body.per_triangle) return;
+  for (std::int64_t k = 0; k < count; ++k) book_triangle(chunk, physics, k);
 }
 
 /// Work that the contact at place `k` of the batch does on its triangle.

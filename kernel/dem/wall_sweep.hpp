@@ -12,7 +12,7 @@ namespace millscope::dem {
 class WallSweep {
  public:
   /// `poses`: of the bodies at this step.
-  WallSweep(const SlabPass& pass, WallLists& walls, const std::vector<Pose>& poses);
+  WallSweep(const SlabPass& pass, WallLists& walls, const std::vector<WallPose>& poses);
 
   /// The contacts of the beads before `end` that have not been through this step yet.
   void until(std::int64_t end);
@@ -31,14 +31,12 @@ class WallSweep {
   void ask(const Chunk& chunk);
   void match(Chunk& chunk);
   std::int64_t gather(const Chunk& chunk, int physics_index);
-  void fill(const Chunk& chunk, std::int64_t contact, std::int64_t place);
-  void pad(std::int64_t count);
   void scatter(const Chunk& chunk, int physics_index, std::int64_t count);
   void book_triangle(const Chunk& chunk, const PairPhysics& physics, std::int64_t place);
 
   const SlabPass& pass_;
   WallLists& walls_;
-  const std::vector<Pose>& poses_;
+  const std::vector<WallPose>& poses_;
 };
 
 }  // namespace millscope::dem

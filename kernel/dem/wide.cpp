@@ -3,68 +3,13 @@
 #include "kernel/dem/wide.hpp"
 
 #include "kernel/dem/four.hpp"
+#include "kernel/dem/wide_search.hpp"
+#include "kernel/dem/wide_walls.hpp"
 
 namespace millscope::dem {
 namespace {
 
 inline double root(double a) { return __builtin_sqrt(a); }
-
-template <bool kPeriodic>
-std::int64_t search_slots(const GatherContext& g, PairListView& list, std::int64_t first, std::int64_t last, PairBatch& b) {
-  const Box4 box = box4(g.box);
-  const double* __restrict x = reinterpret_cast<const double*>(g.position);
-  const std::uint32_t* __restrict owner = list.owner;
-  const std::uint32_t* __restrict partner = list.partner;
-  std::uint8_t* __restrict touching = list.touching;
-  std::uint32_t* __restrict slot = b.slot;
-  std::uint32_t* __restrict source = b.source;
-  std::uint8_t* __restrict fresh = b.fresh;
-  const double reach = g.reach;
-  std::int64_t n = 0;
-  std::uint32_t read = static_cast<std::uint32_t>(list.read);
-  const auto keep = [&](std::int64_t s, std::int64_t hit) {
-    slot[n] = static_cast<std::uint32_t>(s);
-    source[n] = read;
-    fresh[n] = static_cast<std::uint8_t>(touching[s] ^ 1);
-    read += touching[s];
-    touching[s] = static_cast<std::uint8_t>(hit);
-    n += hit;
-  };
-  const auto difference = [&](std::int64_t s) {
-    const Four d = load4(x + 4 * static_cast<std::int64_t>(owner[s])) + negate3(load4(x + 4 * static_cast<std::int64_t>(partner[s])));
-    return kPeriodic ? minimum_image(d, box) : d;
-  };
-  std::int64_t s = first;
-  std::int64_t ahead = g.ahead;
-  for (; s + 4 <= last; s += 4) {
-    if (ahead < g.ahead_end) {
-      __builtin_prefetch(g.position + ahead, 0, 2);
-      __builtin_prefetch(g.motion + ahead, 0, 2);
-      __builtin_prefetch(g.motion + ahead + 1, 0, 2);
-      if (g.ahead_force) {
-        __builtin_prefetch(g.ahead_force + (ahead - g.ahead), 1, 2);
-        __builtin_prefetch(g.ahead_force + (ahead - g.ahead) + 1, 1, 2);
-      }
-      ahead += 2;
-    }
-    Four d[4] = {difference(s), difference(s + 1), difference(s + 2), difference(s + 3)};
-    transpose(d[0], d[1], d[2], d[3]);
-    const Four limit = d[3] + four(reach);
-    const FourBits hit = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) < (limit * limit);
-    for (int k = 0; k < 4; ++k) keep(s + k, hit[k] & 1);
-  }
-  for (; s < last; ++s) {
-    const Four d = difference(s);
-    const double limit = d[3] + reach;
-    keep(s, d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < limit * limit);
-  }
-  list.read = read;
-  return n;
-}
-
-std::int64_t search(const GatherContext& g, PairListView& list, std::int64_t first, std::int64_t last, PairBatch& b) {
-  return box4(g.box).any ? search_slots<true>(g, list, first, last, b) : search_slots<false>(g, list, first, last, b);
-}
 
 /// Loads the raw differences of four contacts starting at k.
 template <bool kEqual, bool kPeriodic>
@@ -76,7 +21,6 @@ inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k,
   for (int c = 0; c < 4; ++c) {
     const std::int64_t i = b.owner[k + c], j = b.partner[k + c];
     d[c] = load4(x + 4 * i) + negate3(load4(x + 4 * j));
-    if constexpr (kPeriodic) d[c] = minimum_image(d[c], box);
     v[c] = load4(m + 8 * i) + negate3(load4(m + 8 * j));
     if constexpr (kEqual) {
       w[c] = load4(m + 8 * i + 4) + load4(m + 8 * j + 4);
@@ -86,6 +30,7 @@ inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k,
     }
   }
   transpose(d[0], d[1], d[2], d[3]);
+  if constexpr (kPeriodic) each_minimum_image(d, box);
   transpose(v[0], v[1], v[2], v[3]);
   for (int a = 0; a < 3; ++a) {
     store4_unaligned(b.difference[a] + k, d[a]);
@@ -363,9 +308,9 @@ std::int64_t near(const PositionLine* reaches, const PeriodicBox& periodic, std:
     Four d[4];
     for (int k = 0; k < 4; ++k) {
       d[k] = own + negate3(load4(reaches + j + k));
-      if (box.any) d[k] = minimum_image(d[k], box);
     }
     transpose(d[0], d[1], d[2], d[3]);
+    if (box.any) each_minimum_image(d, box);
     const FourBits hit = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) < (d[3] * d[3]);
     for (int k = 0; k < 4; ++k) {
       found[n] = static_cast<std::uint32_t>(j + k);
@@ -384,6 +329,6 @@ std::int64_t near(const PositionLine* reaches, const PeriodicBox& periodic, std:
 }  // namespace
 
 extern const WideTable MILLSCOPE_WIDE;
-const WideTable MILLSCOPE_WIDE = {MILLSCOPE_WIDE_NAME, search, gather, scatter, integrate, near};
+const WideTable MILLSCOPE_WIDE = {MILLSCOPE_WIDE_NAME, search, gather, scatter, to_frame, gather_walls, wall_torques, integrate, near};
 
 }  // namespace millscope::dem

@@ -40,6 +40,20 @@ struct IntegrateContext {
   double largest_step2;    ///< square of the largest credible displacement in one step, m²
 };
 
+/// Where a body is and how it moves, as plain numbers (Pose).
+struct WallPose {
+  double rotation[3][3];
+  double offset[3], centre[3], velocity[3], omega[3];
+};
+
+/// What the batch of contacts with a body is filled from: beads, and what the geometry found.
+struct WallGather {
+  const PositionLine* position;
+  const MotionLine* motion;
+  const double* overlap;
+  const double* normal[3];  ///< in the body's frame
+};
+
 /// What a step found out about a slab.
 struct IntegrateResult {
   bool rebuild;          ///< some bead used up its skin (or is not finite)
@@ -54,6 +68,12 @@ struct WideTable {
   void (*gather)(const GatherContext&, const PairListView&, std::int64_t count, PairBatch&);
   /// Adds force × arms (and moments when `with_moments`) to the beads, stores histories; advances `written`.
   void (*scatter)(const ScatterContext&, PairListView&, std::int64_t count, bool with_moments, PairBatch&);
+  /// Places of the world into the frame of a body.
+  void (*to_frame)(const WallPose&, std::int64_t count, double* const (&position)[3]);
+  /// From `bead` and `contact` of each place: all that the plugins need but the histories (padded).
+  void (*gather_walls)(const WallGather&, const WallPose&, std::int64_t count, WallBatch&);
+  /// Torques on beads and body, power of the body.
+  void (*wall_torques)(const WallPose&, std::int64_t count, bool with_moments, WallBatch&);
   /// Kick, drift, predict; clears the forces.
   IntegrateResult (*integrate)(const IntegrateContext&);
   /// Appends to `found` the j in [first, last) with |x_i − x_j| < reach_i + reach_j (the reaches stand in `radius`). Returns the number.

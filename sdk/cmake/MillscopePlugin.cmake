@@ -1,6 +1,6 @@
 # millscope_add_plugin(NAME SOURCES file… [WIDE] [LINK target…])
 #
-# Builds one plugin library. Contact laws, interactions and pair parameters say WIDE: they are built once per instruction set
+# Builds one plugin library, the target NAME_plugin. Contact laws, interactions and pair parameters say WIDE: they are built once per instruction set
 # (x86-64-v2, v3, v4) into the sub-folders v2, v3, v4, and the loader takes the best that the machine runs. The same function
 # serves the plugins of the project and those built out of tree with find_package(millscope).
 
@@ -43,6 +43,7 @@ function(millscope_add_plugin name)
     _millscope_plugin_variant(${name} v2 "-march=x86-64-v2" "${arg_SOURCES}" "${arg_LINK}")
     _millscope_plugin_variant(${name} v3 "-march=x86-64-v3" "${arg_SOURCES}" "${arg_LINK}")
     _millscope_plugin_variant(${name} v4 "-march=x86-64-v4;-mprefer-vector-width=512" "${arg_SOURCES}" "${arg_LINK}")
+    add_custom_target(${name}_plugin DEPENDS ${name}_plugin_v2 ${name}_plugin_v3 ${name}_plugin_v4)
   else()
     _millscope_plugin_variant(${name} "" "" "${arg_SOURCES}" "${arg_LINK}")
   endif()

@@ -16,7 +16,7 @@ inline constexpr std::uint64_t kMagic = 0x504F43534C4C494DULL;  // "MILLSCOP", l
 
 /// Raised when Descriptor or DescriptorList changes, or when a member keeps its place and means something else. What else changes in a
 /// struct changes the layout hash of the kinds that use it (layout.hpp), and refuses plugins of those kinds alone.
-inline constexpr std::uint32_t kAbiVersion = 2;
+inline constexpr std::uint32_t kAbiVersion = 3;
 
 /// What a plugin is. The layout check is per kind, so that adding a kind breaks no plugin of another.
 enum class Kind : std::uint32_t {

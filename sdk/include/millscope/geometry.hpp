@@ -52,7 +52,7 @@ struct GeometryContacts {
   double* overlap;          ///< out: δ, m; negative: a gap
   double* normal[3];        ///< out: unit, from the wall to the bead's centre, in the geometry's frame
   std::uint32_t* feature;   ///< out: names the smooth patch; stays the same while a bead slides over it
-  std::uint32_t* triangle;  ///< out: index into the surface's triangles (for per-triangle work), or UINT32_MAX
+  std::uint32_t* triangle;  ///< out: index into the surface's triangles (for per-triangle work), or UINT32_MAX; nullptr: nobody asks
   std::uint32_t* material;  ///< out: index into the geometry's material slots
 };
 template <>

@@ -9,6 +9,7 @@
 //     void candidates(const GeometryBeads&, double margin, const CandidateSink&);     // one thread; bead by bead, features ascending
 //     void touch(const WallBead&, const std::uint32_t* candidates, std::size_t count, WallContacts&) const;  // many threads
 //     void prefetch(std::uint32_t candidate) const;       // optional: called some beads before touch
+//     void contacts(const GeometryQuery&, GeometryContacts&) const;   // in the place of touch: all beads at once, for packs
 //   };
 //   constexpr Descriptor kDescriptor = describe<MyWall>({.name = "my_wall", .doc = "…", .parameters = kParameters});
 #pragma once
@@ -53,24 +54,22 @@ class WallContacts {
   double reach_;
 };
 
-/// Copies the contacts of one bead behind those found so far; what exceeds the capacity is dropped.
-inline void append_contacts(const WallContacts& found, std::int64_t bead, GeometryContacts* out) {
-  for (int i = 0; i < found.count() && out->count < out->capacity; ++i) {
-    const std::int64_t slot = out->count++;
-    out->bead[slot] = static_cast<std::int32_t>(bead);
-    out->overlap[slot] = found[i].overlap;
-    out->normal[0][slot] = found[i].normal.x;
-    out->normal[1][slot] = found[i].normal.y;
-    out->normal[2][slot] = found[i].normal.z;
-    out->feature[slot] = found[i].feature;
-    out->triangle[slot] = found[i].triangle;
-    out->material[slot] = found[i].material;
-  }
+/// Puts a contact behind those found so far; what exceeds the capacity is dropped.
+inline void append_contact(const WallContact& contact, std::int64_t bead, GeometryContacts* out) {
+  if (out->count >= out->capacity) return;
+  const std::int64_t slot = out->count++;
+  out->bead[slot] = static_cast<std::int32_t>(bead);
+  out->overlap[slot] = contact.overlap;
+  out->normal[0][slot] = contact.normal.x;
+  out->normal[1][slot] = contact.normal.y;
+  out->normal[2][slot] = contact.normal.z;
+  out->feature[slot] = contact.feature;
+  if (out->triangle) out->triangle[slot] = contact.triangle;
+  out->material[slot] = contact.material;
 }
 
 template <class Wall>
-void find_contacts(const void* self, const GeometryQuery* query, GeometryContacts* out) {
-  const Wall& wall = *static_cast<const Wall*>(self);
+void find_contacts_one_by_one(const Wall& wall, const GeometryQuery* query, GeometryContacts* out) {
   const GeometryBeads& beads = query->beads;
   out->count = 0;
   [[maybe_unused]] const std::int64_t total = query->first[beads.count];
@@ -84,7 +83,17 @@ void find_contacts(const void* self, const GeometryQuery* query, GeometryContact
     WallContacts found(query->reach);
     wall.touch({{beads.position[0][i], beads.position[1][i], beads.position[2][i]}, beads.radius[i], query->reach},
                query->candidates + begin, end - begin, found);
-    append_contacts(found, i, out);
+    for (int k = 0; k < found.count(); ++k) append_contact(found[k], i, out);
+  }
+}
+
+template <class Wall>
+void find_contacts(const void* self, const GeometryQuery* query, GeometryContacts* out) {
+  const Wall& wall = *static_cast<const Wall*>(self);
+  if constexpr (requires { wall.contacts(*query, *out); }) {
+    return wall.contacts(*query, *out);
+  } else {
+    find_contacts_one_by_one(wall, query, out);
   }
 }
 
