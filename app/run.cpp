@@ -107,6 +107,7 @@ int check(const Arguments& arguments) {
   fmt::print("time step      {:.4g} s, {:.0f} % of the Rayleigh time", e.time_step, 100 * e.rayleigh_fraction);
   if (e.contact_steps > 0) fmt::print(", {:.0f} steps in the shortest expected contact", e.contact_steps);
   fmt::print("\nsteps          {}\n", e.steps);
+  fmt::print("slabs          {}  (run.partitions: so many threads can work at once)\n", e.partitions);
   fmt::print("wall time      about {:.0f} s at {:.1f} M particle-steps/s\n", e.wall_seconds, 1e-6 * e.particle_steps_per_s);
   fmt::print("memory         about {}\n", bytes(e.memory_bytes));
   fmt::print("disk           about {}\n", bytes(e.disk_bytes));

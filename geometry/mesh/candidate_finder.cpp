@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <mutex>
 
 #include "millscope/parameters.hpp"
 
@@ -100,35 +101,38 @@ CandidateFinder::CandidateFinder(const Triangles& triangles) : triangles_(triang
 
 CandidateFinder::~CandidateFinder() = default;
 
-void CandidateFinder::prepare(const GeometryBeads& beads, double margin) {
-  double largest = 0;
-  for (std::int64_t i = 0; i < beads.count; ++i) largest = std::max(largest, beads.radius[i]);
-  if (!std::isfinite(largest + margin)) throw Refusal("mesh: a bead's radius or the list margin is not finite");
-  if (largest + margin <= distance_) return;
-  distance_ = 1.1 * (largest + margin);  // a little room, so that a growing margin does not empty the lists each time
+void CandidateFinder::prepare(double reach) {
+  if (reach <= distance_) return;
+  distance_ = 1.1 * reach;  // a little room, so that a growing margin does not empty the lists each time
   grid_.prepare(box_, distance_);
   lists_.clear();
 }
 
-/// Beads that are not surely far go to near_, cells never asked about to unknown_.
-void CandidateFinder::look_up(const GeometryBeads& beads) {
-  near_.clear();
-  unknown_.clear();
+/// The beads that are not surely far. False: a cell is not known yet.
+bool CandidateFinder::look_up(const GeometryBeads& beads, std::vector<NearBead>& near) const {
+  near.clear();
   for (std::int64_t i = 0; i < beads.count; ++i) {
     const std::uint64_t cell = grid_.cell_of({beads.position[0][i], beads.position[1][i], beads.position[2][i]});
     if (cell == CellGrid::kOutside) continue;
-    std::uint32_t& entry = grid_.entry(cell);
+    const std::uint32_t entry = grid_.entry(cell);
     if (entry == kFar) continue;
-    near_.push_back({i, cell, entry});
-    if (entry != kUnknown) continue;
-    entry = kAsked;
-    unknown_.push_back(cell);
+    if (entry == kUnknown) return false;
+    near.push_back({i, entry});
   }
+  return true;
 }
 
-void CandidateFinder::resolve_unknown() {
-  for (std::size_t begin = 0; begin < unknown_.size(); begin += kCellsAtOnce) {
-    resolve({unknown_.data() + begin, std::min(kCellsAtOnce, unknown_.size() - begin)});
+/// The cells of these beads.
+void CandidateFinder::learn(const GeometryBeads& beads) {
+  std::vector<std::uint64_t> unknown;
+  for (std::int64_t i = 0; i < beads.count; ++i) {
+    const std::uint64_t cell = grid_.cell_of({beads.position[0][i], beads.position[1][i], beads.position[2][i]});
+    if (cell == CellGrid::kOutside || grid_.entry(cell) != kUnknown) continue;
+    grid_.entry(cell) = kAsked;
+    unknown.push_back(cell);
+  }
+  for (std::size_t begin = 0; begin < unknown.size(); begin += kCellsAtOnce) {
+    resolve({unknown.data() + begin, std::min(kCellsAtOnce, unknown.size() - begin)});
   }
 }
 
@@ -149,24 +153,32 @@ void CandidateFinder::resolve(std::span<const std::uint64_t> cells) {
   }
 }
 
-void CandidateFinder::send(const NearBead& near, const GeometryBeads& beads, double margin, const CandidateSink& sink) {
-  const std::uint32_t entry = near.entry >= kFirstList ? near.entry : grid_.entry(near.cell);  // it may be known by now
-  if (entry < kFirstList) return;
+void CandidateFinder::send(const NearBead& near, const GeometryBeads& beads, double margin, const CandidateSink& sink) const {
   const std::int64_t i = near.bead;
   const Point p{beads.position[0][i], beads.position[1][i], beads.position[2][i]};
   const double reach = beads.radius[i] + margin;
-  const std::uint32_t* list = &lists_[entry - kFirstList];
+  const std::uint32_t* list = &lists_[near.entry - kFirstList];
   for (std::uint32_t k = 1; k <= list[0]; ++k) {
     if (is_within(triangles_, list[k], p, reach)) sink.add(sink.host, i, list[k]);
   }
 }
 
 void CandidateFinder::find(const GeometryBeads& beads, double margin, const CandidateSink& sink) {
-  if (beads.count == 0) return;
-  prepare(beads, margin);
-  look_up(beads);
-  resolve_unknown();
-  for (const NearBead& near : near_) send(near, beads, margin, sink);
+  double reach = 0;
+  for (std::int64_t i = 0; i < beads.count; ++i) reach = std::max(reach, beads.radius[i] + margin);
+  if (!std::isfinite(reach)) throw Refusal("mesh: a bead's radius or the list margin is not finite");
+  std::vector<NearBead> near;
+  std::shared_lock reading(known_);
+  while (reach > distance_ || !look_up(beads, near)) {
+    reading.unlock();
+    {
+      const std::unique_lock learning(known_);
+      prepare(reach);
+      learn(beads);
+    }
+    reading.lock();
+  }
+  for (const NearBead& bead : near) send(bead, beads, margin, sink);
 }
 
 }  // namespace millscope::geometry

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <shared_mutex>
 #include <span>
 #include <vector>
 
@@ -21,29 +22,27 @@ class CandidateFinder {
   explicit CandidateFinder(const Triangles& triangles);
   ~CandidateFinder();
 
-  /// Sends every triangle within radius + margin of each bead to the sink: beads in order, triangles ascending.
+  /// Sends every triangle within radius + margin of each bead to the sink: beads in order, triangles ascending. From many threads at once.
   void find(const GeometryBeads& beads, double margin, const CandidateSink& sink);
 
  private:
   struct Trees;
   struct NearBead {
     std::int64_t bead;
-    std::uint64_t cell;
-    std::uint32_t entry;  // of the grid, as it was when looked up
+    std::uint32_t entry;  // of the grid
   };
-  void prepare(const GeometryBeads& beads, double margin);
-  void look_up(const GeometryBeads& beads);
-  void resolve_unknown();
+  void prepare(double reach);
+  bool look_up(const GeometryBeads& beads, std::vector<NearBead>& near) const;
+  void learn(const GeometryBeads& beads);
   void resolve(std::span<const std::uint64_t> cells);
-  void send(const NearBead& near, const GeometryBeads& beads, double margin, const CandidateSink& sink);
+  void send(const NearBead& near, const GeometryBeads& beads, double margin, const CandidateSink& sink) const;
 
   const Triangles& triangles_;
   Bounds box_;
+  std::shared_mutex known_;  // of what follows: many read, one learns
   CellGrid grid_;
-  double distance_ = 0;                 // the cells' lists are good for radius + margin up to this
-  std::vector<std::uint32_t> lists_;    // of the cells: a count, then that many triangles, ascending
-  std::vector<std::uint64_t> unknown_;  // cells to ask FCL about
-  std::vector<NearBead> near_;
+  double distance_ = 0;               // the cells' lists are good for radius + margin up to this
+  std::vector<std::uint32_t> lists_;  // of the cells: a count, then that many triangles, ascending
   std::unique_ptr<Trees> trees_;
 };
 

@@ -23,6 +23,7 @@ class CellGrid {
   }
   Point middle_of(std::uint64_t cell) const;
   double half_diagonal() const { return half_diagonal_; }
+  std::uint32_t entry(std::uint64_t cell) const { return entries_[cell]; }
   std::uint32_t& entry(std::uint64_t cell) { return entries_[cell]; }
 
  private:

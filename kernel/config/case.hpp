@@ -192,7 +192,7 @@ struct OutputCase {
 /// `run`.
 struct RunCase {
   int threads = 0;              ///< 0: as many as the machine has; no influence on results
-  int partitions = 8;           ///< slabs, 1…4096: an input of the result's last bits, never derived from cores
+  int partitions = 0;           ///< slabs, 1…4096: an input of the result's last bits; 0: as many as suit the number of beads
   double skin = 0.2;            ///< neighbour-list skin in largest bead diameters, 0 < … ≤ 2
   bool allow_unstable = false;  ///< run with a time step that the check refuses
 };

@@ -195,7 +195,7 @@ json case_schema(std::span<const Descriptor* const> descriptors) {
                             {"direction", choice({"counter_clockwise", "clockwise"})}},
                            {"speed"});
   const json run = object({{"threads", integer("0: as many as the machine has")},
-                           {"partitions", integer("slabs, default 8")},
+                           {"partitions", integer("slabs, default: by the number of beads")},
                            {"skin", quantity("of the largest bead's diameter, default 0.2")},
                            {"allow_unstable", flag("run with a refused time step")}});
   json schema = object({{"schema_version", {{"const", kSchemaVersion}}},

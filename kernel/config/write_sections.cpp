@@ -170,7 +170,7 @@ void write_output(Lines& out, const OutputCase& o) {
 void write_run(Lines& out, const RunCase& run) {
   out.open("run");
   out.value("threads", run.threads);
-  out.value("partitions", run.partitions);
+  if (run.partitions > 0) out.value("partitions", run.partitions);
   out.value("skin", run.skin);
   out.value("allow_unstable", run.allow_unstable ? "true" : "false");
   out.close();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "kernel/dem/physics.hpp"
 #include "kernel/dem/settings.hpp"
@@ -17,14 +18,21 @@ struct BeadRange {
   std::int64_t begin, end;
 };
 
-/// The cut of the beads into K slabs of equal numbers: the same for any number of threads.
+/// The cut of the beads into K slabs: the same for any number of threads.
 struct Slabs {
   int count;
-  std::int64_t beads = 0;
+  std::vector<std::int64_t> bounds = std::vector<std::int64_t>(count + 1, 0);  ///< [slab]: its first bead; one more at the end
 
-  std::int64_t begin(int slab) const { return slab * beads / count; }
-  std::int64_t end(int slab) const { return begin(slab + 1); }
+  std::int64_t begin(int slab) const { return bounds[slab]; }
+  std::int64_t end(int slab) const { return bounds[slab + 1]; }
   BeadRange range(int slab) const { return {begin(slab), end(slab)}; }
+
+  /// Equal numbers of beads.
+  void cut_equally(std::int64_t beads) {
+    for (int k = 0; k <= count; ++k) bounds[k] = k * beads / count;
+  }
+  /// About equal work, of which each bead has so much.
+  void cut(const std::vector<std::uint32_t>& work);
 };
 
 struct Common {

@@ -1,6 +1,7 @@
 #include "kernel/dem/pair_lists.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
 namespace millscope::dem {
@@ -52,24 +53,40 @@ std::int64_t PairLists::reach_end(int slab) const {
   return end;
 }
 
-/// Collects the histories of touching pairs by their owner in the new order; an exchanged owner flips the signs.
-void PairLists::carry(const std::vector<std::uint32_t>& new_index) {
+void PairLists::add_work(const std::vector<std::uint32_t>& new_index, std::uint32_t listed, std::uint32_t touching,
+                         std::vector<std::uint32_t>& work) const {
+  common_.each_slab([&](int slab, int) {  // a slab owns beads of its own
+    for (const PairList& list : slabs_[slab].lists) {
+      for (std::int64_t s = 0; s < list.count(); ++s) work[new_index[list.owner[s]]] += listed + (list.touching[s] != 0 ? touching : 0);
+    }
+  });
+}
+
+/// Collects the histories of touching pairs by their owner in the new order; an exchanged owner flips the signs. Slabs work side by side,
+/// so that the contacts of one owner come in any order; `append` puts them into that of the slots.
+void PairLists::begin_rebuild(const CellOrder& order) {
+  const std::vector<std::uint32_t>& new_index = order.new_index();
   const std::int64_t histories = common_.layout.history_count();
   carried_.start.assign(new_index.size() + 1, 0);
-  each_contact([&](const PairList& list, std::int64_t slot, std::int64_t) {
-    ++carried_.start[std::min(new_index[list.owner[slot]], new_index[list.partner[slot]]) + 1];
+  const auto next = [](std::uint32_t& counter) { return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed); };
+  common_.each_slab([&](int slab, int) {
+    each_contact(slab, [&](const PairList& list, std::int64_t slot, std::int64_t) {
+      next(carried_.start[std::min(new_index[list.owner[slot]], new_index[list.partner[slot]])]);
+    });
   });
-  std::partial_sum(carried_.start.begin(), carried_.start.end(), carried_.start.begin());
+  std::exclusive_scan(carried_.start.begin(), carried_.start.end(), carried_.start.begin(), std::uint32_t{0});
   carried_.partner.resize(carried_.start.back());
   carried_.history.resize(carried_.start.back() * histories);
-  std::vector<std::uint32_t> next(carried_.start.begin(), carried_.start.end() - 1);
-  each_contact([&](const PairList& list, std::int64_t slot, std::int64_t contact) {
-    const std::uint32_t i = new_index[list.owner[slot]], j = new_index[list.partner[slot]];
-    const std::int64_t at = next[std::min(i, j)]++;
-    carried_.partner[at] = std::max(i, j);
-    for (std::int64_t h = 0; h < histories; ++h) {
-      carried_.history[at * histories + h] = (i < j ? 1.0 : common_.layout.history_sign[h]) * list.history[h][contact];
-    }
+  carried_.filled.assign(carried_.start.begin(), carried_.start.end() - 1);
+  common_.each_slab([&](int slab, int) {
+    each_contact(slab, [&](const PairList& list, std::int64_t slot, std::int64_t contact) {
+      const std::uint32_t i = new_index[list.owner[slot]], j = new_index[list.partner[slot]];
+      const std::int64_t at = next(carried_.filled[std::min(i, j)]);
+      carried_.partner[at] = std::max(i, j);
+      for (std::int64_t h = 0; h < histories; ++h) {
+        carried_.history[at * histories + h] = (i < j ? 1.0 : common_.layout.history_sign[h]) * list.history[h][contact];
+      }
+    });
   });
 }
 
@@ -129,9 +146,8 @@ class PairLists::Builder {
   std::vector<std::pair<std::int64_t, std::uint32_t>> kept_;  ///< of one owner: slot and entry of each carried history
 };
 
-void PairLists::rebuild(const CellOrder& order, const std::vector<std::uint8_t>& material) {
-  carry(order.new_index());
-  common_.each_slab([&](int slab, int) { Builder(common_, carried_, slabs_[slab].lists).run(order, common_.slabs.range(slab), material); });
+void PairLists::rebuild(int slab, const CellOrder& order, const std::vector<std::uint8_t>& material) {
+  Builder(common_, carried_, slabs_[slab].lists).run(order, common_.slabs.range(slab), material);
 }
 
 }  // namespace millscope::dem

@@ -29,9 +29,15 @@ class PairLists {
 
   /// Empty lists.
   void clear();
-  /// Lists, by new numbers, all pairs whose reaches overlap. The histories of touching pairs are carried over; where owner and partner
-  /// change places, the numbers that a law declares odd change sign.
-  void rebuild(const CellOrder& order, const std::vector<std::uint8_t>& material_of_bead);
+  /// From here, slab by slab, `rebuild`: takes the histories out of the old lists.
+  void begin_rebuild(const CellOrder& order);
+  /// Lists, by new numbers, all pairs of a slab whose reaches overlap. The histories of touching pairs are carried over; where owner and
+  /// partner change places, the numbers that a law declares odd change sign. Many slabs at once.
+  void rebuild(int slab, const CellOrder& order, const std::vector<std::uint8_t>& material_of_bead);
+
+  /// Adds to each owner's work, by its new number, that of its pairs.
+  void add_work(const std::vector<std::uint32_t>& new_index, std::uint32_t listed, std::uint32_t touching,
+                std::vector<std::uint32_t>& work) const;
 
   PairList& of(int slab, int physics_index) { return slabs_[slab].lists[physics_index]; }
   const PairList& of(int slab, int physics_index) const { return slabs_[slab].lists[physics_index]; }
@@ -42,12 +48,14 @@ class PairLists {
   /// visit(list, slot, contact) for all pairs that touch: `contact` is the place in `history`.
   template <class Visit>
   void each_contact(const Visit& visit) const {
-    for (const SlabLists& slab : slabs_) {
-      for (const PairList& list : slab.lists) {
-        std::int64_t contact = 0;
-        for (std::int64_t s = 0; s < std::ssize(list.touching); ++s) {
-          if (list.touching[s]) visit(list, s, contact++);
-        }
+    for (int slab = 0; slab < std::ssize(slabs_); ++slab) each_contact(slab, visit);
+  }
+  template <class Visit>
+  void each_contact(int slab, const Visit& visit) const {
+    for (const PairList& list : slabs_[slab].lists) {
+      std::int64_t contact = 0;
+      for (std::int64_t s = 0; s < std::ssize(list.touching); ++s) {
+        if (list.touching[s]) visit(list, s, contact++);
       }
     }
   }
@@ -62,13 +70,12 @@ class PairLists {
   };
   /// Histories on their way to a new list, by the new number of the owner.
   struct Carried {
-    std::vector<std::uint32_t> start;  ///< [owner]; one more at the end
+    std::vector<std::uint32_t> start;   ///< [owner]; one more at the end
+    std::vector<std::uint32_t> filled;  ///< [owner]: behind the last one that stands there
     std::vector<std::uint32_t> partner;
     std::vector<double> history;  ///< [contact][number]
   };
   class Builder;
-  void carry(const std::vector<std::uint32_t>& new_index);
-
   Common& common_;
   std::vector<SlabLists> slabs_;
   Carried carried_;

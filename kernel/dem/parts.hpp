@@ -16,6 +16,8 @@ struct System::Parts {
 
   /// For the beads and bodies that there are now: checks, empty lists and books.
   void prepare(const Particles& particles);
+  /// Cuts the slabs anew, between the new order and the new lists.
+  void share_work();
 
   Common common;
   CellOrder order;

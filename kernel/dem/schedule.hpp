@@ -29,7 +29,9 @@ class Schedule {
   BeadRange first_touched(int slab, std::int64_t first) const;
   /// Beads of later slabs that this one pushes: they begin at its end.
   std::int64_t halo_size(int slab) const { return slabs_[slab].halo_end - common_.slabs.end(slab); }
-  /// Phase B of a slab may follow phase A at once: the slabs that reach into it have been through A on the same worker.
+  /// The earliest slab that pushes beads of this one.
+  int first_reference(int slab) const { return slabs_[slab].first_reference; }
+  /// Phase B of a slab may follow phase A at once: the slabs that push it have been through A on the same worker.
   bool follows_at_once(int slab, int worker) const;
 
  private:

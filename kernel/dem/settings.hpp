@@ -1,6 +1,7 @@
 // What a system is told at its beginning.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "kernel/dem/lines.hpp"
@@ -9,7 +10,7 @@ namespace millscope::dem {
 
 struct Settings {
   double time_step = 0;  ///< s
-  int partitions = 8;    ///< K
+  int partitions = 1;    ///< K
   int threads = 1;
   PeriodicBox periodic{};
   double periodic_low[3] = {0, 0, 0};
@@ -19,6 +20,9 @@ struct Settings {
   double low[3], high[3];       ///< a bead outside has left the domain, m
   std::string instruction_set;  ///< "" for the best
 };
+
+/// K for a charge: a function of the case alone, never of the machine, for K decides the last bits of a result.
+int partitions_for(std::int64_t beads);
 
 /// A coordinate along `axis` brought into the periodic box; as it is where the axis is not periodic.
 double wrapped(const Settings& settings, int axis, double coordinate);

@@ -33,6 +33,10 @@ void demand_sound(const WallList& wall, BeadRange slab) {
   for (const std::uint32_t bead : wall.active.bead) demand(bead < wall.bead.size());
 }
 
+void demand_sound(const Slabs& slabs, std::int64_t beads) {
+  demand(slabs.bounds.front() == 0 && slabs.bounds.back() == beads && std::is_sorted(slabs.bounds.begin(), slabs.bounds.end()));
+}
+
 /// All beads once, of materials that there are.
 void demand_sound(const Particles& p, int material_count) {
   const std::size_t n = p.position.size();
@@ -82,6 +86,7 @@ void PairLists::each_array(Self& self, Visit& visit) {
     }
   }
   visit.idle(self.carried_.start);
+  visit.idle(self.carried_.filled);
   visit.idle(self.carried_.partner);
   visit.idle(self.carried_.history);
 }
@@ -168,6 +173,7 @@ void System::each_bead_array(Self& self, SelfParts& parts, Visit& visit) {
 
 template <class Self, class SelfParts, class Visit>
 void System::each_list_array(Self& self, SelfParts& parts, Visit& visit) {
+  visit.scalars("slabs", pointers_to(parts.common.slabs.bounds));
   PairLists::each_array(parts.pairs, visit);
   for (int body = 0; body < std::ssize(self.bodies); ++body) {
     WallLists::each_array(parts.walls, body, visit);
@@ -207,6 +213,7 @@ void System::restore(const DoubleSource& doubles, const IntegerSource& integers)
   particles.force.assign(particles.position.size(), ForceLine{});
   parts.prepare(particles);
   each_list_array(*this, parts, visit);
+  demand_sound(parts.common.slabs, particles.count());
   for (int slab = 0; slab < parts.common.slabs.count; ++slab) {
     const BeadRange beads = parts.common.slabs.range(slab);
     for (int q = 0; q < parts.common.physics.count(); ++q) demand_sound(parts.pairs.of(slab, q), beads, particles.count());

@@ -2,11 +2,20 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 
 #include "kernel/dem/body_force_pass.hpp"
 #include "kernel/dem/wall_sweep.hpp"
 
 namespace millscope::dem {
+namespace {
+
+/// Of beads in order: the first that ran away, and whether any asks for new lists.
+IntegrateResult first_of(const IntegrateResult& a, const IntegrateResult& b) {
+  return {a.rebuild || b.rebuild, a.runaway >= 0 ? a.runaway : b.runaway};
+}
+
+}  // namespace
 
 Step::Step(Common& common, Particles& particles, PairLists& pairs, WallLists& walls, const std::vector<BodyForceReference>& body_forces)
     : common_(common), particles_(particles), pairs_(pairs), walls_(walls), body_forces_(body_forces), schedule_(common) {}
@@ -22,6 +31,8 @@ void Step::prepare() {
     empty.shear.push_back(empty.impact.back());
   }
   slabs_.assign(common_.slabs.count, empty);
+  pushed_ = std::vector<std::atomic<std::int64_t>>(common_.slabs.count);
+  for (auto& step : pushed_) step.store(std::numeric_limits<std::int64_t>::min());
   scratch_.clear();
   for (int w = 0; w < common_.workers.count(); ++w) scratch_.push_back(std::make_unique<Scratch>(common_.layout.history_count()));
   alike_.clear();
@@ -61,21 +72,35 @@ IntegrateResult Step::make(std::int64_t step, const std::function<void()>& obser
       if (has_general_body_force_) apply_body_forces(slab, worker, slabs.range(slab));
     });
     observe();
-    common_.each_slab([&](int slab, int) { integrate(slab, slabs.range(slab)); });
+    common_.each_slab([&](int slab, int) { slabs_[slab].result = integrate(slab, slabs.range(slab)); });
   } else {
-    common_.each_slab([this](int slab, int worker) { contacts(slab, worker, schedule_.follows_at_once(slab, worker)); });
-    if (common_.workers.count() > 1) {
-      common_.each_slab([&](int slab, int worker) {
-        if (!schedule_.follows_at_once(slab, worker)) finish(slab, worker, slabs.range(slab));
-      });
-    }
+    common_.workers.run(common_.workers.count(), [this](int share, int) { share_of(share); });
   }
   IntegrateResult all{false, -1};
-  for (const SlabState& slab : slabs_) {
-    if (all.runaway < 0) all.runaway = slab.result.runaway;
-    all.rebuild = all.rebuild || slab.result.rebuild;
-  }
+  for (const SlabState& slab : slabs_) all = first_of(all, slab.result);
   return all;
+}
+
+/// Both phases of a worker's slabs. Where another worker follows, the last slab goes first through phase A, for that worker waits for what
+/// it pushes. Phase B follows A at once but for that slab and for the first ones, which those of other workers push: these come at the end.
+void Step::share_of(int worker) {
+  const int begin = common_.workers.first(worker, common_.slabs.count), last = common_.workers.first(worker + 1, common_.slabs.count) - 1;
+  const bool another_follows = worker + 1 < common_.workers.count();
+  const auto is_late = [&](int slab) { return (another_follows && slab == last) || !schedule_.follows_at_once(slab, worker); };
+  const auto push = [&](int slab) {
+    contacts(slab, worker, !is_late(slab));
+    pushed_[slab].store(step_, std::memory_order_release);
+  };
+  if (another_follows && last >= begin) push(last);
+  for (int slab = begin; slab < last; ++slab) push(slab);
+  if (!another_follows && last >= begin) push(last);
+  for (int slab = last; slab >= begin; --slab) {
+    if (!is_late(slab)) continue;
+    for (int earlier = schedule_.first_reference(slab); earlier < begin; ++earlier) {
+      if (!common_.workers.wait_for([&] { return pushed_[earlier].load(std::memory_order_acquire) == step_; })) return;
+    }
+    slabs_[slab].result = first_of(slabs_[slab].result, finish(slab, worker, common_.slabs.range(slab)));
+  }
 }
 
 /// Phase A. With `finish_too` phase B trails behind: a bead is done with once the last list has passed it, and it is finished while it is
@@ -94,7 +119,7 @@ void Step::contacts(int slab, int worker, bool finish_too) {
   const auto trail = [&](std::int64_t end) {
     assert(fits_ring(end));
     walls.until(end);
-    if (finish_too) finish(slab, worker, {finished, end});
+    if (finish_too) state.result = first_of(state.result, finish(slab, worker, {finished, end}));
     finished = end;
   };
   for (int p = 0; p < common_.physics.count(); ++p) {
@@ -113,11 +138,11 @@ void Step::contacts(int slab, int worker, bool finish_too) {
 }
 
 /// Phase B.
-void Step::finish(int slab, int worker, BeadRange range) {
-  if (range.begin == range.end) return;
+IntegrateResult Step::finish(int slab, int worker, BeadRange range) {
+  if (range.begin == range.end) return {false, -1};
   add_halos(slab, range);
   if (has_general_body_force_) apply_body_forces(slab, worker, range);
-  integrate(slab, range);
+  return integrate(slab, range);
 }
 
 /// The forces that earlier slabs computed for beads of this one, added in slab order.
@@ -145,12 +170,11 @@ void Step::apply_body_forces(int slab, int worker, BeadRange range) {
 }
 
 /// Kick, drift, predict.
-void Step::integrate(int slab, BeadRange range) {
-  SlabState& state = slabs_[slab];
+IntegrateResult Step::integrate(int slab, BeadRange range) {
   const IntegrateContext context{particles_.position.data(),
                                  particles_.motion.data(),
                                  particles_.half.data(),
-                                 state.force,
+                                 slabs_[slab].force,
                                  particles_.acceleration.data(),
                                  particles_.reference.data(),
                                  range.begin,
@@ -158,9 +182,7 @@ void Step::integrate(int slab, BeadRange range) {
                                  common_.settings.time_step,
                                  {acceleration_[0], acceleration_[1], acceleration_[2]},
                                  largest_drift_ * largest_drift_};
-  const IntegrateResult result = common_.wide.integrate(context);
-  state.result.rebuild = state.result.rebuild || result.rebuild;
-  if (result.runaway >= 0) state.result.runaway = result.runaway;
+  return common_.wide.integrate(context);
 }
 
 }  // namespace millscope::dem

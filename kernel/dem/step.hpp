@@ -1,6 +1,7 @@
 // One time step of all slabs: phase A (pairs and walls), phase B (halos, body forces, kick–drift–predict), and the books.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -33,11 +34,12 @@ class Step {
   static void each_book(Self& self, Visit& visit);
 
  private:
+  void share_of(int worker);
   void contacts(int slab, int worker, bool finish_too);
-  void finish(int slab, int worker, BeadRange range);
+  IntegrateResult finish(int slab, int worker, BeadRange range);
   void add_halos(int slab, BeadRange range);
   void apply_body_forces(int slab, int worker, BeadRange range);
-  void integrate(int slab, BeadRange range);
+  IntegrateResult integrate(int slab, BeadRange range);
 
   double time() const { return static_cast<double>(step_) * common_.settings.time_step; }
 
@@ -48,6 +50,7 @@ class Step {
   const std::vector<BodyForceReference>& body_forces_;
   Schedule schedule_;
   std::vector<SlabState> slabs_;
+  std::vector<std::atomic<std::int64_t>> pushed_;  ///< [slab]: the last step whose phase A it has been through
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< [worker]
   std::vector<std::optional<Alike>> alike_;        ///< [physics]
   double largest_drift_ = 0;                       ///< a drift in one step that no sound run reaches, m

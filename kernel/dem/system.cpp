@@ -21,13 +21,22 @@ std::int64_t System::listed_pairs() const { return parts_->pairs.count(); }
 std::array<double, 3> System::acceleration() const { return parts_->step.acceleration(); }
 
 void System::Parts::prepare(const Particles& particles) {
-  common.slabs.beads = particles.count();
+  common.slabs.cut_equally(particles.count());
   double largest = 0;
   for (const PositionLine& x : particles.position) largest = std::max(largest, x.radius);
   check_periods(common.settings, largest, common.physics.reach());
   pairs.clear();
   walls.clear();
   step.prepare();
+}
+
+/// A step's work on each bead as the lists of the last steps have it, in units of about a nanosecond of one core.
+void System::Parts::share_work() {
+  constexpr std::uint32_t kMove = 6, kListed = 2, kTouching = 15, kNearWall = 15;
+  std::vector<std::uint32_t> work(order.new_index().size(), kMove);
+  pairs.add_work(order.new_index(), kListed, kTouching, work);
+  walls.add_work(order.new_index(), kNearWall, work);
+  common.slabs.cut(work);
 }
 
 void System::start(std::int64_t step) {
@@ -39,13 +48,16 @@ void System::start(std::int64_t step) {
 void System::rebuild() {
   Parts& p = *parts_;
   p.order.renew(particles, time());
-  p.pairs.rebuild(p.order, particles.material);
-  p.walls.rebuild(p.order, particles, time());
-  p.step.lists_changed();
+  if (rebuilds_ > 0) p.share_work();
+  p.pairs.begin_rebuild(p.order);
+  p.walls.begin_rebuild(p.order, time());
   p.common.each_slab([&](int slab, int) {
+    p.pairs.rebuild(slab, p.order, particles.material);
+    p.walls.rebuild(slab, p.order, particles);
     const BeadRange beads = p.common.slabs.range(slab);
     std::fill(particles.force.begin() + beads.begin, particles.force.begin() + beads.end, ForceLine{});
   });
+  p.step.lists_changed();
   ++rebuilds_;
   rebuild_needed_ = false;
 }

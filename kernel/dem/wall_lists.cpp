@@ -30,29 +30,40 @@ double WallLists::greatest_speed() const {
   return greatest;
 }
 
+void WallLists::add_work(const std::vector<std::uint32_t>& new_index, std::uint32_t near, std::vector<std::uint32_t>& work) const {
+  for (const SlabLists& slab : slabs_) {
+    for (const WallList& list : slab.lists) {
+      for (const std::uint32_t bead : list.bead) work[new_index[bead]] += near;
+    }
+  }
+}
+
 bool WallLists::move_on() {
   moved_ += common_.settings.time_step * speed_;
   return moved_ > margin_;
 }
 
-/// Features near each bead, in the order of beads.
-std::vector<WallLists::Near> WallLists::near(const Body& body, const CellOrder& order, Particles& particles, const Pose& pose) {
-  const std::int64_t n = particles.count();
-  // x, y, z in the body's frame, and reach, of every bead. The lines of the forces are free between steps.
-  double* const lines = reinterpret_cast<double*>(particles.force.data());
-  double* const coordinate[4] = {lines, lines + n, lines + 2 * n, lines + 3 * n};
+/// Those of a slab in the frame of a body, with what they may reach until the next rebuild. They stand in the slab's lines of forces, which
+/// are free between steps.
+GeometryBeads WallLists::beads_of(int slab, int body, const CellOrder& order, Particles& particles) const {
+  const BeadRange range = common_.slabs.range(slab);
+  const std::int64_t n = range.end - range.begin;
+  double* const lines = reinterpret_cast<double*>(particles.force.data() + range.begin);
+  double* const place[3] = {lines, lines + n, lines + 2 * n};
+  double* const radius = lines + 3 * n;
   // Half of the laws' reach is in `reaches`, for two beads share it; a wall has none of its own.
   const double law_reach = common_.physics.reach();
-  common_.each_slab([&](int slab, int) {
-    const BeadRange beads = common_.slabs.range(slab);
-    for (std::int64_t i = beads.begin; i < beads.end; ++i) {
-      for (int a = 0; a < 3; ++a) coordinate[a][i] = particles.position[i].centre[a];
-      coordinate[3][i] = order.reaches()[i].radius + 0.5 * law_reach;
-    }
-    common_.wide.to_frame(plain(pose), beads.end - beads.begin,
-                          {coordinate[0] + beads.begin, coordinate[1] + beads.begin, coordinate[2] + beads.begin});
-  });
-  const GeometryBeads beads{n, {coordinate[0], coordinate[1], coordinate[2]}, coordinate[3]};
+  for (std::int64_t k = 0; k < n; ++k) {
+    const std::int64_t i = range.begin + k;
+    for (int a = 0; a < 3; ++a) place[a][k] = particles.position[i].centre[a];
+    radius[k] = order.reaches()[i].radius + 0.5 * law_reach;
+  }
+  common_.wide.to_frame(poses_[body], n, place);
+  return {n, {place[0], place[1], place[2]}, radius};
+}
+
+/// Features near each of the beads, in their order.
+std::vector<WallLists::Near> WallLists::near(const Body& body, const GeometryBeads& beads) const {
   std::vector<Near> found;
   const CandidateSink sink{&found, [](void* host, std::int64_t bead, std::uint32_t feature) {
                              static_cast<std::vector<Near>*>(host)->push_back({static_cast<std::uint32_t>(bead), feature});
@@ -79,39 +90,45 @@ std::vector<WallLists::Carried> WallLists::take_contacts(int body, const std::ve
   return carried;
 }
 
-/// Hands beads with their candidates and contacts to the slabs that own them.
-void WallLists::deal(int body, const std::vector<Near>& near, const std::vector<Carried>& carried) {
-  auto at = near.begin();
-  auto from = carried.begin();
-  for (int slab = 0; slab < common_.slabs.count; ++slab) {
-    WallList& list = of(slab, body);
-    list.bead.clear();
-    list.first.assign(1, 0);
-    list.candidates.clear();
-    while (at != near.end() && at->bead < common_.slabs.end(slab)) {
-      const std::uint32_t bead = at->bead, local = static_cast<std::uint32_t>(list.bead.size());
-      list.bead.push_back(bead);
-      for (; at != near.end() && at->bead == bead; ++at) list.candidates.push_back(at->feature);
-      list.first.push_back(std::ssize(list.candidates));
-      while (from != carried.end() && from->bead < bead) ++from;
-      for (; from != carried.end() && from->bead == bead; ++from) {
-        list.active.bead.push_back(local);
-        list.active.feature.push_back(from->feature);
-        list.active.normal.push_back(from->normal);
-        for (std::int64_t h = 0; h < std::ssize(from->history); ++h) list.active.history[h].push_back(from->history[h]);
-      }
+/// Makes the list of a slab: its beads with their candidates and contacts.
+void WallLists::deal(int slab, int body, const std::vector<Near>& near) {
+  const std::int64_t first = common_.slabs.begin(slab);
+  const std::vector<Carried>& carried = carried_[body];
+  auto from = std::lower_bound(carried.begin(), carried.end(), first, [](const Carried& c, std::int64_t bead) { return c.bead < bead; });
+  WallList& list = of(slab, body);
+  list.bead.clear();
+  list.first.assign(1, 0);
+  list.candidates.clear();
+  for (auto at = near.begin(); at != near.end();) {
+    const std::uint32_t in_slab = at->bead, bead = static_cast<std::uint32_t>(first) + in_slab;
+    const std::uint32_t local = static_cast<std::uint32_t>(list.bead.size());
+    list.bead.push_back(bead);
+    for (; at != near.end() && at->bead == in_slab; ++at) list.candidates.push_back(at->feature);
+    list.first.push_back(std::ssize(list.candidates));
+    while (from != carried.end() && from->bead < bead) ++from;
+    for (; from != carried.end() && from->bead == bead; ++from) {
+      list.active.bead.push_back(local);
+      list.active.feature.push_back(from->feature);
+      list.active.normal.push_back(from->normal);
+      for (std::int64_t h = 0; h < std::ssize(from->history); ++h) list.active.history[h].push_back(from->history[h]);
     }
   }
 }
 
-void WallLists::rebuild(const CellOrder& order, Particles& particles, double time) {
+void WallLists::begin_rebuild(const CellOrder& order, double time) {
   speed_ = greatest_speed();
   moved_ = 0;
   margin_ = speed_ * 1.1 * common_.settings.skin_steps * common_.settings.time_step;
+  poses_.clear();
+  carried_.clear();
   for (int b = 0; b < std::ssize(bodies_); ++b) {
-    const std::vector<Near> found = near(bodies_[b], order, particles, pose_at(bodies_[b].motion, time));
-    deal(b, found, take_contacts(b, order.new_index()));
+    poses_.push_back(plain(pose_at(bodies_[b].motion, time)));
+    carried_.push_back(take_contacts(b, order.new_index()));
   }
+}
+
+void WallLists::rebuild(int slab, const CellOrder& order, Particles& particles) {
+  for (int b = 0; b < std::ssize(bodies_); ++b) deal(slab, b, near(bodies_[b], beads_of(slab, b, order, particles)));
 }
 
 }  // namespace millscope::dem

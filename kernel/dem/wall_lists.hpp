@@ -63,8 +63,12 @@ class WallLists {
 
   /// Empty lists for the bodies that there are.
   void clear();
-  /// Asks every geometry for the features near each bead; contacts that last go to the slabs that own the beads now.
-  void rebuild(const CellOrder& order, Particles& particles, double time);
+  /// From here, slab by slab, `rebuild`: takes what lasts out of the old lists.
+  void begin_rebuild(const CellOrder& order, double time);
+  /// Asks every geometry for the features near the beads of a slab; contacts that last go with the beads. Many slabs at once.
+  void rebuild(int slab, const CellOrder& order, Particles& particles);
+  /// Adds to the work of each bead that is near a wall, by its new number.
+  void add_work(const std::vector<std::uint32_t>& new_index, std::uint32_t near, std::vector<std::uint32_t>& work) const;
   /// The walls have moved on by one step. True: by more than the lists allow.
   bool move_on();
 
@@ -100,16 +104,19 @@ class WallLists {
     bool operator<(const Near& other) const { return bead != other.bead ? bead < other.bead : feature < other.feature; }
   };
   double greatest_speed() const;
-  std::vector<Near> near(const Body& body, const CellOrder& order, Particles& particles, const Pose& pose);
+  GeometryBeads beads_of(int slab, int body, const CellOrder& order, Particles& particles) const;
+  std::vector<Near> near(const Body& body, const GeometryBeads& beads) const;
   std::vector<Carried> take_contacts(int body, const std::vector<std::uint32_t>& new_index);
-  void deal(int body, const std::vector<Near>& near, const std::vector<Carried>& carried);
+  void deal(int slab, int body, const std::vector<Near>& near);
 
   Common& common_;
   const std::vector<Body>& bodies_;
   std::vector<SlabLists> slabs_;
-  double speed_ = 0;   ///< greatest of any wall, m/s
-  double margin_ = 0;  ///< the walls may move this far before a rebuild, m
-  double moved_ = 0;   ///< bound on their displacement since the rebuild, m
+  std::vector<WallPose> poses_;                ///< [body]: at the rebuild
+  std::vector<std::vector<Carried>> carried_;  ///< [body]: contacts on their way to a new list, by the beads' new numbers
+  double speed_ = 0;                           ///< greatest of any wall, m/s
+  double margin_ = 0;                          ///< the walls may move this far before a rebuild, m
+  double moved_ = 0;                           ///< bound on their displacement since the rebuild, m
 };
 
 }  // namespace millscope::dem

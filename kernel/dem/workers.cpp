@@ -10,9 +10,15 @@ namespace {
 constexpr int kSpins = 1000;
 constexpr int kYields = 100;
 
-void pause() { __builtin_ia32_pause(); }
-
 }  // namespace
+
+void Workers::pause(int spin) {
+  if (spin < kSpins) {
+    __builtin_ia32_pause();
+  } else {
+    std::this_thread::yield();
+  }
+}
 
 Workers::Workers(int count) : count_(count), claimed_(count) {
   for (int w = 1; w < count_; ++w) threads_.emplace_back([this, w] { loop(w); });
@@ -49,26 +55,14 @@ void Workers::run(int slabs, const std::function<void(int, int)>& task) {
   for (int worker = 0; worker < count_; ++worker) {
     if (claim(worker, generation)) share(worker);
   }
-  for (int spin = 0; pending_.load(std::memory_order_acquire) != 0; ++spin) {
-    if (spin < kSpins) {
-      pause();
-    } else {
-      std::this_thread::yield();
-    }
-  }
+  for (int spin = 0; pending_.load(std::memory_order_acquire) != 0; ++spin) pause(spin);
   if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void Workers::loop(int worker) {
   unsigned seen = 0;
   for (;;) {
-    for (int spin = 0; generation_.load(std::memory_order_acquire) == seen && spin < kSpins + kYields; ++spin) {
-      if (spin < kSpins) {
-        pause();
-      } else {
-        std::this_thread::yield();
-      }
-    }
+    for (int spin = 0; generation_.load(std::memory_order_acquire) == seen && spin < kSpins + kYields; ++spin) pause(spin);
     generation_.wait(seen, std::memory_order_acquire);
     seen = generation_.load(std::memory_order_acquire);
     if (stop_.load()) return;

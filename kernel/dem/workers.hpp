@@ -27,7 +27,18 @@ class Workers {
   /// with its own is taken over by it, under that worker's number: on a busy machine nobody waits for a thread that is not running.
   void run(int slabs, const std::function<void(int slab, int worker)>& task);
 
+  /// Inside a task: waits until `done`, which a share of a lower number brings about. False: a task has failed, so that it may never come.
+  template <class Done>
+  bool wait_for(const Done& done) const {
+    for (int spin = 0; !done(); ++spin) {
+      if (failed_.load(std::memory_order_relaxed)) return false;
+      pause(spin);
+    }
+    return true;
+  }
+
  private:
+  static void pause(int spin);
   void loop(int worker);
   void share(int worker);
   /// True for one caller per worker and generation.

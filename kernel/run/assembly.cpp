@@ -122,10 +122,20 @@ void make_body_forces(Assembly& a, const host::Registry& registry) {
   }
 }
 
-dem::Settings settings_of(const Assembly& a, const host::Registry& registry, const AssemblyOptions& options) {
+/// The first cylinder that holds beads, as long as the domain repeats.
+std::optional<config::Vessel> vessel_of(const Assembly& a, double period) {
+  for (const GeometryUse& use : a.geometries) {
+    const Interior& in = use.interior;
+    if (!in.is_bounded || !in.is_cylinder) continue;
+    return config::Vessel{2 * in.radius, period > 0 ? period : in.high[2] - in.low[2]};
+  }
+  return {};
+}
+
+/// And the number of beads, which that of the slabs follows from.
+dem::Settings settings_of(Assembly& a, const host::Registry& registry, const AssemblyOptions& options) {
   dem::Settings s;
   s.time_step = a.time_step;
-  s.partitions = a.c.run.partitions;
   s.threads = options.threads > 0   ? options.threads
               : a.c.run.threads > 0 ? a.c.run.threads
                                     : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -133,6 +143,9 @@ dem::Settings settings_of(const Assembly& a, const host::Registry& registry, con
   // run.skin scales how long a list may last: 0.2 d is the reference.
   s.skin_steps *= a.c.run.skin / 0.2;
   set_domain(a, s);
+  a.bead_count = config::bead_count(a.c, vessel_of(a, s.periodic.length[2]));
+  if (a.c.run.partitions == 0) a.c.run.partitions = dem::partitions_for(a.bead_count);
+  s.partitions = a.c.run.partitions;
   return s;
 }
 
@@ -166,17 +179,6 @@ void add_body_forces(Assembly& a) {
 
 /// Steps until a time, the last one whole.
 std::int64_t steps_until(double time, double time_step) { return static_cast<std::int64_t>(std::ceil(time / time_step)); }
-
-/// The first cylinder that holds beads, as long as the domain repeats.
-std::optional<config::Vessel> vessel_of(const Assembly& a) {
-  for (const GeometryUse& use : a.geometries) {
-    const Interior& in = use.interior;
-    if (!in.is_bounded || !in.is_cylinder) continue;
-    const double period = a.system->settings().periodic.length[2];
-    return config::Vessel{2 * in.radius, period > 0 ? period : in.high[2] - in.low[2]};
-  }
-  return {};
-}
 
 }  // namespace
 
@@ -220,7 +222,6 @@ Assembly assemble(config::Case c, const host::Registry& registry, const Assembly
   a.settle_steps = steps_until(a.c.fill.settle, a.time_step);
   a.end_step = steps_until(a.c.time.end, a.time_step);
   a.analyze_step = steps_until(a.c.time.analyze_from, a.time_step);
-  a.bead_count = config::bead_count(a.c, vessel_of(a));
   return a;
 }
 

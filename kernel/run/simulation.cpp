@@ -377,6 +377,7 @@ Estimate estimate(const std::string& case_file, const host::Registry& registry, 
   e.rayleigh_fraction = a.time_step / a.rayleigh_time;
   e.contact_steps = a.hertz_contact_time / a.time_step;
   e.steps = a.end_step + a.settle_steps;
+  e.partitions = a.system->settings().partitions;
   // A trial of this very case: half a second of stepping, the first rebuilds left out. A settling bed is as dense as a developed one.
   const Clock::time_point warm = Clock::now();
   while (seconds_since(warm) < 0.2) a.system->advance();

@@ -40,6 +40,7 @@ struct Estimate {
   std::uint64_t beads = 0;
   double time_step = 0, rayleigh_fraction = 0, contact_steps = 0;
   std::int64_t steps = 0;
+  int partitions = 1;
   double wall_seconds = 0;  ///< from a short trial of the very case
   std::uint64_t memory_bytes = 0, disk_bytes = 0;
   double particle_steps_per_s = 0;

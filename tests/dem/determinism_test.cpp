@@ -193,7 +193,7 @@ TEST_CASE("what a checkpoint holds has the names that resuming an older one need
                                                       "position", "reference", "walls/#/contact_normal", "walls/#/history_#",
                                                       "walls/#/impact", "walls/#/shear", "walls_moved"});
   CHECK(kinds(state.integers) == std::set<std::string>{"counters", "id", "ledger/counts", "material", "pairs/#/contacts", "pairs/#/count",
-                                                       "pairs/#/owner", "pairs/#/partner", "pairs/#/touching", "walls/#/bead",
+                                                       "pairs/#/owner", "pairs/#/partner", "pairs/#/touching", "slabs", "walls/#/bead",
                                                        "walls/#/beads", "walls/#/candidate_count", "walls/#/candidates",
                                                        "walls/#/contact_bead", "walls/#/contact_feature", "walls/#/contacts",
                                                        "walls/#/first", "walls/#/offsets"});

@@ -50,17 +50,22 @@ Particles strewn(std::int64_t count, std::uint64_t seed) {
   return p;
 }
 
+void rebuild_lists(Common& common, const CellOrder& order, PairLists& pairs, const Particles& beads) {
+  pairs.begin_rebuild(order);
+  common.each_slab([&](int slab, int) { pairs.rebuild(slab, order, beads.material); });
+}
+
 /// Order and pair lists of some beads, and what they keep.
 struct Lists {
   explicit Lists(Particles beads, int partitions = 4)
       : common(open_box(partitions), kOneEvenOneOdd, one_material()), order(common), pairs(common), particles(std::move(beads)) {
-    common.slabs.beads = particles.count();
+    common.slabs.cut_equally(particles.count());
     pairs.clear();
     rebuild();
   }
   void rebuild() {
     order.renew(particles, 0);
-    pairs.rebuild(order, particles.material);
+    rebuild_lists(common, order, pairs, particles);
   }
   /// Makes all pairs touch that overlap; the numbers say which pair it is, as seen from its owner.
   void touch() {
@@ -98,17 +103,28 @@ struct Lists {
 /// A geometry that says of each bead which features are near.
 struct MadeUpWall {
   std::map<std::int64_t, std::set<std::uint32_t>> near;  ///< by bead
+  BeadRange asked{0, 0};                                 ///< the slab whose beads are asked for
 };
 const GeometryTable kMadeUp = [] {
   GeometryTable t{};
   t.candidates = [](void* self, const GeometryBeads*, double, const CandidateSink* sink, Failure*) -> Status {
-    for (const auto& [bead, features] : static_cast<MadeUpWall*>(self)->near) {
-      for (const std::uint32_t f : features) sink->add(sink->host, bead, f);
+    const MadeUpWall& wall = *static_cast<MadeUpWall*>(self);
+    for (const auto& [bead, features] : wall.near) {
+      if (bead < wall.asked.begin || bead >= wall.asked.end) continue;
+      for (const std::uint32_t f : features) sink->add(sink->host, bead - wall.asked.begin, f);
     }
     return 0;
   };
   return t;
 }();
+
+void rebuild_walls(Lists& l, WallLists& walls, MadeUpWall& wall) {
+  walls.begin_rebuild(l.order, 0);
+  for (int slab = 0; slab < l.common.slabs.count; ++slab) {
+    wall.asked = l.common.slabs.range(slab);
+    walls.rebuild(slab, l.order, l.particles);
+  }
+}
 
 }  // namespace
 
@@ -205,7 +221,7 @@ TEST_CASE("contacts at a wall go with their bead to its new number and slab, and
     }
   };
   near_ids(0, 100);
-  walls.rebuild(l.order, l.particles, 0);
+  rebuild_walls(l, walls, wall);
   std::int64_t near = 0;
   for (int slab = 0; slab < 5; ++slab) {
     WallList& list = walls.of(slab, 0);
@@ -229,7 +245,7 @@ TEST_CASE("contacts at a wall go with their bead to its new number and slab, and
   }
   l.rebuild();
   near_ids(40, 140);
-  walls.rebuild(l.order, l.particles, 0);
+  rebuild_walls(l, walls, wall);
   std::set<std::uint32_t> kept;
   walls.each_contact(0, [&](const WallList& list, std::int64_t c) {
     const std::uint32_t id = l.particles.id[list.bead[list.active.bead[c]]];
@@ -249,13 +265,13 @@ TEST_CASE("the ring of a slab holds all beads that carry forces at once, and eac
   Settings settings = open_box(2);
   settings.high[0] = 3;
   Common common(settings, kOneEvenOneOdd, one_material());
-  common.slabs.beads = beads.count();
+  common.slabs.cut_equally(beads.count());
   CellOrder order(common);
   PairLists pairs(common);
   Schedule schedule(common);
   pairs.clear();
   order.renew(beads, 0);
-  pairs.rebuild(order, beads.material);
+  rebuild_lists(common, order, pairs, beads);
   schedule.renew(pairs);
   for (int slab = 0; slab < 2; ++slab) {
     INFO("slab " << slab);
@@ -303,13 +319,13 @@ TEST_CASE("where lists of several pairs of materials follow one another, no bead
   Common common(open_box(2), kOneEvenOneOdd, PhysicsTable({same, mixed, other}, 2));
   Particles beads = strewn(2000, 6);
   for (std::int64_t i = 0; i < beads.count(); ++i) beads.material[i] = static_cast<std::uint8_t>(i % 2);
-  common.slabs.beads = beads.count();
+  common.slabs.cut_equally(beads.count());
   CellOrder order(common);
   PairLists pairs(common);
   Schedule schedule(common);
   pairs.clear();
   order.renew(beads, 0);
-  pairs.rebuild(order, beads.material);
+  rebuild_lists(common, order, pairs, beads);
   schedule.renew(pairs);
   CHECK(schedule.last_list() == 2);
   CHECK(schedule.ring(0) == 0);
@@ -324,4 +340,25 @@ TEST_CASE("where lists of several pairs of materials follow one another, no bead
       CHECK(right);
     }
   }
+}
+
+TEST_CASE("slabs are cut so that each has about the same work, none is lost, and there may be more than beads") {
+  Slabs slabs{4};
+  slabs.cut({1, 1, 1, 1, 4, 4, 4, 1, 1, 2});
+  CHECK(slabs.bounds == std::vector<std::int64_t>{0, 5, 6, 7, 10});
+  slabs.cut({3, 3});
+  CHECK(slabs.bounds.front() == 0);
+  CHECK(slabs.bounds.back() == 2);
+  CHECK(std::is_sorted(slabs.bounds.begin(), slabs.bounds.end()));
+  slabs.cut({});
+  CHECK(slabs.bounds == std::vector<std::int64_t>(5, 0));
+}
+
+TEST_CASE("the number of slabs follows from the number of beads: one for hundreds, as many as 64 threads use for hundreds of thousands") {
+  CHECK(partitions_for(0) == 1);
+  CHECK(partitions_for(241) == 1);
+  CHECK(partitions_for(1999) == 1);
+  CHECK(partitions_for(4259) == 4);
+  CHECK(partitions_for(60000) == 32);
+  CHECK(partitions_for(300000) == 64);
 }

@@ -84,10 +84,21 @@ std::vector<std::vector<std::uint32_t>> candidates_of(Wall& wall, const std::vec
   return found;
 }
 
+/// As the host asks: one bead.
 template <class Wall>
 WallContacts contacts_of(const Wall& wall, const Point& p, double radius, const std::vector<std::uint32_t>& candidates, double reach = 0) {
+  constexpr int kMost = 64;
+  std::int32_t bead[kMost];
+  double overlap[kMost], normal[3][kMost];
+  std::uint32_t feature[kMost], triangle[kMost], material[kMost];
+  GeometryContacts found{kMost, 0, bead, overlap, {normal[0], normal[1], normal[2]}, feature, triangle, material};
+  const std::int64_t first[2] = {0, std::ssize(candidates)};
+  const GeometryQuery query{{1, {&p.x, &p.y, &p.z}, &radius}, first, candidates.data(), reach};
+  find_contacts<Wall>(&wall, &query, &found);
   WallContacts out(reach);
-  wall.touch({p, radius, reach}, candidates.data(), candidates.size(), out);
+  for (int k = 0; k < found.count; ++k) {
+    out.add({overlap[k], {normal[0][k], normal[1][k], normal[2][k]}, feature[k], triangle[k], material[k]});
+  }
   return out;
 }
 

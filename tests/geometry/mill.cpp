@@ -24,9 +24,12 @@ MillShape study() {
 
 /// The centre is before every wall by a distance that leaves overlaps of at most a fifth of a bead: deeper in the corner at a foot, a
 /// chord, whose normal differs from that of its arc, may be under the centre where the arc is not.
-bool is_free(const MillProfile& profile, const Point& p) {
-  ProfileContact found[kMaxProfileContacts];
-  return profile.touch({p.x, p.y}, 0.002, 0, found) == 0;
+bool is_free(Mill& mill, const Point& p) {
+  const WallContacts found = touch(mill, p, 0.002);
+  for (int i = 0; i < found.count(); ++i) {
+    if (found[i].normal.z == 0) return false;  // an end does not count
+  }
+  return true;
 }
 
 void compare(const WallContacts& exact, const WallContacts& mesh, double tolerance) {
@@ -50,7 +53,6 @@ TEST_CASE("The mill and its triangles read back as a mesh give the same contacts
   shape.face_angle = GENERATE(std::numbers::pi / 3, std::numbers::pi / 2);
   Mill mill("mill", shape, 0.003, 2);
   const auto mesh = make_mesh(soup_of(mill.surface(), {"shell", "lifter", "end"}));
-  const MillProfile profile(shape);
   const double sagitta = 0.003 * 0.003 / 8 / 0.15, r = 0.0025;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> u(0, 1);
@@ -58,7 +60,7 @@ TEST_CASE("The mill and its triangles read back as a mesh give the same contacts
   for (int trial = 0; trial < 40000; ++trial) {
     const double angle = 2 * std::numbers::pi * u(random), rho = 0.14 + 0.009 * u(random), z = 0.27 * u(random);
     const Point p{rho * std::cos(angle), rho * std::sin(angle), z};
-    if (!is_free(profile, p)) continue;
+    if (!is_free(mill, p)) continue;
     const WallContacts exact = touch(mill, p, r);
     bool clear = true;  // of the limits of contact, where one may see a touch that the other just misses
     const WallContacts with_gaps = touch(mill, p, r, 3 * sagitta);
@@ -151,13 +153,12 @@ TEST_CASE("Any number of lifters, any angle: the mesh agrees") {
   shape.end_faces = false;
   Mill mill("mill", shape, 0.001, 1);
   const auto mesh = make_mesh(soup_of(mill.surface(), {"shell", "lifter"}));
-  const MillProfile profile(shape);
   std::mt19937 random(11);
   std::uniform_real_distribution<double> u(0, 1);
   for (int trial = 0; trial < 3000; ++trial) {
     const double angle = 2 * std::numbers::pi * u(random), rho = 0.15 - 0.02 * u(random);
     const Point p{rho * std::cos(angle), rho * std::sin(angle), 0.27 * u(random)};
-    if (!is_free(profile, p)) continue;
+    if (!is_free(mill, p)) continue;
     const WallContacts exact = touch(mill, p, 0.006), found = touch(*mesh, p, 0.006);
     if (exact.count() == 0 || exact[0].overlap < 1e-5) continue;
     double deepest = 0, mesh_deepest = 0;
@@ -165,6 +166,55 @@ TEST_CASE("Any number of lifters, any angle: the mesh agrees") {
     for (int i = 0; i < found.count(); ++i) mesh_deepest = std::max(mesh_deepest, found[i].overlap);
     REQUIRE_THAT(mesh_deepest, WithinAbs(deepest, 2e-6));
   }
+}
+
+TEST_CASE("What a bead may touch until the next rebuild is among its candidates, and packs find what single beads do") {
+  MillShape shape = study();
+  shape.lifters = GENERATE(0, 1, 2, 3, 20);
+  Mill mill("mill", shape, 0.003, 1);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> u(0, 1);
+  constexpr int kBeads = 4000;
+  std::vector<Point> before, after;
+  for (int i = 0; i < kBeads; ++i) {
+    const double angle = 2 * std::numbers::pi * u(random), rho = 0.13 + 0.02 * u(random), z = 0.27 * u(random),
+                 turn = 2 * std::numbers::pi * u(random);
+    before.push_back({rho * std::cos(angle), rho * std::sin(angle), z});
+    after.push_back(before.back() + Point{0.003 * std::cos(turn), 0.003 * std::sin(turn), 0});
+  }
+  const double radius = 0.0025, margin = 0.003;  // a bead or a wall may move by the margin
+  const auto near = candidates_of(mill, before, radius, margin);
+  std::vector<double> x, y, z, r(kBeads, radius);
+  std::vector<std::int64_t> first{0};
+  std::vector<std::uint32_t> candidates;
+  int touching = 0;
+  for (int i = 0; i < kBeads; ++i) {
+    const WallContacts listed = contacts_of(mill, after[i], radius, near[i]), all = touch(mill, after[i], radius);
+    REQUIRE(listed.count() == all.count());
+    touching += all.count();
+    x.push_back(after[i].x), y.push_back(after[i].y), z.push_back(after[i].z);
+    candidates.insert(candidates.end(), near[i].begin(), near[i].end());
+    first.push_back(std::ssize(candidates));
+  }
+  CHECK(touching > 300);
+  const GeometryQuery query{{kBeads, {x.data(), y.data(), z.data()}, r.data()}, first.data(), candidates.data(), 0};
+  struct Found {
+    std::vector<std::int32_t> bead = std::vector<std::int32_t>(4 * kBeads);
+    std::vector<double> overlap = std::vector<double>(4 * kBeads), nx = overlap, ny = overlap, nz = overlap;
+    std::vector<std::uint32_t> feature = std::vector<std::uint32_t>(4 * kBeads), triangle = feature, material = feature;
+    GeometryContacts view() {
+      return {4 * kBeads,     0, bead.data(), overlap.data(), {nx.data(), ny.data(), nz.data()}, feature.data(), triangle.data(),
+              material.data()};
+    }
+    bool operator==(const Found&) const = default;
+  };
+  Found packs, singles;
+  GeometryContacts a = packs.view(), b = singles.view();
+  mill.contacts_by<Pack>(query, a);
+  mill.contacts_by<double>(query, b);
+  CHECK(a.count == touching);
+  CHECK(b.count == a.count);
+  CHECK(packs == singles);
 }
 
 TEST_CASE("Mills that cannot be built are refused with the remedy") {

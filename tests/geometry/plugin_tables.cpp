@@ -12,7 +12,7 @@ namespace {
 
 struct Library {
   explicit Library(const std::string& name)
-      : handle(dlopen((std::string(MILLSCOPE_BINARY_DIR) + "/lib/millscope/plugins/lib" + name + ".so").c_str(), RTLD_NOW | RTLD_LOCAL)) {
+      : handle(dlopen((std::string(MILLSCOPE_BINARY_DIR) + "/lib/millscope/plugins/" + name + ".so").c_str(), RTLD_NOW | RTLD_LOCAL)) {
     if (!handle) throw std::runtime_error(dlerror());
     list = static_cast<const DescriptorList*>(dlsym(handle, "millscope_plugins"));
   }
@@ -45,7 +45,7 @@ std::vector<Value> values_of(const Descriptor& d, const std::map<std::string, do
 
 TEST_CASE("Every geometry library exports its descriptors") {
   for (const auto& [library, names] : std::map<std::string, std::vector<std::string>>{
-           {"mesh", {"mesh"}}, {"mill", {"mill"}}, {"primitives", {"cylinder", "plane", "box"}}}) {
+           {"libmesh", {"mesh"}}, {"v2/libmill", {"mill"}}, {"libprimitives", {"cylinder", "plane", "box"}}}) {
     const Library loaded(library);
     REQUIRE(loaded.list != nullptr);
     CHECK(loaded.list->magic == kMagic);
@@ -62,7 +62,7 @@ TEST_CASE("Every geometry library exports its descriptors") {
 }
 
 TEST_CASE("A mill through its table") {
-  const Library loaded("mill");
+  const Library loaded("v2/libmill");
   const Descriptor& d = loaded.find("mill");
   const auto& table = *static_cast<const GeometryTable*>(d.table);
   const std::vector<Value> values =
@@ -100,7 +100,7 @@ TEST_CASE("A mill through its table") {
 }
 
 TEST_CASE("A refusal crosses the boundary as one line") {
-  const Library loaded("mill");
+  const Library loaded("v2/libmill");
   const Descriptor& d = loaded.find("mill");
   const auto& table = *static_cast<const GeometryTable*>(d.table);
   const std::vector<Value> values =

@@ -62,9 +62,9 @@ TEST_CASE("broken libraries are refused with what differs and what to do") {
   CHECK_THAT(refusal_of("WRONG_MAGIC"), Contains("wrong magic number"));
   CHECK_THAT(refusal_of("WRONG_LIST_MAGIC"), Contains("no plugin list"));
   CHECK_THAT(refusal_of("WRONG_SIZE"), Contains("bytes") && Contains("rebuild"));
-  CHECK_THAT(refusal_of("OLDER_ABI"), Contains("built against SDK ABI 1, this millscope has 2: rebuild"));
-  CHECK_THAT(refusal_of("OLDER_LIST"), Contains("built against SDK ABI 1, this millscope has 2: rebuild"));
-  CHECK_THAT(refusal_of("NEWER_ABI"), Contains("built against SDK ABI 3, this millscope has 2: update"));
+  CHECK_THAT(refusal_of("OLDER_ABI"), Contains("built against SDK ABI 2, this millscope has 3: rebuild"));
+  CHECK_THAT(refusal_of("OLDER_LIST"), Contains("built against SDK ABI 2, this millscope has 3: rebuild"));
+  CHECK_THAT(refusal_of("NEWER_ABI"), Contains("built against SDK ABI 4, this millscope has 3: update"));
   CHECK_THAT(refusal_of("WRONG_LAYOUT"), Contains("layout of its body_force structs") && Contains("rebuild"));
   CHECK_THAT(refusal_of("OTHER_HYPOTHESIS"), Contains("layout of its body_force structs") && Contains("rebuild"));
   CHECK_THAT(refusal_of("WRONG_TABLE_SIZE"), Contains("table has") && Contains("rebuild"));

@@ -105,7 +105,7 @@ struct GeometryTable {
   void (*interior)(const void* self, Interior*);
   /// One text of several lines, "key: value": triangles, box, area, open edges, …
   const char* (*report)(const void* self);
-  /// Called from one thread; `margin` is added to each radius.
+  /// Called from many threads at once, each with beads of its own; `margin` is added to each radius.
   Status (*candidates)(void* self, const GeometryBeads*, double margin, const CandidateSink*, Failure*);
   /// Called from many threads at once.
   void (*contacts)(const void* self, const GeometryQuery*, GeometryContacts*);
