@@ -74,15 +74,18 @@ TEST_CASE("A mill through its table") {
   CHECK(std::string(table.material_slots(self)) == "shell|lifter");
   const double x[2] = {0.1426, 0}, y[2] = {0, 0}, z[2] = {0.01, 0.01}, r[2] = {0.0025, 0.0025};
   const GeometryBeads beads{2, {x, y, z}, r};
-  std::vector<std::int64_t> first{0, 0, 0};
-  const CandidateSink sink{&first, [](void* host, std::int64_t bead, std::uint32_t) {
-                             auto& f = *static_cast<std::vector<std::int64_t>*>(host);
-                             for (std::size_t i = static_cast<std::size_t>(bead) + 1; i < f.size(); ++i) ++f[i];
+  struct Near {
+    std::vector<std::int64_t> first{0, 0, 0};
+    std::vector<std::uint32_t> candidates;
+  } near;
+  const CandidateSink sink{&near, [](void* host, std::int64_t bead, std::uint32_t candidate) {
+                             Near& n = *static_cast<Near*>(host);
+                             for (std::size_t i = static_cast<std::size_t>(bead) + 1; i < n.first.size(); ++i) ++n.first[i];
+                             n.candidates.push_back(candidate);
                            }};
   REQUIRE(table.candidates(self, &beads, 0.0005, &sink, &failure) == 0);
-  CHECK(first == std::vector<std::int64_t>{0, 1, 1});
-  const std::uint32_t candidate = 0;
-  const GeometryQuery query{beads, first.data(), &candidate, 0};
+  CHECK(near.first == std::vector<std::int64_t>{0, 1, 1});  // the lifter; the second bead is on the axis
+  const GeometryQuery query{beads, near.first.data(), near.candidates.data(), 0};
   std::int32_t bead[4];
   double overlap[4], normal[3][4];
   std::uint32_t feature[4], triangle[4], material[4];
@@ -93,6 +96,9 @@ TEST_CASE("A mill through its table") {
   CHECK(bead[0] == 0);
   CHECK(normal[0][0] == -1);
   CHECK(material[0] == 1);
+  contacts.triangle = nullptr;  // nobody asks
+  table.contacts(self, &query, &contacts);
+  CHECK(contacts.count == 1);
   contacts.capacity = 0;
   table.contacts(self, &query, &contacts);
   CHECK(contacts.count == 0);
