@@ -94,20 +94,24 @@ void WallSweep::match(Chunk& chunk) {
   chunk.base = list.next.count();
   list.next.resize(chunk.base + found.count);
   pass_.scratch.contacts.resize(found.count);
+  const std::vector<int>& slots = body.material_of_slot;
   for (std::int64_t c = 0; c < found.count; ++c) {
     const std::int64_t at = chunk.base + c;
     assert(found.bead[c] >= 0 && found.bead[c] < chunk.count);
     const std::uint32_t local = static_cast<std::uint32_t>(chunk.begin + found.bead[c]);
     const Vector3 normal{found.normal[0][c], found.normal[1][c], found.normal[2][c]};
-    const int p = physics.of_wall(pass_.particles.material[list.bead[local]], body.material_of_slot[found.material[c]]);
-    const bool acts = !(found.overlap[c] + physics[p].reach <= 0);
-    if (acts) chunk.present |= std::uint64_t{1} << (p % 64);
-    std::optional<std::int64_t> last;
-    if (acts) last = list.active.take(list.matched, local, found.feature[c], normal);
+    const int p = physics.of_wall(pass_.particles.material[list.bead[local]], slots[found.material[c]]);
+    FoundContact& contact = pass_.scratch.contacts[c];
     list.next.bead[at] = local;
-    list.next.feature[at] = acts ? found.feature[c] : WallContacts::kUsedUp;
     list.next.normal[at] = normal;
-    pass_.scratch.contacts[c] = {acts ? p : FoundContact::kOutOfReach, last.value_or(FoundContact::kFresh)};
+    if (found.overlap[c] + physics[p].reach <= 0) {
+      list.next.feature[at] = WallContacts::kUsedUp;
+      contact = {FoundContact::kOutOfReach, FoundContact::kFresh};
+      continue;
+    }
+    chunk.present |= std::uint64_t{1} << (p % 64);
+    list.next.feature[at] = found.feature[c];
+    contact = {p, list.active.take(list.matched, local, found.feature[c], normal).value_or(FoundContact::kFresh)};
   }
 }
 
@@ -116,7 +120,6 @@ std::int64_t WallSweep::gather(const Chunk& chunk, int physics_index) {
   const WallList& list = walls_.of(pass_.slab, chunk.body);
   const GeometryContacts& found = pass_.scratch.found;
   WallBatch& b = pass_.scratch.walls;
-  const std::int64_t histories = std::ssize(list.next.history);
   std::int64_t count = 0;
   for (std::int64_t c = 0; c < found.count; ++c) {
     const FoundContact& contact = pass_.scratch.contacts[c];
@@ -124,11 +127,15 @@ std::int64_t WallSweep::gather(const Chunk& chunk, int physics_index) {
     b.contact[count] = static_cast<std::uint32_t>(c);
     b.bead[count] = list.bead[list.next.bead[chunk.base + c]];
     b.fresh[count] = contact.last == FoundContact::kFresh;
-    for (std::int64_t h = 0; h < histories; ++h) b.history[h][count] = b.fresh[count] ? 0.0 : list.active.history[h][contact.last];
     ++count;
   }
   if (count == 0) return 0;
-  for (std::int64_t h = 0; h < histories; ++h) std::fill(b.history[h] + count, b.history[h] + padded_count(count), 0.0);
+  for (std::int64_t h = 0; h < std::ssize(list.active.history); ++h) {
+    const double* const last = list.active.history[h].data();
+    double* const history = b.history[h];
+    for (std::int64_t k = 0; k < count; ++k) history[k] = b.fresh[k] ? 0.0 : last[pass_.scratch.contacts[b.contact[k]].last];
+    std::fill(history + count, history + padded_count(count), 0.0);
+  }
   const WallGather from{
       pass_.particles.position.data(), pass_.particles.motion.data(), found.overlap, {found.normal[0], found.normal[1], found.normal[2]}};
   pass_.common.wide.gather_walls(from, poses_[chunk.body], count, b);
@@ -142,20 +149,14 @@ void WallSweep::scatter(const Chunk& chunk, int physics_index, std::int64_t coun
   const Body& body = walls_.bodies()[chunk.body];
   const PairPhysics& physics = pass_.common.physics[physics_index];
   BodyLedger& book = pass_.state.ledger.bodies[chunk.body];
-  pass_.common.wide.wall_torques(poses_[chunk.body], padded_count(count), physics.has_post(), b);
-  double power = 0;
-  for (std::int64_t k = 0; k < count; ++k) {
-    ForceLine& line = pass_.state.force[b.bead[k]];
-    for (int a = 0; a < 3; ++a) {
-      line.f[a] += b.force[a][k];
-      line.t[a] += b.torque[a][k];
-      book.force[a] -= b.force[a][k];
-      book.torque[a] += b.body_torque[a][k];
-    }
-    power += b.wall_power[k];
+  WallSums sums;
+  pass_.common.wide.scatter_walls(poses_[chunk.body], pass_.state.force, count, physics.has_post(), b, sums);
+  for (int a = 0; a < 3; ++a) {
+    book.force[a] += sums.force[a];
+    book.torque[a] += sums.torque[a];
   }
-  book.power += power;
-  book.work += power * pass_.common.settings.time_step;
+  book.power += sums.power;
+  book.work += sums.power * pass_.common.settings.time_step;
   for (std::int64_t h = 0; h < std::ssize(list.next.history); ++h) {
     double* const to = list.next.history[h].data() + chunk.base;
     for (std::int64_t k = 0; k < count; ++k) to[b.contact[k]] = b.history[h][k];

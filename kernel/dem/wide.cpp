@@ -329,6 +329,6 @@ std::int64_t near(const PositionLine* reaches, const PeriodicBox& periodic, std:
 }  // namespace
 
 extern const WideTable MILLSCOPE_WIDE;
-const WideTable MILLSCOPE_WIDE = {MILLSCOPE_WIDE_NAME, search, gather, scatter, to_frame, gather_walls, wall_torques, integrate, near};
+const WideTable MILLSCOPE_WIDE = {MILLSCOPE_WIDE_NAME, search, gather, scatter, to_frame, gather_walls, scatter_walls, integrate, near};
 
 }  // namespace millscope::dem

@@ -54,6 +54,12 @@ struct WallGather {
   const double* normal[3];  ///< in the body's frame
 };
 
+/// What contacts do to a body; the fourth numbers are unused.
+struct WallSums {
+  double force[4], torque[4];  ///< N; N m about its centre
+  double power;                ///< W, of the body
+};
+
 /// What a step found out about a slab.
 struct IntegrateResult {
   bool rebuild;          ///< some bead used up its skin (or is not finite)
@@ -72,8 +78,8 @@ struct WideTable {
   void (*to_frame)(const WallPose&, std::int64_t count, double* const (&position)[3]);
   /// From `bead` and `contact` of each place: all that the plugins need but the histories (padded).
   void (*gather_walls)(const WallGather&, const WallPose&, std::int64_t count, WallBatch&);
-  /// Torques on beads and body, power of the body.
-  void (*wall_torques)(const WallPose&, std::int64_t count, bool with_moments, WallBatch&);
+  /// Adds force and torque (and moments when `with_moments`) to the beads and to what the body gets.
+  void (*scatter_walls)(const WallPose&, const ForceWindow&, std::int64_t count, bool with_moments, WallBatch&, WallSums&);
   /// Kick, drift, predict; clears the forces.
   IntegrateResult (*integrate)(const IntegrateContext&);
   /// Appends to `found` the j in [first, last) with |x_i − x_j| < reach_i + reach_j (the reaches stand in `radius`). Returns the number.

@@ -121,7 +121,7 @@ void gather_walls(const WallGather& g, const WallPose& pose, std::int64_t count,
 }
 
 /// Torque on the bead: a (F × n); on the body: −l × F; power of the body: F · v_w; with moments, those too.
-void wall_torques(const WallPose& pose, std::int64_t count, bool with_moments, WallBatch& b) {
+inline void wall_torques(const WallPose& pose, std::int64_t count, bool with_moments, const WallBatch& b) {
   const WallPose p = pose;
   double* __restrict power = b.wall_power;
   for (std::int64_t k = 0; k < count; ++k) power[k] = 0.0;
@@ -152,6 +152,37 @@ void wall_torques(const WallPose& pose, std::int64_t count, bool with_moments, W
       power[k] -= mj[k] * p.omega[a];
     }
   }
+}
+
+/// Four contacts' components as lines.
+inline void lines_of(double* const (&components)[3], std::int64_t k, Four (&lines)[4]) {
+  for (int a = 0; a < 3; ++a) lines[a] = load4(components[a] + k);
+  lines[3] = four(0.0);
+  transpose(lines[0], lines[1], lines[2], lines[3]);
+}
+
+void scatter_walls(const WallPose& pose, const ForceWindow& force, std::int64_t count, bool with_moments, WallBatch& b, WallSums& sums) {
+  wall_torques(pose, padded_count(count), with_moments, b);
+  Four body_force = four(0.0), body_torque = four(0.0);
+  double power = 0;
+  for (std::int64_t k = 0; k < count; k += 4) {
+    Four f[4], on_bead[4], on_body[4];
+    lines_of(b.force, k, f);
+    lines_of(b.torque, k, on_bead);
+    lines_of(b.body_torque, k, on_body);
+    const int lanes = count - k < 4 ? static_cast<int>(count - k) : 4;
+    for (int c = 0; c < lanes; ++c) {
+      ForceLine& line = force[b.bead[k + c]];
+      store4(line.f, load4(line.f) + f[c]);
+      store4(line.t, load4(line.t) + on_bead[c]);
+      body_force -= f[c];
+      body_torque += on_body[c];
+      power += b.wall_power[k + c];
+    }
+  }
+  store4_unaligned(sums.force, body_force);
+  store4_unaligned(sums.torque, body_torque);
+  sums.power = power;
 }
 
 }  // namespace
