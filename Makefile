@@ -10,7 +10,7 @@ SOURCES = $(shell git ls-files '*.cpp' '*.hpp')
 
 help: ## list these targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
-	@echo "  Variables: JOBS=$(JOBS) PREFIX=$(PREFIX) CMAKE_OPTIONS="
+	@echo "  Variables: JOBS=$(JOBS) PREFIX=$(PREFIX) CMAKE_OPTIONS= AGAINST="
 
 demo: binary ## install what is missing, build, tell a whole story: recording, calibration, diagnosis, page (SEED=n for another)
 	@tools/demo.sh $(BUILD) build/demo/$$(date +%Y%m%d-%H%M%S)
@@ -20,9 +20,9 @@ test: packages-test ## install what is missing, build, run every test
 	cmake --build --preset release -j $(JOBS)
 	ctest --preset release -j $(JOBS)
 
-bench: packages-test binary ## time against LIGGGHTS on the cross-check case (20 minutes on a quiet machine)
+bench: packages-test binary ## time against LIGGGHTS (20 minutes on a quiet machine); AGAINST=commit: against that commit's build
 	cmake --build --preset release -j $(JOBS) --target millscope_bench
-	bench/run.sh $(BUILD) $(BENCH_OPTIONS)
+	$(if $(AGAINST),bench/against.py $(BUILD) $(AGAINST),bench/run.sh $(BUILD)) $(BENCH_OPTIONS)
 
 figures: packages-test ## tables that tests print for docs/analysis.md and docs/analyzers.md (minutes on a quiet machine)
 	cmake --preset release -DMILLSCOPE_TESTS=ON $(CMAKE_OPTIONS)
