@@ -68,8 +68,6 @@ struct PairBatch : ContactArrays {
   std::uint32_t* partner;
   std::uint32_t* slot;
   std::uint32_t* source;  ///< where the history stood in the last step; any place when fresh
-  double* difference[3];  ///< x_i − x_j
-  double* spin_sum[3];    ///< ω_i + ω_j, where all beads are alike
   double* arm_i;          ///< r_i − δ/2
   double* arm_j;
   double* torque_i[3];

@@ -12,6 +12,7 @@ namespace {
 typedef double Four __attribute__((vector_size(32)));
 typedef double FourAlias __attribute__((vector_size(32), may_alias));
 typedef std::int64_t FourBits __attribute__((vector_size(32)));
+typedef double Two __attribute__((vector_size(16)));
 
 typedef std::uint32_t FourIndices __attribute__((vector_size(16)));
 
@@ -23,7 +24,6 @@ inline int bits_of(FourBits truth) {
 #if defined(__AVX__)
   return __builtin_ia32_movmskpd256((Four)truth);
 #else
-  typedef double Two __attribute__((vector_size(16)));
   Two halves[2];
   __builtin_memcpy(halves, &truth, sizeof halves);
   return __builtin_ia32_movmskpd(halves[0]) | __builtin_ia32_movmskpd(halves[1]) << 2;
@@ -31,6 +31,17 @@ inline int bits_of(FourBits truth) {
 }
 
 inline Four four(double a) { return Four{a, a, a, a}; }
+inline Four root(Four a) {
+#if defined(__AVX__)
+  return __builtin_ia32_sqrtpd256(a);
+#else
+  Two halves[2];
+  __builtin_memcpy(halves, &a, sizeof halves);
+  for (Two& half : halves) half = __builtin_ia32_sqrtpd(half);
+  __builtin_memcpy(&a, halves, sizeof halves);
+  return a;
+#endif
+}
 inline Four load4(const void* p) { return *static_cast<const FourAlias*>(p); }
 inline void store4(void* p, Four v) { *static_cast<FourAlias*>(p) = v; }
 inline void store4_unaligned(double* p, Four v) { __builtin_memcpy(p, &v, sizeof v); }

@@ -36,7 +36,7 @@ struct Scratch {
   Scratch& operator=(const Scratch&) = delete;
 
   PairBatch pairs{};
-  WallBatch walls{};  ///< in the memory of `pairs`: a worker is at one batch at a time
+  WallBatch walls{};  ///< shares most of the memory of `pairs`: a worker is at one batch at a time
   double* query_position[3];
   double* query_radius;
   GeometryContacts found{};

@@ -9,21 +9,26 @@
 namespace millscope::dem {
 namespace {
 
-inline double root(double a) { return __builtin_sqrt(a); }
+template <int kCount>
+inline void store_each(double* const* to, std::int64_t k, const Four (&v)[kCount]) {
+  for (int a = 0; a < 3; ++a) store4_unaligned(to[a] + k, v[a]);
+}
 
-/// Loads the raw differences of four contacts starting at k.
+/// Four contacts from place k on: overlap, normal and the surfaces' relative velocity
+/// v_i − v_j − (a_i ω_i + a_j ω_j) × n, a = r − δ/2.
 template <bool kEqual, bool kPeriodic>
 inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k, const PairBatch& b) {
   const double* __restrict x = reinterpret_cast<const double*>(g.position);
   const double* __restrict m = reinterpret_cast<const double*>(g.motion);
-  Four d[4], v[4], w[4];
-  Four ri, rj;
+  Four d[4], v[4], wi[4], wj[4], ri, rj;
   for (int c = 0; c < 4; ++c) {
     const std::int64_t i = b.owner[k + c], j = b.partner[k + c];
     d[c] = load4(x + 4 * i) + negate3(load4(x + 4 * j));
     v[c] = load4(m + 8 * i) + negate3(load4(m + 8 * j));
+    wi[c] = load4(m + 8 * i + 4);
+    wj[c] = load4(m + 8 * j + 4);
     if constexpr (kEqual) {
-      w[c] = load4(m + 8 * i + 4) + load4(m + 8 * j + 4);
+      wi[c] += wj[c];
     } else {
       ri[c] = x[4 * i + 3];
       rj[c] = x[4 * j + 3];
@@ -32,20 +37,44 @@ inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k,
   transpose(d[0], d[1], d[2], d[3]);
   if constexpr (kPeriodic) each_minimum_image(d, box);
   transpose(v[0], v[1], v[2], v[3]);
-  for (int a = 0; a < 3; ++a) {
-    store4_unaligned(b.difference[a] + k, d[a]);
-    store4_unaligned(b.velocity[a] + k, v[a]);
-  }
+  transpose(wi[0], wi[1], wi[2], wi[3]);
+  const Four distance = root(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), inverse = four(1.0) / distance;
+  const Four n[3] = {d[0] * inverse, d[1] * inverse, d[2] * inverse};
+  Four w[3];
   if constexpr (kEqual) {
-    transpose(w[0], w[1], w[2], w[3]);
-    for (int a = 0; a < 3; ++a) store4_unaligned(b.spin_sum[a] + k, w[a]);
+    const Four arm = four(0.5) * distance;
+    store4_unaligned(b.overlap + k, four(2 * g.radius) - distance);
+    store4_unaligned(b.arm_i + k, arm);
+    for (int a = 0; a < 3; ++a) w[a] = arm * wi[a];
   } else {
+    transpose(wj[0], wj[1], wj[2], wj[3]);
+    const Four sum = ri + rj, half = four(0.5) * (sum - distance), arm_i = ri - half, arm_j = rj - half;
+    store4_unaligned(b.overlap + k, sum - distance);
     store4_unaligned(b.radius_i + k, ri);
     store4_unaligned(b.radius_j + k, rj);
+    store4_unaligned(b.radius + k, ri * rj / sum);
     store4_unaligned(b.mass + k, four(1.0) / v[3]);
+    store4_unaligned(b.arm_i + k, arm_i);
+    store4_unaligned(b.arm_j + k, arm_j);
+    store_each(b.spin_i, k, wi);
+    store_each(b.spin_j, k, wj);
+    for (int a = 0; a < 3; ++a) w[a] = arm_i * wi[a] + arm_j * wj[a];
+  }
+  const Four surfaces[3] = {v[0] - (w[1] * n[2] - w[2] * n[1]), v[1] - (w[2] * n[0] - w[0] * n[2]), v[2] - (w[0] * n[1] - w[1] * n[0])};
+  store_each(b.normal, k, n);
+  store_each(b.velocity, k, surfaces);
+}
+
+template <bool kEqual>
+void gather_all(const GatherContext& g, const Box4& box, std::int64_t padded, const PairBatch& b) {
+  if (box.any) {
+    for (std::int64_t k = 0; k < padded; k += 4) gather_four<kEqual, true>(g, box, k, b);
+  } else {
+    for (std::int64_t k = 0; k < padded; k += 4) gather_four<kEqual, false>(g, box, k, b);
   }
 }
 
+/// Of equal beads, where interactions need them.
 void gather_spins(const GatherContext& g, std::int64_t padded, PairBatch& b) {
   const double* m = reinterpret_cast<const double*>(g.motion);
   for (std::int64_t k = 0; k < padded; k += 4) {
@@ -60,66 +89,6 @@ void gather_spins(const GatherContext& g, std::int64_t padded, PairBatch& b) {
       store4_unaligned(b.spin_i[a] + k, p[a]);
       store4_unaligned(b.spin_j[a] + k, q[a]);
     }
-  }
-}
-
-/// Overlap, normal and the surfaces' relative velocity v_i − v_j − (a_i ω_i + a_j ω_j) × n, a = r − δ/2.
-template <bool kEqual>
-void kinematics(std::int64_t n, double radius, PairBatch& arrays) {
-  const PairBatch b = arrays;
-  const double* __restrict dx = b.difference[0];
-  const double* __restrict dy = b.difference[1];
-  const double* __restrict dz = b.difference[2];
-  double* __restrict nx = b.normal[0];
-  double* __restrict ny = b.normal[1];
-  double* __restrict nz = b.normal[2];
-  double* __restrict vx = b.velocity[0];
-  double* __restrict vy = b.velocity[1];
-  double* __restrict vz = b.velocity[2];
-  double* __restrict overlap = b.overlap;
-  double* __restrict arm_i = b.arm_i;
-  double* __restrict arm_j = b.arm_j;
-  const double* __restrict ri = b.radius_i;
-  const double* __restrict rj = b.radius_j;
-  double* __restrict reduced = b.radius;
-  const double* __restrict sx = b.spin_sum[0];
-  const double* __restrict sy = b.spin_sum[1];
-  const double* __restrict sz = b.spin_sum[2];
-  const double* __restrict pix = b.spin_i[0];
-  const double* __restrict piy = b.spin_i[1];
-  const double* __restrict piz = b.spin_i[2];
-  const double* __restrict pjx = b.spin_j[0];
-  const double* __restrict pjy = b.spin_j[1];
-  const double* __restrict pjz = b.spin_j[2];
-#pragma GCC ivdep
-  for (std::int64_t k = 0; k < n; ++k) {
-    const double d = root(dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k]);
-    const double inverse = 1.0 / d;
-    nx[k] = dx[k] * inverse;
-    ny[k] = dy[k] * inverse;
-    nz[k] = dz[k] * inverse;
-    double wx, wy, wz;
-    if constexpr (kEqual) {
-      overlap[k] = 2 * radius - d;
-      const double arm = 0.5 * d;
-      arm_i[k] = arm;
-      wx = arm * sx[k];
-      wy = arm * sy[k];
-      wz = arm * sz[k];
-    } else {
-      const double sum = ri[k] + rj[k];
-      const double half = 0.5 * (sum - d);
-      overlap[k] = sum - d;
-      reduced[k] = ri[k] * rj[k] / sum;
-      arm_i[k] = ri[k] - half;
-      arm_j[k] = rj[k] - half;
-      wx = arm_i[k] * pix[k] + arm_j[k] * pjx[k];
-      wy = arm_i[k] * piy[k] + arm_j[k] * pjy[k];
-      wz = arm_i[k] * piz[k] + arm_j[k] * pjz[k];
-    }
-    vx[k] -= wy * nz[k] - wz * ny[k];
-    vy[k] -= wz * nx[k] - wx * nz[k];
-    vz[k] -= wx * ny[k] - wy * nx[k];
   }
 }
 
@@ -159,22 +128,12 @@ void gather(const GatherContext& g, const PairListView& list, std::int64_t count
     owner[k] = owner[count - 1];
     partner[k] = partner[count - 1];
   }
-  if (g.spins || !g.equal) gather_spins(g, padded, b);
   const PairBatch local = b;
   if (g.equal) {
-    if (box.any) {
-      for (std::int64_t k = 0; k < padded; k += 4) gather_four<true, true>(g, box, k, local);
-    } else {
-      for (std::int64_t k = 0; k < padded; k += 4) gather_four<true, false>(g, box, k, local);
-    }
-    kinematics<true>(padded, g.radius, b);
+    gather_all<true>(g, box, padded, local);
+    if (g.spins) gather_spins(g, padded, b);
   } else {
-    if (box.any) {
-      for (std::int64_t k = 0; k < padded; k += 4) gather_four<false, true>(g, box, k, local);
-    } else {
-      for (std::int64_t k = 0; k < padded; k += 4) gather_four<false, false>(g, box, k, local);
-    }
-    kinematics<false>(padded, 0.0, b);
+    gather_all<false>(g, box, padded, local);
   }
   gather_history(list, count, padded, b);
   for (std::int32_t h = 0; h < list.history_count; ++h) {  // those of the next batch, about as many
