@@ -15,7 +15,7 @@ namespace po = boost::program_options;
 namespace fs = std::filesystem;
 using base::UserError;
 
-void print_found(const diagnose::Diagnosis& d, const fs::path& output) {
+void print_found(const diagnose::Question& question, const diagnose::Diagnosis& d, const fs::path& output) {
   fmt::print("\n{}\n{}\n", diagnose::name_of(d.verdict), d.sentence);
   if (!d.next_experiment.empty()) fmt::print("next: {}\n", d.next_experiment);
   fmt::print("\n{:<28} {:>8} {:>10} {:>16}\n", "candidate", "delta Q", "p", "visible (sigma)");
@@ -27,6 +27,8 @@ void print_found(const diagnose::Diagnosis& d, const fs::path& output) {
     }
     fmt::print("{:<28} {:>8.1f} {:>10.2g} {:>16.1f}\n", d.problem.alternatives[j].name, g.delta_q, g.p_family, std::sqrt(g.lambda));
   }
+  for (const diagnose::HeldOut& h : d.held_out)
+    fmt::print("held out '{}': {}\n", question.study.conditions[h.condition].name, diagnose::sources_sentence(h));
   fmt::print("results in {}: diagnosis.md, diagnosis.json, pictures{}\n", output.string(), d.naming.best ? ", corrected" : "");
 }
 
@@ -52,7 +54,7 @@ int diagnose_study(const Arguments& arguments) {
   const diagnose::Diagnosis found =
       diagnose::diagnose(question, session.machinery(), diagnose::evidence_of(question, registry, session), naming);
   diagnose::write_outputs({question, found}, output);
-  if (!options.has("quiet")) print_found(found, output);
+  if (!options.has("quiet")) print_found(question, found, output);
   return kDone;
 }
 

@@ -93,6 +93,16 @@ TEST_CASE("diagnosis.json has every figure that is promised") {
   CHECK(held["observables"].size() == 16);
   for (const char* key : {"recorded", "corrected", "retuned to power"}) CHECK(held["observables"][0].contains(key));
   for (std::size_t k = 1; k < held["models"].size(); ++k) CHECK(is_interval(held["models"][k]["improvement_of_corrected"]));
+  CHECK(held["models"][0]["simulated"] == true);
+  CHECK(held["simulations"] >= 12);
+  for (const auto& model : held["models"]) {
+    CHECK((model["from"] == "simulations" || model["from"] == "surrogate"));
+    const bool computed = model["model"] == "placebo" || model["model"] == "Gaussian-process discrepancy";
+    CHECK(model["simulated"] == (!computed && model["from"] == "simulations"));
+    if (model["model"] == "corrected") continue;
+    CHECK(model["left_out_error"] > 0);
+    if (model["from"] == "surrogate") CHECK(model["left_out_error"] < 0.5 * model["judged_difference"].get<double>());
+  }
   CHECK(j["bank"]["failures"].empty());
 }
 
@@ -102,6 +112,8 @@ TEST_CASE("diagnosis.md tells the verdict, every candidate, the figures and the 
   const std::string page = base::text_of(folder / "out/diagnosis.md");
   CHECK_THAT(page, Contains("**named**") && Contains(j["sentence"].get<std::string>()));
   for (const auto& h : j["hypotheses"]) CHECK_THAT(page, Contains(h["name"].get<std::string>()));
+  CHECK_THAT(page, Contains("| corrected: with the best candidate, all parameters fitted together | simulated |"));
+  CHECK_THAT(page, Contains("simulations were asked for."));
   CHECK_THAT(page, Contains("retuned to power") && Contains("Gaussian-process discrepancy") && Contains("placebo"));
   CHECK_THAT(page, Contains(j["mismatch"][0]["sentence"].get<std::string>()));
   CHECK_THAT(page, !Contains("nan") && !Contains("inf"));
@@ -176,6 +188,10 @@ TEST_CASE("where nothing was found there is no corrected case, an older one goes
   std::filesystem::create_directories(folder / "out/corrected");
   const nlohmann::json j = written(folder, kBase);
   CHECK(j["verdict"] == "no_mismatch");
+  CHECK(j["held_out"][0]["simulations"] == 0);
+  for (const auto& model : j["held_out"][0]["models"]) CHECK(model["from"] == "surrogate");
+  CHECK_THAT(base::text_of(folder / "out/diagnosis.md"),
+             Contains("| predicted |") && Contains("0 simulations were asked for. *Predicted*"));
   CHECK_FALSE(j["contact_parameters"].contains("unmasked"));
   CHECK_FALSE(std::filesystem::exists(folder / "out/corrected"));
   CHECK(j["hypotheses"][0]["class"] == "not needed");

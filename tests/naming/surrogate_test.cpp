@@ -87,6 +87,61 @@ TEST_CASE("runs that are repeated tell the chance of runs from what the surface 
   CHECK(s.error_covariance(alone.covariance)(3, 3) < 1.6 * s.residual_covariance(alone.covariance)(3, 3));
 }
 
+TEST_CASE("a run that is left out is predicted without its repeats, with the candidate that is asked for or without any") {
+  MadeUp mill;
+  mill.run_noise = 0.01, mill.cubic = 1, mill.again = 8;
+  const Problem p = made_up_problem(mill, point(0, 0, 0), {0, 0, 0}, 3);
+  const MatrixXd without = left_out_deviations(p.data, {});
+  CHECK(without.rows() == 24 + 8);
+  CHECK(left_out_deviations(p.data, 0).rows() == 10);
+  const Surrogate s(p.data);  // whose left-out residuals have the repeat still in
+  int repeated = 0;
+  double alone = 0, beside = 0;
+  for (Index a = 0; a < without.rows(); ++a) {
+    for (Index b = a + 1; b < without.rows(); ++b) {
+      if (!repeats(p.data.rows[static_cast<std::size_t>(a)], p.data.rows[static_cast<std::size_t>(b)])) continue;
+      ++repeated;
+      CHECK((without.row(a) - without.row(b)).cwiseAbs().maxCoeff() < 0.1);
+      alone += without.row(a).squaredNorm(), beside += s.left_out().row(a).squaredNorm();
+    }
+  }
+  CHECK(repeated == 8);
+  CHECK(alone > 1.5 * beside);
+}
+
+TEST_CASE("too few runs to leave one out tell nothing") {
+  Problem p = made_up_problem({}, point(0, 0, 0), {0, 0, 0}, 1);
+  std::erase_if(p.data.rows, [](const BankRow& row) { return !row.active.empty(); });
+  const Index coefficients = Features(p.data).size();
+  p.data.rows.resize(static_cast<std::size_t>(coefficients + 2));
+  p.data.value.conservativeResize(coefficients + 2, Eigen::NoChange);
+  CHECK(left_out_deviations(p.data, {}).rows() == coefficients + 2);
+  p.data.rows.pop_back();
+  p.data.value.conservativeResize(coefficients + 1, Eigen::NoChange);
+  CHECK(left_out_deviations(p.data, {}).rows() == 0);
+}
+
+TEST_CASE("the error of one prediction covers what it is wrong by") {
+  constexpr int kBanks = 40;
+  for (const double strength : {0.0, 0.8}) {
+    const std::vector<ActiveCandidate> active = strength > 0 ? std::vector<ActiveCandidate>{{0, strength}} : std::vector<ActiveCandidate>{};
+    const VectorXd at = point(0.5, -0.6, 0.2);
+    double ratio = 0;
+    for (std::uint64_t seed = 1; seed <= kBanks; ++seed) {
+      MadeUp mill;
+      mill.again = 8;
+      const Problem p = made_up_problem(mill, point(0, 0, 0), {0, 0, 0}, 70 + seed);
+      const Surrogate s(p.data);
+      const VectorXd error = s.at(at, active) - truth_of(mill, at, {strength, 0, 0});
+      const VectorXd variance = s.error_covariance(p.covariance, at, active).diagonal();
+      ratio += error.cwiseAbs2().cwiseQuotient(variance).mean() / kBanks;
+    }
+    CAPTURE(strength, ratio);
+    CHECK(ratio > 0.3);
+    CHECK(ratio < 1);
+  }
+}
+
 TEST_CASE("a fit finds its truth without noise, at limits too") {
   MadeUp mill;
   mill.run_noise = 1e-6;

@@ -69,4 +69,7 @@ struct BankData {
 /// Which of the used rows, counted among themselves, repeat each other: each point once, with its runs.
 std::vector<std::vector<Index>> points_of(const BankData& data, const std::vector<bool>& used);
 
+/// All rows but one and those that repeat it.
+std::vector<bool> all_but(const BankData& data, std::size_t row);
+
 }  // namespace millscope::naming

@@ -56,9 +56,7 @@ PseudoData::PseudoData(const Problem& problem, const Options& options)
   std::size_t base = 0;
   for (std::size_t r = 0; r < data.rows.size(); ++r) {
     LeftOut left;
-    std::vector<bool> used = all;
-    for (std::size_t other = 0; other < used.size(); ++other) used[other] = !repeats(data.rows[other], data.rows[r]);
-    left.surrogate = std::make_unique<Surrogate>(data, *features_, used);
+    left.surrogate = std::make_unique<Surrogate>(data, *features_, all_but(data, r));
     const VectorXd u = data.coded(data.rows[r].theta);
     const std::vector<ActiveCandidate>& active = data.rows[r].active;
     left.deviation = data.value.row(r).transpose() - left.surrogate->at(u, active);

@@ -68,6 +68,8 @@ class Surrogate {
   double chance(const MatrixXd& recording) const;
   /// Covariance of the surrogate's error, (1 − ρ + h̄) S with the mean leverage h̄ of the runs without a candidate.
   MatrixXd error_covariance(const MatrixXd& recording) const;
+  /// The same of one prediction, ((1 − ρ) e + h) S with its own leverage h and the scatter e of runs with what is active.
+  MatrixXd error_covariance(const MatrixXd& recording, const VectorXd& coded, const std::vector<ActiveCandidate>& active) const;
 
  private:
   Features features_;
@@ -81,6 +83,10 @@ class Surrogate {
   double mean_leverage_ = 0;
   Index degrees_ = 0, degrees_repeated_ = 0;
 };
+
+/// What the runs with a candidate, or those without any, differ by from the surrogate of all others, which has none of their repeats
+/// either: [runs, observables]. The chance of single runs is in it. No rows where the others would be too few.
+MatrixXd left_out_deviations(const BankData& data, std::optional<Index> candidate);
 
 /// Chooses for every positive coordinate with a range of a factor of 2 or more whether its logarithm serves better: the smaller sum of
 /// squared left-out residuals over their spread.

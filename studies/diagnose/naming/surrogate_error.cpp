@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/base/parallel.hpp"
 #include "kernel/base/statistics.hpp"
 #include "studies/diagnose/naming/fit.hpp"
 #include "studies/diagnose/naming/shrinkage.hpp"
@@ -31,6 +32,12 @@ std::vector<std::vector<Index>> points_of(const BankData& data, const std::vecto
     ++k;
   }
   return points;
+}
+
+std::vector<bool> all_but(const BankData& data, std::size_t row) {
+  std::vector<bool> used;
+  for (const BankRow& other : data.rows) used.push_back(!repeats(other, data.rows[row]));
+  return used;
 }
 
 /// Of k runs at one point: √k times their mean residual, whose variance is that of one run where nothing is left unfollowed, and more than
@@ -95,6 +102,29 @@ MatrixXd Surrogate::first_order() const {
 
 MatrixXd Surrogate::error_covariance(const MatrixXd& recording) const {
   return (1 - chance(recording) + mean_leverage_) * residual_covariance(recording);
+}
+
+MatrixXd Surrogate::error_covariance(const MatrixXd& recording, const VectorXd& coded, const std::vector<ActiveCandidate>& active) const {
+  double scatter = 1;
+  for (const ActiveCandidate& e : active) scatter = std::max(scatter, scatter_with(e.candidate));
+  return ((1 - chance(recording)) * scatter + leverage(coded, active)) * residual_covariance(recording);
+}
+
+MatrixXd left_out_deviations(const BankData& data, std::optional<Index> candidate) {
+  const Features features(data);
+  std::vector<std::size_t> rows;
+  for (std::size_t r = 0; r < data.rows.size(); ++r) {
+    if (data.rows[r].candidate() == candidate) rows.push_back(r);
+  }
+  const std::vector<bool> all(data.rows.size(), true);
+  if (std::ssize(points_of(data, all)) <= features.size() + 1) return {};
+  MatrixXd out(std::ssize(rows), data.value.cols());
+  base::for_each_item(rows.size(), base::worker_count(0, rows.size()), [&](std::size_t k, std::size_t) {
+    const BankRow& row = data.rows[rows[k]];
+    const Surrogate others(data, features, all_but(data, rows[k]));
+    out.row(static_cast<Index>(k)) = data.value.row(static_cast<Index>(rows[k])) - others.at(data.coded(row.theta), row.active).transpose();
+  });
+  return out;
 }
 
 }  // namespace millscope::naming

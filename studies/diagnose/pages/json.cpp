@@ -90,9 +90,17 @@ Json held_out(const Told& t) {
   for (const HeldOut& h : t.diagnosis.held_out) {
     Json scores = Json::array();
     for (const Score& s : h.scores) {
-      Json one = {{"model", s.prediction.name}, {"is", s.prediction.sentence},   {"simulated", s.prediction.simulated},
-                  {"misfit", s.misfit},         {"power_W", s.prediction.power}, {"power_percent", s.power_percent}};
-      if (t.diagnosis.naming.best && s.prediction.name != "corrected") one["improvement_of_corrected"] = interval(s.improvement);
+      Json one = {{"model", s.prediction.name},
+                  {"is", s.prediction.sentence},
+                  {"simulated", s.prediction.simulated && !s.prediction.computed},
+                  {"from", s.prediction.simulated ? "simulations" : "surrogate"},
+                  {"misfit", s.misfit},
+                  {"power_W", s.prediction.power},
+                  {"power_percent", s.power_percent}};
+      if (s.prediction.name != "corrected") {
+        one["judged_difference"] = s.reliance.difference, one["left_out_error"] = s.reliance.error;
+        if (t.diagnosis.naming.best) one["improvement_of_corrected"] = interval(s.improvement);
+      }
       scores.push_back(std::move(one));
     }
     Json names = Json::array();
@@ -104,6 +112,7 @@ Json held_out(const Told& t) {
     }
     out.push_back({{"condition", t.question.study.conditions[h.condition].name},
                    {"recorded_power_W", recorded.power.value},
+                   {"simulations", h.simulations},
                    {"p_base", h.base_p},
                    {"improves_on_every_rival", h.improves},
                    {"models", scores},

@@ -95,6 +95,15 @@ void parameters(const Told& t, std::string& out) {
   out += "\n";
 }
 
+std::string source(const Prediction& p) {
+  return fmt::format("{}{}", p.computed ? "computed from the base, " : "", p.simulated ? "simulated" : "predicted");
+}
+
+std::string power(const Score& s) {
+  if (!std::isfinite(s.prediction.power)) return "not predicted";
+  return fmt::format("{:.4g} W{}", s.prediction.power, std::isfinite(s.power_percent) ? fmt::format(" ({:+.1f} %)", s.power_percent) : "");
+}
+
 void held_out(const Told& t, std::string& out) {
   out += "## On data that were not fitted\n\n";
   if (t.diagnosis.held_out.empty()) out += "No condition has the role `held_out`: nothing confirms the choice.\n\n";
@@ -102,14 +111,19 @@ void held_out(const Told& t, std::string& out) {
     const calibrate::PowerFigure& recorded = t.diagnosis.evidence.recorded[h.condition].power;
     add(out,
         "{}, recorded power {}. Misfit: mean squared difference over its variance, about 1 when only chance differs.\n\n"
-        "| model | misfit | power | improvement of the corrected model (90 %) |\n|---|---|---|---|\n",
+        "| model | from | misfit | power | improvement of the corrected model (90 %) |\n|---|---|---|---|---|\n",
         t.question.study.conditions[h.condition].name, recorded.known() ? fmt::format("{:.4g} W", recorded.value) : "unknown");
     for (const Score& s : h.scores) {
       const bool compared = t.diagnosis.naming.best && s.prediction.name != "corrected";
-      add(out, "| {}: {} | {:.2f} | {:.4g} W{} | {} |\n", s.prediction.name, s.prediction.sentence, s.misfit, s.prediction.power,
-          recorded.known() ? fmt::format(" ({:+.1f} %)", s.power_percent) : "",
+      add(out, "| {}: {} | {} | {:.2f} | {} | {} |\n", s.prediction.name, s.prediction.sentence, source(s.prediction), s.misfit, power(s),
           compared ? fmt::format("{:.2f} ({:.2f} … {:.2f})", s.improvement.value, s.improvement.low, s.improvement.high) : "");
     }
+    add(out, "\n{} simulations were asked for.", h.simulations);
+    if (std::any_of(h.scores.begin(), h.scores.end(), [](const Score& s) { return !s.prediction.simulated; }))
+      out +=
+          " *Predicted*: by the surrogate of the bank's own simulations in this condition, whose left-out error is below half of the "
+          "difference that is judged.";
+    out += "\n";
     if (!h.scores.empty()) add(out, "\nA recording of the refitted base would look as bad with p = {:.2g}.\n", h.base_p);
     out += "\n";
   }

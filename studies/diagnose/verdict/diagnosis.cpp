@@ -113,12 +113,22 @@ Diagnosis diagnose(const Question& question, const calibrate::Machinery& machine
   diagnosis.problem = problem_of(question, diagnosis.evidence, diagnosis.bank, diagnosis.fit);
   for (naming::Alternative& r : diagnosis.problem.alternatives) r.screened_out = r.candidate && screening.candidate[*r.candidate];
   diagnosis.naming = naming::name_candidates(diagnosis.problem, options);
-  const HeldOutRequest request{question,      machinery, diagnosis.evidence, diagnosis.bank, diagnosis.problem, diagnosis.naming,
-                               diagnosis.fit, kSeeds,    options.seed};
+  const HeldOutRequest request{question,
+                               machinery,
+                               diagnosis.evidence,
+                               diagnosis.bank,
+                               diagnosis.problem,
+                               diagnosis.naming,
+                               diagnosis.fit,
+                               about_to_name(diagnosis.naming, options.level),
+                               options.level / static_cast<double>(std::max<std::size_t>(1, diagnosis.held.size())),
+                               kSeeds,
+                               options.seed};
   diagnosis.alone = fit_alone(request);
   for (const std::size_t condition : diagnosis.held) {
-    machinery.say(fmt::format("held-out condition '{}'", question.study.conditions[condition].name));
     diagnosis.held_out.push_back(hold_against(request, condition));
+    machinery.say(
+        fmt::format("held-out condition '{}': {}", question.study.conditions[condition].name, sources_sentence(diagnosis.held_out.back())));
   }
   if (diagnosis.naming.best || diagnosis.naming.base_p <= options.level) {
     machinery.say("missing mean acceleration, by place and speed");

@@ -38,6 +38,10 @@ Evidence evidence_of(const Question& question, const host::Registry& registry, c
 /// Everything from the bank on.
 Diagnosis diagnose(const Question& question, const calibrate::Machinery& machinery, Evidence evidence, const naming::Options& options);
 
+/// Whether one candidate would be named if the held-out conditions confirm it: significant, sufficient, alone in its class, and no second
+/// beside it.
+bool about_to_name(const naming::Result& naming, double level);
+
 /// Verdict, sentence, names and next experiment of a diagnosis that has everything else.
 void conclude(const Question& question, double level, double noise_units, Diagnosis& diagnosis);
 

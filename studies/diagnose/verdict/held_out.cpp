@@ -1,29 +1,40 @@
 #include "studies/diagnose/verdict/held_out.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
-#include "kernel/base/random.hpp"
+#include "studies/diagnose/verdict/judge.hpp"
 #include "studies/diagnose/verdict/rival_models.hpp"
 
 namespace millscope::diagnose {
 namespace {
 
-constexpr int kDraws = 4000;
+constexpr double kFloor = 1e-6;  // of the recording's variance: what runs show without scatter (readings of the frame) is not singular
+
+const std::string kToPower = "retuned to power";
+
+/// A way of modelling that has parameters to simulate with.
+struct Way {
+  std::string name, sentence;
+  VectorXd coded;
+  std::vector<naming::ActiveCandidate> active;
+  Prediction prediction = {};
+};
 
 /// Mean of the simulations of one parameter set with several seeds.
-Prediction simulate(const HeldOutRequest& r, const VectorXd& coded, const std::vector<naming::ActiveCandidate>& active,
-                    std::size_t condition, const std::string& name) {
-  const VectorXd theta = r.problem.data.natural(coded);
+Prediction simulate(const HeldOutRequest& r, const Way& way, std::size_t condition) {
+  const VectorXd theta = r.problem.data.natural(way.coded);
   std::vector<campaign::Simulation> simulations;
   for (int replicate = 1; replicate <= r.seeds; ++replicate)
-    simulations.push_back(simulation_at(r.question, theta, active, condition, replicate, name));
+    simulations.push_back(simulation_at(r.question, theta, way.active, condition, replicate, way.name));
   Prediction p;
-  p.name = name;
+  p.name = way.name, p.sentence = way.sentence, p.simulated = true;
   int done = 0;
   std::string message;
   for (const campaign::Outcome& outcome : r.machinery.run(simulations)) {
@@ -47,143 +58,183 @@ Prediction simulate(const HeldOutRequest& r, const VectorXd& coded, const std::v
   return p;
 }
 
-struct Judge {
-  std::vector<Index> kept;  ///< observables that every prediction defines; of these are the others
-  VectorXd observed;
-  MatrixXd recording;           ///< covariance: the weight
-  std::vector<MatrixXd> noise;  ///< factors of the laws of the recording's noise
-  double power = 0;
-
-  static double misfit(const VectorXd& r, const Eigen::LLT<MatrixXd>& c) { return r.dot(c.solve(r)) / static_cast<double>(r.size()); }
-
-  Prediction part(const Prediction& p) const {
-    Prediction out = p;
-    out.value = VectorXd(p.value(kept)), out.covariance = MatrixXd(p.covariance(kept, kept));
-    return out;
-  }
-
-  /// Improvement of the first prediction over another, with what noise of recording and simulations leaves open; the widest interval over
-  /// the laws of noise.
-  void compare(const Score& corrected, Score& rival, std::uint64_t seed) const {
-    const Prediction one = part(corrected.prediction), other = part(rival.prediction);
-    const Eigen::LLT<MatrixXd> c(recording + 0.5 * (one.covariance + other.covariance));
-    base::Interval90& found = rival.improvement;
-    found.value = misfit(observed - other.value, c) - misfit(observed - one.value, c);
-    const MatrixXd first = naming::factor(one.covariance), second = naming::factor(other.covariance);
-    found.low = std::numeric_limits<double>::infinity(), found.high = -found.low;
-    base::RandomStream random(seed, 9);
-    for (const MatrixXd& law : noise) {
-      std::vector<double> draws;
-      for (int b = 0; b < kDraws; ++b) {
-        const VectorXd y = observed + law * random.normals(observed.size());
-        draws.push_back(misfit(y - other.value - second * random.normals(y.size()), c) -
-                        misfit(y - one.value - first * random.normals(y.size()), c));
-      }
-      std::sort(draws.begin(), draws.end());
-      found.low = std::min(found.low, draws[kDraws / 20]), found.high = std::max(found.high, draws[kDraws - 1 - kDraws / 20]);
-    }
-  }
-
-  /// How often a recording of this very prediction would look as bad; the largest over the laws of noise.
-  double goodness(const Prediction& whole, std::uint64_t seed) const {
-    const Prediction p = part(whole);
-    const Eigen::LLT<MatrixXd> c(recording + p.covariance);
-    const double seen = misfit(observed - p.value, c);
-    const MatrixXd own = naming::factor(p.covariance);
-    base::RandomStream random(seed, 10);
-    double largest = 0;
-    for (const MatrixXd& law : noise) {
-      int above = 0;
-      for (int b = 0; b < kDraws; ++b)
-        above += misfit(law * random.normals(observed.size()) + own * random.normals(observed.size()), c) >= seen ? 1 : 0;
-      largest = std::max(largest, (1.0 + above) / (1.0 + kDraws));
-    }
-    return largest;
-  }
-};
-
-Score score(const Judge& judge, Prediction prediction) {
-  Score s;
-  const Prediction part = judge.part(prediction);
-  s.misfit = Judge::misfit(judge.observed - part.value, Eigen::LLT<MatrixXd>(MatrixXd(judge.recording + part.covariance)));
-  s.power_percent = 100 * (prediction.power - judge.power) / judge.power;
-  s.prediction = std::move(prediction);
-  return s;
-}
-
-Judge judge_of(const HeldOutRequest& r, std::size_t condition, const std::vector<Prediction>& predictions) {
-  naming::Problem held;
-  add_recorded(r.question, r.evidence, r.bank, {condition}, held);
-  Judge judge{{}, {}, {}, {}, r.evidence.recorded[condition].power.value};
-  for (Index i = 0; i < held.observed.size(); ++i) {
-    if (std::all_of(predictions.begin(), predictions.end(),
-                    [i](const Prediction& p) { return !p.failure.empty() || std::isfinite(p.value[i]); }))
-      judge.kept.push_back(i);
-  }
-  judge.observed = held.observed(judge.kept), judge.recording = held.covariance(judge.kept, judge.kept);
-  for (const MatrixXd& law : held.noise) judge.noise.push_back(naming::factor(MatrixXd(law(judge.kept, judge.kept))));
-  return judge;
-}
-
-HeldOut judged(const HeldOutRequest& r, std::size_t condition, std::vector<Prediction> all, const Prediction& base, bool compared) {
-  const Judge judge = judge_of(r, condition, all);
-  HeldOut out;
-  out.condition = condition;
-  const auto& observables = r.evidence.recorded[condition].observables;
-  for (std::size_t i = 0; i < observables.size(); ++i) {
-    if (!std::binary_search(judge.kept.begin(), judge.kept.end(), Index(i))) out.not_compared.push_back(observables[i].name);
-  }
-  if (base.failure.empty()) out.base_p = judge.goodness(base, r.seed);
-  for (Prediction& p : all) {
-    if (!p.failure.empty())
-      out.failures.push_back(fmt::format("{}: {}", p.name, p.failure));
-    else
-      out.scores.push_back(score(judge, std::move(p)));
-  }
-  if (!compared) return out;
-  out.improves = out.failures.empty();
-  for (std::size_t k = 1; k < out.scores.size(); ++k) {
-    judge.compare(out.scores[0], out.scores[k], r.seed + k);
-    out.improves = out.improves && out.scores[k].improvement.low > 0;
-    out.contradicts = out.contradicts || out.scores[k].improvement.high < 0;
-  }
-  return out;
-}
-
 /// What the best alternative has on; nothing where there is none, or a nuisance is the best.
 std::vector<naming::ActiveCandidate> best_active(const HeldOutRequest& r) {
   if (!r.naming.best) return {};
   return naming::active_of(r.problem.alternatives[*r.naming.best], r.naming.judged[*r.naming.best].fit);
 }
 
+/// The bank's runs in the held-out condition that tell what the surrogate gets wrong there.
+std::vector<MatrixXd> left_out(const naming::BankData& data, const std::vector<naming::ActiveCandidate>& active) {
+  std::vector<MatrixXd> out{naming::left_out_deviations(data, {})};
+  for (const naming::ActiveCandidate& e : active) out.push_back(naming::left_out_deviations(data, e.candidate));
+  return out;
+}
+
+class Trial {
+ public:
+  Trial(const HeldOutRequest& request, std::size_t condition)
+      : r_(request),
+        condition_(condition),
+        held_(problem_alone(request.question, request.evidence, request.bank, condition, request.problem.data)),
+        surrogate_(held_.data),
+        left_out_(left_out(held_.data, best_active(request))) {
+    const RivalModels rivals(r_, condition, surrogate_);
+    add_ways(rivals);
+    if (r_.naming.best) placebo_ = rivals.placebo(), discrepancy_ = rivals.discrepancy();
+    for (Way& way : ways_) way.prediction = predicted(way);
+  }
+
+  HeldOut run() {
+    for (;;) {
+      HeldOut out = judged();
+      const std::set<std::size_t> wanted = to_simulate(out);
+      if (wanted.empty()) return out;
+      for (const std::size_t k : wanted) ways_[k].prediction = simulate(r_, ways_[k], condition_);
+    }
+  }
+
+ private:
+  /// The refitted base is the last.
+  void add_ways(const RivalModels& rivals) {
+    if (r_.naming.best) {
+      const VectorXd& coded = r_.naming.judged[*r_.naming.best].fit.coded;
+      const std::vector<naming::ActiveCandidate> active = best_active(r_);
+      ways_.push_back({"corrected", "with the best candidate, all parameters fitted together", coded, active});
+      if (!active.empty()) ways_.push_back({"effect removed", "the corrected parameters without the effect", coded, {}});
+    }
+    if (const auto metered = rivals.metered()) {
+      ways_.push_back({kToPower,
+                       fmt::format("the base, friction retuned until the power at '{}' matches: the practice",
+                                   r_.question.study.conditions[*metered].name),
+                       rivals.power_only(*metered),
+                       {}});
+    }
+    ways_.push_back({"retuned to all observables", "the base, parameters refitted to all observables", r_.naming.base.coded, {}});
+  }
+
+  double power_in(const VectorXd& value) const {
+    const auto i = r_.evidence.recorded[condition_].find(calibrate::ObservableKind::power);
+    return i ? value[*i] : std::nan("");
+  }
+
+  Prediction predicted(const Way& way) const {
+    Prediction p;
+    p.name = way.name, p.sentence = way.sentence, p.value = surrogate_.at(way.coded, way.active);
+    p.covariance = surrogate_.error_covariance(held_.covariance, way.coded, way.active);
+    p.covariance.diagonal() += kFloor * held_.covariance.diagonal();
+    p.power = power_in(p.value);
+    return p;
+  }
+
+  Prediction moved(const std::string& name, const std::string& sentence, const VectorXd& by) const {
+    Prediction p = ways_.back().prediction;
+    p.name = name, p.sentence = sentence, p.computed = true;
+    p.value += by;
+    if (std::isfinite(power_in(p.value))) p.power = power_in(p.value);
+    return p;
+  }
+
+  /// Whether there is a corrected model to compare with, the first of the ways and of the scores.
+  bool compared() const { return r_.naming.best && ways_.front().prediction.failure.empty(); }
+
+  std::vector<Prediction> predictions() const {
+    std::vector<Prediction> all;
+    for (const Way& way : ways_) all.push_back(way.prediction);
+    if (compared() && ways_.back().prediction.failure.empty()) {
+      all.push_back(moved("placebo", "the base with a free parameter of no meaning, the best of twenty such", placebo_));
+      all.push_back(moved("Gaussian-process discrepancy",
+                          "the base with the residuals of the fitted conditions carried over by a Gaussian process", discrepancy_));
+    }
+    return all;
+  }
+
+  HeldOut judged() const {
+    std::vector<Prediction> all = predictions();
+    Judge judge = Judge::of(held_, left_out_, all);
+    judge.power = r_.evidence.recorded[condition_].power.value;
+    HeldOut out;
+    out.condition = condition_;
+    for (const Way& way : ways_) out.simulations += way.prediction.simulated ? r_.seeds : 0;
+    const auto& observables = r_.evidence.recorded[condition_].observables;
+    for (std::size_t i = 0; i < observables.size(); ++i) {
+      if (!std::binary_search(judge.kept.begin(), judge.kept.end(), Index(i))) out.not_compared.push_back(observables[i].name);
+    }
+    const Prediction& base = ways_.back().prediction;
+    if (base.failure.empty()) out.base_p = judge.goodness(base, r_.seed);
+    for (Prediction& p : all) {
+      if (!p.failure.empty())
+        out.failures.push_back(fmt::format("{}: {}", p.name, p.failure));
+      else
+        out.scores.push_back(judge.score(std::move(p)));
+    }
+    if (compared()) compare(judge, out);
+    return out;
+  }
+
+  void compare(const Judge& judge, HeldOut& out) const {
+    out.improves = out.failures.empty();
+    for (std::size_t k = 1; k < out.scores.size(); ++k) {
+      judge.compare(out.scores[0], out.scores[k], r_.seed + k);
+      out.improves = out.improves && out.scores[k].improvement.low > 0;
+      out.contradicts = out.contradicts || out.scores[k].improvement.high < 0;
+    }
+  }
+
+  std::size_t way_of(const Prediction& p) const {
+    if (p.computed) return ways_.size() - 1;
+    return std::find_if(ways_.begin(), ways_.end(), [&](const Way& w) { return w.name == p.name; }) - ways_.begin();
+  }
+
+  std::set<std::size_t> to_simulate(const HeldOut& out) const {
+    std::set<std::size_t> wanted;
+    const auto ask = [&](std::size_t way) {
+      if (!ways_[way].prediction.simulated) wanted.insert(way);
+    };
+    for (std::size_t k = compared() ? 1 : 0; k < out.scores.size(); ++k) {
+      if (out.scores[k].reliance.enough()) continue;
+      ask(way_of(out.scores[k].prediction));
+      if (compared()) ask(0);
+    }
+    if (!r_.naming.best && out.base_p <= r_.alarm) ask(ways_.size() - 1);
+    if (!r_.at_stake || !compared()) return wanted;
+    ask(0);
+    std::vector<base::Interval90> improvements;
+    for (std::size_t k = 1; k < out.scores.size(); ++k) {
+      improvements.push_back(out.scores[k].improvement);
+      if (out.scores[k].prediction.name == kToPower) ask(way_of(out.scores[k].prediction));
+    }
+    for (const std::size_t k : near_strongest(improvements)) ask(way_of(out.scores[k + 1].prediction));
+    if (!wanted.empty()) return wanted;
+    // What the surrogate's error alone leaves open is settled by simulations.
+    for (std::size_t k = 1; k < out.scores.size(); ++k) {
+      if (!(out.scores[k].improvement.low > 0)) ask(way_of(out.scores[k].prediction));
+    }
+    return wanted;
+  }
+
+  const HeldOutRequest& r_;
+  std::size_t condition_;
+  naming::Problem held_;
+  naming::Surrogate surrogate_;
+  std::vector<MatrixXd> left_out_;
+  std::vector<Way> ways_;
+  VectorXd placebo_, discrepancy_;  ///< what these rivals add to the refitted base
+};
+
 }  // namespace
 
-HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) {
-  const RivalModels rivals(r, condition);
-  std::vector<Prediction> all;
-  const auto add = [&](Prediction p, const std::string& sentence) {
-    p.sentence = sentence;
-    all.push_back(std::move(p));
-  };
-  if (r.naming.best) {
-    const naming::Judged& best = r.naming.judged[*r.naming.best];
-    const std::vector<naming::ActiveCandidate> active = best_active(r);
-    add(simulate(r, best.fit.coded, active, condition, "corrected"), "with the best candidate, all parameters fitted together");
-    if (!active.empty()) add(simulate(r, best.fit.coded, {}, condition, "effect removed"), "the corrected parameters without the effect");
+HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) { return Trial(r, condition).run(); }
+
+std::string sources_sentence(const HeldOut& held) {
+  std::vector<std::string> simulated, predicted;
+  for (const Score& s : held.scores) {
+    if (!s.prediction.computed) (s.prediction.simulated ? simulated : predicted).push_back(s.prediction.name);
   }
-  const bool compared = !all.empty() && all.front().failure.empty();  // the corrected model, first of the scores
-  const Prediction base = simulate(r, r.naming.base.coded, {}, condition, "retuned to all observables");
-  if (const auto metered = rivals.metered()) {
-    add(simulate(r, rivals.power_only(*metered), {}, condition, "retuned to power"),
-        fmt::format("the base, friction retuned until the power at '{}' matches: the practice",
-                    r.question.study.conditions[*metered].name));
-  }
-  add(base, "the base, parameters refitted to all observables");
-  if (compared && base.failure.empty()) {
-    add(rivals.placebo(base), "the base with a free parameter of no meaning, the best of twenty such");
-    add(rivals.discrepancy(base), "the base with the residuals of the fitted conditions carried over by a Gaussian process");
-  }
-  return judged(r, condition, std::move(all), base, compared);
+  std::string out;
+  if (!simulated.empty()) out = fmt::format("{} simulated ({} simulations)", fmt::join(simulated, ", "), held.simulations);
+  if (!predicted.empty()) out += fmt::format("{}{} predicted by the bank's surrogate", out.empty() ? "" : "; ", fmt::join(predicted, ", "));
+  return out;
 }
 
 std::vector<Alone> fit_alone(const HeldOutRequest& r) {

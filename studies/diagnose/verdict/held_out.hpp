@@ -1,5 +1,9 @@
-// Before and after, on conditions that were used for neither fit nor choice: real simulations, several seeds each, against the rivals of
-// the practice.
+// Before and after, on conditions that were used for neither fit nor choice, against the rivals of the practice.
+//
+// The bank has simulations of these conditions, so that its surrogate predicts them. Where its left-out error is not below half of the
+// difference that is judged (judge.hpp), both that differ are simulated, several seeds each. A name rests on simulations: where only the
+// held-out conditions stand between the best candidate and its name, the corrected case, the base retuned to power and every rival that
+// may be the strongest are simulated; so is a rival on which the prediction alone would not let it improve.
 #pragma once
 
 #include <string>
@@ -13,13 +17,21 @@ namespace millscope::diagnose {
 
 /// What one way of modelling says of a held-out condition.
 struct Prediction {
-  std::string name;      ///< "corrected", "retuned to power", …
-  std::string sentence;  ///< what it is
-  VectorXd value;        ///< NaN: some of its simulations leave it undefined
-  MatrixXd covariance;   ///< of the simulations' mean
-  double power = 0;      ///< W
-  bool simulated = true;
-  std::string failure;  ///< why none of its simulations came to its end; "" when some did
+  std::string name;        ///< "corrected", "retuned to power", …
+  std::string sentence;    ///< what it is
+  VectorXd value;          ///< NaN: some of its simulations leave it undefined
+  MatrixXd covariance;     ///< of the simulations' mean, or of the surrogate's error
+  double power = 0;        ///< W; NaN: it is not among the observables, and nothing was simulated
+  bool simulated = false;  ///< else it is the surrogate's
+  bool computed = false;   ///< from that of the refitted base, which is `simulated` or not
+  std::string failure;     ///< why none of its simulations came to its end; "" when some did
+};
+
+/// How far a difference is from what the surrogate gets wrong, in noise units.
+struct Reliance {
+  double difference = 0;  ///< what is judged
+  double error = 0;       ///< of left-out runs, along it
+  bool enough() const { return error < 0.5 * difference; }
 };
 
 struct Score {
@@ -27,17 +39,25 @@ struct Score {
   double misfit = 0;             ///< mean over the observables of rᵀ C⁻¹ r: about 1 when only chance differs
   double power_percent = 0;      ///< (predicted − recorded)/recorded
   base::Interval90 improvement;  ///< its misfit − that of the corrected model
+  Reliance reliance;             ///< on its difference from the corrected model; from the recording where there is none
 };
 
 struct HeldOut {
   std::size_t condition = 0;
+  int simulations = 0;        ///< that were asked for
   std::vector<Score> scores;  ///< corrected first, where there is one
   double base_p = 1;          ///< that a recording of the refitted base looks as bad
   std::vector<std::string> failures;
   std::vector<std::string> not_compared;  ///< observables that some prediction leaves undefined (NaN in its value)
   bool improves = false;                  ///< the interval against every rival model lies above 0
   bool contradicts = false;               ///< that against some rival model lies below 0
+
+  /// Whether the corrected model was simulated here, so that what it was named for may rest on it.
+  bool rests_on_simulations() const { return !scores.empty() && scores[0].prediction.simulated; }
 };
+
+/// "corrected and retuned to power simulated, 6 seeds each; effect removed predicted by the surrogate".
+std::string sources_sentence(const HeldOut& held);
 
 /// θ that matches the powers of the fit conditions, nuisances at their priors' means (those varied apart as they are in the case), as near
 /// the middle of the ranges as that allows: the practice.
@@ -52,6 +72,8 @@ struct HeldOutRequest {
   const naming::Problem& problem;  ///< of the fit conditions
   const naming::Result& naming;
   std::vector<std::size_t> fit;
+  bool at_stake = false;  ///< nothing but the held-out conditions stands between the best candidate and its name
+  double alarm = 0.05;    ///< p of the base in a held-out condition, up to which it is simulated
   int seeds = 3;
   std::uint64_t seed = 1;
 };

@@ -48,11 +48,8 @@ VectorXd retuned_to_power(const naming::BankData& data, const naming::Surrogate&
   return best;
 }
 
-RivalModels::RivalModels(const HeldOutRequest& request, std::size_t held)
-    : r_(request),
-      held_(held),
-      surrogate_(request.problem.data),
-      held_surrogate_(problem_alone(request.question, request.evidence, request.bank, held, request.problem.data).data) {}
+RivalModels::RivalModels(const HeldOutRequest& request, std::size_t held, const naming::Surrogate& held_surrogate)
+    : r_(request), held_(held), surrogate_(request.problem.data), held_surrogate_(held_surrogate) {}
 
 std::optional<std::size_t> RivalModels::metered() const {
   for (const std::size_t c : r_.fit) {
@@ -99,8 +96,8 @@ std::optional<Index> RivalModels::partner(Index i, std::size_t fitted) const {
   return std::nullopt;
 }
 
-Prediction RivalModels::placebo(const Prediction& base) const {
-  const Index n = base.value.size(), m = r_.problem.observed.size();
+VectorXd RivalModels::placebo() const {
+  const Index n = r_.evidence.recorded[held_].value.size(), m = r_.problem.observed.size();
   const naming::Weighting weighting(r_.problem.covariance, surrogate_);
   const MatrixXd& whitening = weighting.whitener;
   VectorXd moved = VectorXd::Zero(n);
@@ -135,14 +132,10 @@ Prediction RivalModels::placebo(const Prediction& base) const {
     least = fit.q;
     moved = held_surrogate_.at(fit.coded) - held_surrogate_.at(r_.naming.base.coded) + size * held;
   }
-  Prediction p = base;
-  p.name = "placebo", p.simulated = false;
-  p.value += moved;
-  if (const auto i = r_.evidence.recorded[held_].find(calibrate::ObservableKind::power)) p.power = p.value[*i];
-  return p;
+  return moved;
 }
 
-Prediction RivalModels::discrepancy(const Prediction& base) const {
+VectorXd RivalModels::discrepancy() const {
   const std::size_t conditions = r_.fit.size();
   VectorXd speed(conditions);
   for (std::size_t k = 0; k < conditions; ++k) speed[k] = r_.question.speed[r_.fit[k]];
@@ -150,9 +143,8 @@ Prediction RivalModels::discrepancy(const Prediction& base) const {
   const double range = std::max(1e-9, std::max(speed.maxCoeff(), here) - std::min(speed.minCoeff(), here));
   const auto kernel = [range](double a, double b) { return std::exp(-0.5 * std::pow((a - b) / range, 2)); };
   const VectorXd residual = r_.problem.observed - surrogate_.at(r_.naming.base.coded);
-  Prediction p = base;
-  p.name = "Gaussian-process discrepancy", p.simulated = false;
-  for (Index i = 0; i < p.value.size(); ++i) {
+  VectorXd moved = VectorXd::Zero(r_.evidence.recorded[held_].value.size());
+  for (Index i = 0; i < moved.size(); ++i) {
     VectorXd difference(speed.size()), noise(speed.size());
     Index at = 0;
     bool all = true;
@@ -173,10 +165,9 @@ Prediction RivalModels::discrepancy(const Prediction& base) const {
       to[a] = signal * kernel(here, speed[a]);
       for (Index b = 0; b < speed.size(); ++b) k(a, b) += signal * kernel(speed[a], speed[b]);
     }
-    p.value[i] += to.dot(k.ldlt().solve(difference));
-    if (r_.evidence.recorded[held_].observables[i].kind == calibrate::ObservableKind::power) p.power = p.value[i];
+    moved[i] = to.dot(k.ldlt().solve(difference));
   }
-  return p;
+  return moved;
 }
 
 }  // namespace millscope::diagnose

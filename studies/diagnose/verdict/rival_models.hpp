@@ -10,17 +10,18 @@ namespace millscope::diagnose {
 
 class RivalModels {
  public:
-  RivalModels(const HeldOutRequest& request, std::size_t held);
+  /// `held_surrogate`: of the held-out condition alone; it must outlive this.
+  RivalModels(const HeldOutRequest& request, std::size_t held, const naming::Surrogate& held_surrogate);
 
   /// The first fitted condition with a recorded power.
   std::optional<std::size_t> metered() const;
   /// Coded θ that matches the power of that condition.
   VectorXd power_only(std::size_t condition) const;
-  /// The base's prediction moved by a parameter of no meaning: each observable by a chance number times its error, the same number in all
-  /// conditions, its size fitted together with θ; of several such parameters the one that helps the fitted conditions most.
-  Prediction placebo(const Prediction& base) const;
-  /// The base's prediction with the residuals of the fitted conditions, carried over by kriging in the speed of the mill.
-  Prediction discrepancy(const Prediction& base) const;
+  /// By what a parameter of no meaning moves the base's prediction: each observable by a chance number times its error, the same number in
+  /// all conditions, its size fitted together with θ; of several such parameters the one that helps the fitted conditions most.
+  VectorXd placebo() const;
+  /// By what the residuals of the fitted conditions move it, carried over by kriging in the speed of the mill.
+  VectorXd discrepancy() const;
 
  private:
   /// Observable of the fitted condition that stands for number i of the held-out one: the same group, the same place in it.
@@ -30,7 +31,8 @@ class RivalModels {
 
   const HeldOutRequest& r_;
   std::size_t held_;
-  naming::Surrogate surrogate_, held_surrogate_;
+  naming::Surrogate surrogate_;
+  const naming::Surrogate& held_surrogate_;
 };
 
 }  // namespace millscope::diagnose

@@ -107,8 +107,16 @@ bool is_nuisance(const Diagnosis& diagnosis) { return !diagnosis.problem.alterna
 bool held_out_confirms(const Diagnosis& diagnosis) {
   return !diagnosis.held_out.empty() &&
          std::all_of(diagnosis.held_out.begin(), diagnosis.held_out.end(), [nuisance = is_nuisance(diagnosis)](const HeldOut& h) {
+           if (!h.rests_on_simulations()) return false;
            return nuisance ? h.failures.empty() && !h.contradicts : h.improves;
          });
+}
+
+/// The second beside the best where both are asked for; null: it is not so.
+const naming::Pair* second_beside(const naming::Result& naming, double level) {
+  if (naming.pairs.empty()) return nullptr;
+  const naming::Pair& pair = naming.pairs.front();
+  return pair.p <= level && pair.p_first <= level && pair.goodness_p > level ? &pair : nullptr;
 }
 
 /// What limits the verdict, whatever it is.
@@ -183,24 +191,26 @@ void nothing_named(const Question& question, double level, double noise_units, D
 
 }  // namespace
 
+bool about_to_name(const naming::Result& naming, double level) {
+  return naming.best && second_beside(naming, level) == nullptr && naming.judged[*naming.best].goodness_p > level &&
+         naming.kept.size() == 1;
+}
+
 void conclude(const Question& question, double level, double noise_units, Diagnosis& diagnosis) {
   reservations(diagnosis);
   if (!diagnosis.naming.best) return nothing_named(question, level, noise_units, diagnosis);
   const naming::Judged& best = diagnosis.naming.judged[*diagnosis.naming.best];
   const std::string name = name_of(diagnosis, *diagnosis.naming.best);
   for (const Index k : diagnosis.naming.kept) diagnosis.named.push_back(name_of(diagnosis, k));
-  if (!diagnosis.naming.pairs.empty()) {
-    const naming::Pair& pair = diagnosis.naming.pairs.front();
-    if (pair.p <= level && pair.p_first <= level && pair.goodness_p > level) {
-      diagnosis.named = {name, name_of(diagnosis, pair.second)};
-      diagnosis.two_effects = true;
-      diagnosis.verdict = Verdict::ambiguous;
-      diagnosis.sentence = fmt::format(
-          "Two effects together are asked for: {} and {} (p of the second beside the first {:.2g}, of the first beside the second {:.2g}).",
-          name, diagnosis.named[1], pair.p, pair.p_first);
-      diagnosis.next_experiment = "Hold both against a condition that was not fitted: put them into the base case and diagnose again.";
-      return;
-    }
+  if (const naming::Pair* pair = second_beside(diagnosis.naming, level)) {
+    diagnosis.named = {name, name_of(diagnosis, pair->second)};
+    diagnosis.two_effects = true;
+    diagnosis.verdict = Verdict::ambiguous;
+    diagnosis.sentence = fmt::format(
+        "Two effects together are asked for: {} and {} (p of the second beside the first {:.2g}, of the first beside the second {:.2g}).",
+        name, diagnosis.named[1], pair->p, pair->p_first);
+    diagnosis.next_experiment = "Hold both against a condition that was not fitted: put them into the base case and diagnose again.";
+    return;
   }
   if (best.goodness_p <= level) {
     diagnosis.verdict = Verdict::outside_library;

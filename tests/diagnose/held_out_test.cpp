@@ -1,0 +1,165 @@
+// What of a held-out condition is predicted from the bank, what is simulated, and that a name rests on simulations.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "made_up_study.hpp"
+#include "studies/diagnose/verdict/diagnosis.hpp"
+#include "studies/diagnose/verdict/judge.hpp"
+
+using namespace millscope;
+using namespace millscope::diagnose;
+using Catch::Matchers::Contains;
+using testing::Scratch;
+
+namespace {
+
+const std::string kRolling = "pairs.glass~glass.rolling_friction", kBridge = "pairs.glass~glass.surface_tension";
+constexpr int kSeeds = 6;
+
+/// Two effects, alike where `alike` and each with a signature of its own otherwise.
+struct Story {
+  explicit Story(const std::vector<std::string>& more = {}, bool alike = false)
+      : question(question_of(folder,
+                             "nuisances: {fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %, name: filling}}\n"
+                             "hypotheses: {rolling_resistance: {}, capillary_bridge: {}}\n"
+                             "bank: {base: 24, each: 10}\n")),
+        truth{"pairs.glass~glass.static_friction=0.3", "pairs.glass~liner.static_friction=0.4", "fill.filling=0.313"} {
+    truth.insert(truth.end(), more.begin(), more.end());
+    const std::vector<std::uint64_t> bridge = alike ? std::vector<std::uint64_t>{21, 22, 23} : std::vector<std::uint64_t>{31, 32, 33};
+    physics = {{kRolling, 0, 0.2, 3, {21, 22, 23}}, {kBridge, 0, 0.08, 3, bridge}};
+  }
+
+  Diagnosis diagnosed(double run_noise = 0.3, double aside = 0) {
+    MadeUpMill mill(question, physics, truth);
+    mill.run_noise = run_noise;
+    Evidence evidence = mill.evidence();
+    evidence.recorded[2].value.array() += aside;
+    naming::Options options;
+    options.draws = 240, options.comparison_draws = 160;
+    Diagnosis d = diagnose::diagnose(question, mill.machinery(), evidence, options);
+    computed = mill.computed();
+    return d;
+  }
+
+  Scratch folder;
+  Question question;
+  std::vector<std::string> truth;
+  std::vector<Physics> physics;
+  int computed = 0;  ///< simulations of all kinds
+};
+
+const Score* score_of(const HeldOut& held, const std::string& name) {
+  const auto found = std::find_if(held.scores.begin(), held.scores.end(), [&](const Score& s) { return s.prediction.name == name; });
+  return found == held.scores.end() ? nullptr : &*found;
+}
+
+bool simulated(const HeldOut& held, const std::string& name) {
+  const Score* score = score_of(held, name);
+  REQUIRE(score != nullptr);
+  return score->prediction.simulated;
+}
+
+/// A naming of which nothing but the held-out conditions is open.
+naming::Result nearly_named() {
+  naming::Result r;
+  r.judged.resize(2);
+  r.judged[0].goodness_p = 0.5;
+  r.best = 0;
+  r.kept = {0};
+  return r;
+}
+
+}  // namespace
+
+TEST_CASE("where nothing is missing the bank predicts the held-out condition, and nothing is simulated for it") {
+  Story story;
+  const Diagnosis d = story.diagnosed();
+  CHECK(d.verdict == Verdict::no_mismatch);
+  REQUIRE(d.held_out.size() == 1);
+  const HeldOut& held = d.held_out[0];
+  CHECK(held.simulations == 0);
+  CHECK(static_cast<std::size_t>(story.computed) == d.bank.points.size() * 3);
+  REQUIRE(held.scores.size() == 2);
+  for (const Score& s : held.scores) {
+    CHECK_FALSE(s.prediction.simulated);
+    CHECK(s.reliance.enough());
+    CHECK(s.misfit < 2);
+    CHECK(std::fabs(s.prediction.power - d.evidence.recorded[2].power.value) < 5);
+  }
+  CHECK(held.base_p > 0.05);
+  CHECK(sources_sentence(held) == "retuned to power, retuned to all observables predicted by the bank's surrogate");
+}
+
+TEST_CASE("where the bank's runs scatter too much to judge by, all is simulated") {
+  Story story;
+  const Diagnosis d = story.diagnosed(6);
+  REQUIRE(d.held_out.size() == 1);
+  CHECK(d.held_out[0].simulations == 2 * kSeeds);
+  for (const Score& s : d.held_out[0].scores) CHECK(s.prediction.simulated);
+}
+
+TEST_CASE("a name rests on simulations: the corrected case, the base retuned to power, and all that may be the strongest rival") {
+  Story story({kRolling + "=0.12"});
+  const Diagnosis d = story.diagnosed();
+  INFO(d.sentence);
+  CHECK(d.verdict == Verdict::named);
+  const HeldOut& held = d.held_out.at(0);
+  CHECK(held.rests_on_simulations());
+  CHECK(simulated(held, "corrected"));
+  CHECK(simulated(held, "retuned to power"));
+  std::vector<base::Interval90> improvements;
+  for (std::size_t k = 1; k < held.scores.size(); ++k) improvements.push_back(held.scores[k].improvement);
+  for (const std::size_t k : near_strongest(improvements)) CHECK(held.scores[k + 1].prediction.simulated);
+  // Those that are computed from the refitted base rest on what it rests on.
+  for (const char* name : {"placebo", "Gaussian-process discrepancy"})
+    CHECK(simulated(held, name) == simulated(held, "retuned to all observables"));
+  CHECK(held.simulations <= 4 * kSeeds);
+  CHECK(held.simulations % kSeeds == 0);
+  CHECK(static_cast<std::size_t>(story.computed) >= d.bank.points.size() * 3 + held.simulations);
+  CHECK_THAT(sources_sentence(held), Contains("corrected, ") && Contains(fmt::format("({} simulations)", held.simulations)));
+
+  // The same figures without the simulations name nothing.
+  Diagnosis predicted = d;
+  predicted.named.clear(), predicted.notes.clear();
+  for (Score& s : predicted.held_out[0].scores) s.prediction.simulated = false;
+  conclude(story.question, 0.05, 3, predicted);
+  CHECK(predicted.verdict == Verdict::ambiguous);
+}
+
+TEST_CASE("a class of two is not about to be named: what is told of the held-out condition is predicted") {
+  Story story({kRolling + "=0.12"}, true);
+  const Diagnosis d = story.diagnosed();
+  INFO(d.sentence);
+  REQUIRE(d.verdict == Verdict::ambiguous);
+  REQUIRE(d.named.size() == 2);
+  CHECK(d.held_out.at(0).simulations == 0);
+  CHECK_FALSE(simulated(d.held_out[0], "corrected"));
+  for (std::size_t k = 1; k < d.held_out[0].scores.size(); ++k) CHECK(d.held_out[0].scores[k].reliance.enough());
+}
+
+TEST_CASE("that something differs in the held-out condition alone is said after the base was simulated there") {
+  Story story;
+  const Diagnosis d = story.diagnosed(0.3, 8);
+  INFO(d.sentence);
+  CHECK_THAT(d.sentence, Contains("does not describe the held-out condition 'speed50'"));
+  CHECK(simulated(d.held_out.at(0), "retuned to all observables"));
+  CHECK(d.held_out[0].simulations == kSeeds);
+}
+
+TEST_CASE("a candidate is about to be named when it is significant, sufficient, alone, and none is asked for beside it") {
+  CHECK(about_to_name(nearly_named(), 0.05));
+  naming::Result r = nearly_named();
+  r.best.reset();
+  CHECK_FALSE(about_to_name(r, 0.05));
+  r = nearly_named(), r.kept = {0, 1};
+  CHECK_FALSE(about_to_name(r, 0.05));
+  r = nearly_named(), r.judged[0].goodness_p = 0.05;
+  CHECK_FALSE(about_to_name(r, 0.05));
+  r = nearly_named(), r.pairs = {{0, 1, {}, 0.01, 0.01, 0.5}};
+  CHECK_FALSE(about_to_name(r, 0.05));
+  r.pairs[0].p_first = 0.2;  // the second would do alone
+  CHECK(about_to_name(r, 0.05));
+}
