@@ -186,6 +186,7 @@ class Trial {
     return std::find_if(ways_.begin(), ways_.end(), [&](const Way& w) { return w.name == p.name; }) - ways_.begin();
   }
 
+  /// The ways that have to be simulated next; none: what is known suffices.
   std::set<std::size_t> to_simulate(const HeldOut& out) const {
     std::set<std::size_t> wanted;
     const auto ask = [&](std::size_t way) {
@@ -198,19 +199,28 @@ class Trial {
     }
     if (!r_.naming.best && out.base_p <= r_.alarm) ask(ways_.size() - 1);
     if (!r_.at_stake || !compared()) return wanted;
-    ask(0);
-    std::vector<base::Interval90> improvements;
-    for (std::size_t k = 1; k < out.scores.size(); ++k) {
-      improvements.push_back(out.scores[k].improvement);
-      if (out.scores[k].prediction.name == kToPower) ask(way_of(out.scores[k].prediction));
-    }
-    for (const std::size_t k : near_strongest(improvements)) ask(way_of(out.scores[k + 1].prediction));
-    if (!wanted.empty()) return wanted;
-    // What the surrogate's error alone leaves open is settled by simulations.
-    for (std::size_t k = 1; k < out.scores.size(); ++k) {
-      if (!(out.scores[k].improvement.low > 0)) ask(way_of(out.scores[k].prediction));
+    for (const std::vector<std::size_t>& next : at_stake(out)) {
+      if (!wanted.empty()) break;  // simulations make the errors smaller by which the next are chosen
+      for (const std::size_t way : next) ask(way);
     }
     return wanted;
+  }
+
+  /// What a name rests on, in the order in which it is asked for: corrected case, practice and strongest rival; rivals that may be the
+  /// strongest; what the surrogate's error alone leaves open.
+  std::vector<std::vector<std::size_t>> at_stake(const HeldOut& out) const {
+    std::vector<std::size_t> rivals;
+    std::vector<base::Interval90> improvements;
+    std::vector<std::vector<std::size_t>> order{{0}, {}, {}};
+    for (std::size_t k = 1; k < out.scores.size(); ++k) {
+      rivals.push_back(way_of(out.scores[k].prediction));
+      improvements.push_back(out.scores[k].improvement);
+      if (out.scores[k].prediction.name == kToPower) order[0].push_back(rivals.back());
+      if (!(improvements.back().low > 0)) order[2].push_back(rivals.back());
+    }
+    if (!rivals.empty()) order[0].push_back(rivals[strongest(improvements)]);
+    for (const std::size_t k : near_strongest(improvements)) order[1].push_back(rivals[k]);
+    return order;
   }
 
   const HeldOutRequest& r_;

@@ -28,14 +28,16 @@ Reliance reliance(const VectorXd& difference, const MatrixXd& covariance, const 
   return {length, length > 0 ? std::sqrt(square) / length : 0};
 }
 
+std::size_t strongest(const std::vector<base::Interval90>& improvements) {
+  const auto smaller = [](const base::Interval90& a, const base::Interval90& b) { return a.value < b.value; };
+  return std::min_element(improvements.begin(), improvements.end(), smaller) - improvements.begin();
+}
+
 std::vector<std::size_t> near_strongest(const std::vector<base::Interval90>& improvements) {
-  if (improvements.empty()) return {};
-  const base::Interval90& strongest =
-      *std::min_element(improvements.begin(), improvements.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
   std::vector<std::size_t> out;
   for (std::size_t k = 0; k < improvements.size(); ++k) {
-    const double error = std::hypot(improvements[k].standard_error(), strongest.standard_error());
-    if (improvements[k].value - strongest.value <= kErrors * error) out.push_back(k);
+    const base::Interval90 &one = improvements[k], &least = improvements[strongest(improvements)];
+    if (one.value - least.value <= kErrors * std::hypot(one.standard_error(), least.standard_error())) out.push_back(k);
   }
   return out;
 }

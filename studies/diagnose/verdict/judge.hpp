@@ -18,7 +18,9 @@ namespace millscope::diagnose {
 /// without runs tells nothing: the error is infinite.
 Reliance reliance(const VectorXd& difference, const MatrixXd& covariance, const std::vector<MatrixXd>& left_out);
 
-/// Which rivals may be the strongest, the one with the smallest improvement: it, and all that are within two standard errors of it.
+/// The rival with the smallest improvement; of none: 0.
+std::size_t strongest(const std::vector<base::Interval90>& improvements);
+/// Which rivals may be the strongest: it, and all that are within two standard errors of it.
 std::vector<std::size_t> near_strongest(const std::vector<base::Interval90>& improvements);
 
 struct Judge {
