@@ -3,9 +3,12 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <filesystem>
 
 #include "app/commands.hpp"
 #include "app/watching.hpp"
+#include "kernel/output/summary.hpp"
+#include "kernel/run/doubts.hpp"
 #include "kernel/run/simulation.hpp"
 
 namespace millscope::app {
@@ -47,7 +50,10 @@ run::RunOptions run_options(const Options& options) {
 
 int report(run::Outcome outcome, const run::RunOptions& options) {
   if (outcome == run::Outcome::interrupted) return kInterrupted;
-  if (!options.quiet) fmt::print("done; see {}\n", (options.output / "summary.json").string());
+  if (options.quiet) return kDone;
+  const std::filesystem::path summary = options.output / "summary.json";
+  fmt::print("done; see {}\n", summary.string());
+  for (const run::Doubt& doubt : run::doubts_in(output::read_json(summary))) fmt::print("doubt: {}\n", run::sentence_of(doubt));
   return kDone;
 }
 

@@ -15,6 +15,7 @@
 #include "kernel/output/summary.hpp"
 #include "kernel/run/progress.hpp"
 #include "kernel/run/recorder.hpp"
+#include "kernel/run/soundness.hpp"
 
 namespace millscope::run {
 namespace {
@@ -140,6 +141,7 @@ Json summary_of(Session& s) {
   j["state_hash"] = fmt::format("{:016x}", system.state_hash());
   j["mill_speed_rad_per_s"] = a.mill_speed;
   j["stiffness_factor"] = a.c.stiffness_factor;
+  j["doubts"] = Json::array();  // before the means that they are of
   j.update(window_summary(a, s.recorder->samples()));
   const dem::Ledger now = system.ledger();
   double fastest = 0;
@@ -149,12 +151,12 @@ Json summary_of(Session& s) {
     j["contact"] = {{"largest_closing_speed_m_per_s", fastest},
                     {"shortest_contact_s", shortest},
                     {"steps_per_shortest_contact", shortest / a.time_step}};
-    if (shortest < 10 * a.time_step) j["contact"]["warning"] = "fewer than 10 steps in the shortest contact: lower time.step_fraction";
   }
   if (s.recorder->window_start() && !s.recorder->samples().empty()) {
     const double span = system.time() - s.recorder->samples().front().time;
     if (span > 0) j["pairs"] = collision_summary(a, now, *s.recorder->window_start(), span);
   }
+  j["doubts"] = doubts_of(soundness_of(a, j));
   return j;
 }
 

@@ -1,0 +1,69 @@
+#include "kernel/run/soundness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kernel/run/lifter_gap.hpp"
+
+namespace millscope::run {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<DeepestContact> deepest_contacts(const Assembly& a) {
+  std::vector<DeepestContact> out;
+  const dem::Ledger ledger = a.system->ledger();
+  for (std::size_t p = 0; p < ledger.pairs.size(); ++p) {
+    const dem::PairPhysics& physics = a.system->physics()[p];
+    out.push_back({physics.name, (physics.wall ? 1.0 : 0.5) * ledger.pairs[p].largest_overlap});
+  }
+  return out;
+}
+
+/// Σ m R / Σ m.
+double mean_radius_by_mass(const config::Case& c) {
+  double moment = 0, mass = 0;
+  for (const config::BeadCase& bead : c.beads) {
+    for (const config::SizeClass& size : bead.sizes) {
+      const double m = bead.number_share * size.number_fraction * bead.density * config::sphere_volume(size.diameter);
+      moment += m * 0.5 * size.diameter;
+      mass += m;
+    }
+  }
+  return moment / mass;
+}
+
+/// The narrowest of all bodies that turn.
+std::optional<LifterGap> lifter_gap(const Assembly& a) {
+  std::optional<LifterGap> narrowest;
+  for (std::size_t g = 0; g < a.geometries.size(); ++g) {
+    if (!a.c.geometry[g].motion.rotation) continue;
+    const std::optional<double> width = narrowest_lifter_gap(a.geometries[g].surface, a.geometries[g].interior);
+    if (width && (!narrowest || *width < narrowest->width)) narrowest = LifterGap{a.c.geometry[g].plugin.name, *width};
+  }
+  return narrowest;
+}
+
+}  // namespace
+
+Soundness soundness_of(const Assembly& a, const Json& summary) {
+  Soundness s;
+  s.deepest = deepest_contacts(a);
+  if (summary.contains("contact")) s.contact_steps = summary["contact"]["steps_per_shortest_contact"].get<double>();
+  if (a.mill_speed != 0) s.turn = 2 * std::numbers::pi / std::abs(a.mill_speed);
+  s.bead_radius = mean_radius_by_mass(a.c);
+  s.gap = lifter_gap(a);
+  if (!summary.contains("window_s")) return s;
+  s.window = summary["window_s"][1].get<double>() - summary["window_s"][0].get<double>();
+  s.steady = summary["steady"].get<bool>();
+  const Json& drift = summary["steadiness"];
+  s.drift = std::max(drift["torque_power_drift_standard_errors"].get<double>(), drift["com_power_drift_standard_errors"].get<double>());
+  const double power = summary["power_W"]["com"].get<double>(), error = summary["power_W"]["com_sem"].get<double>();
+  if (power != 0 && std::isfinite(error)) s.power_error = error / std::abs(power);
+  const double centre = std::hypot(summary["com_m_sem"][0].get<double>(), summary["com_m_sem"][1].get<double>());
+  if (std::isfinite(centre)) s.centre_error = centre;
+  return s;
+}
+
+}  // namespace millscope::run

@@ -1,0 +1,12 @@
+// The numbers of a finished run that its doubts are judged from.
+#pragma once
+
+#include "kernel/run/assembly.hpp"
+#include "kernel/run/doubts.hpp"
+
+namespace millscope::run {
+
+/// `summary`: what summary.json says so far.
+Soundness soundness_of(const Assembly& a, const nlohmann::ordered_json& summary);
+
+}  // namespace millscope::run

@@ -1,0 +1,135 @@
+// Which numbers of a run give cause to doubt it, and which do not.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "kernel/run/doubts.hpp"
+
+using namespace millscope::run;
+using Catch::Contains;
+
+namespace {
+
+/// A run of which nothing is doubted: six turns, and errors that are smaller than whatever is doubted.
+Soundness sound() {
+  Soundness s;
+  s.deepest = {{"glass~glass", 0.03}, {"glass~steel (wall)", 0.049}};
+  s.contact_steps = 20;
+  s.turn = 0.8;
+  s.window = 4.8;
+  s.drift = 1.2;
+  s.power_error = 1e-5;
+  s.centre_error = 1e-7;
+  s.bead_radius = 5e-3;
+  s.gap = LifterGap{"liner", 0.03};
+  return s;
+}
+
+/// The one doubt of `s`.
+Doubt only(const Soundness& s) {
+  const std::vector<Doubt> doubts = doubts_of(s);
+  REQUIRE(doubts.size() == 1);
+  CHECK_FALSE(doubts[0].finding.empty());
+  CHECK_FALSE(doubts[0].may_change.empty());
+  CHECK_FALSE(doubts[0].remedy.empty());
+  return doubts[0];
+}
+
+}  // namespace
+
+TEST_CASE("a sound run has no doubt") { CHECK(doubts_of(sound()).empty()); }
+
+TEST_CASE("beads that sink in by more than a twentieth of their radius are told with their pair") {
+  Soundness s = sound();
+  s.deepest[1].overlap = 0.2;
+  const Doubt d = only(s);
+  CHECK(d.name == "overlap");
+  CHECK(d.of == "glass~steel (wall)");
+  CHECK(d.value == 0.2);
+  CHECK(d.limit == 0.05);
+  CHECK(d.unit == "bead radii");
+  CHECK_THAT(d.finding, Contains("glass~steel (wall)") && Contains("20 %") && Contains("5 %"));
+  CHECK_THAT(d.remedy, Contains("stiffness_factor") && Contains("32 times"));  // 4^(5/2), Hertz
+  s.deepest[0].overlap = 0.3;
+  CHECK(only(s).of == "glass~glass");  // the deepest alone: one remedy serves all
+}
+
+TEST_CASE("an overlap that moves neither power nor centre by their own errors is not told") {
+  Soundness s = sound();
+  s.deepest[1].overlap = 0.06;
+  CHECK(doubts_of(s).size() == 1);
+  s.power_error = s.centre_error = 0.05;
+  CHECK(doubts_of(s).empty());
+  s.power_error = s.centre_error = 0;  // not known
+  CHECK(doubts_of(s).size() == 1);
+}
+
+TEST_CASE("contacts of fewer than ten steps are told") {
+  Soundness s = sound();
+  s.contact_steps = 10;
+  CHECK(doubts_of(s).empty());
+  s.contact_steps = 9.4;
+  const Doubt d = only(s);
+  CHECK(d.name == "contact_steps");
+  CHECK(d.value == 9.4);
+  CHECK_THAT(d.finding, Contains("9.4"));
+  s.contact_steps = {};  // nothing has touched
+  CHECK(doubts_of(s).empty());
+}
+
+TEST_CASE("a window of less than two turns is told, of a mill that turns") {
+  Soundness s = sound();
+  s.window = 1.6;
+  CHECK(doubts_of(s).empty());
+  s.window = 1.2;
+  const Doubt d = only(s);
+  CHECK(d.name == "short_window");
+  CHECK(d.value == Approx(1.5));
+  CHECK_THAT(d.remedy, Contains("0.4 s"));
+  s.turn = 0;
+  CHECK(doubts_of(s).empty());
+}
+
+TEST_CASE("a mill that is not steady is told") {
+  Soundness s = sound();
+  s.steady = false;
+  s.drift = 5.5;
+  const Doubt d = only(s);
+  CHECK(d.name == "not_steady");
+  CHECK(d.value == 5.5);
+  CHECK(d.limit == 3);
+}
+
+TEST_CASE("a bead that fills more than half of a lifter's gap is told, with the body") {
+  Soundness s = sound();
+  s.gap->width = 0.0201;
+  CHECK(doubts_of(s).empty());
+  s.gap->width = 0.0125;
+  const Doubt d = only(s);
+  CHECK(d.name == "lifter_gap");
+  CHECK(d.of == "liner");
+  CHECK(d.value == Approx(0.8));
+  CHECK_THAT(d.finding, Contains("12.5 mm"));
+  s.gap = {};
+  CHECK(doubts_of(s).empty());
+}
+
+TEST_CASE("doubts come back from a summary as they were, and from one of before there were any as none") {
+  Soundness s = sound();
+  s.contact_steps = 5;
+  s.window = 0.4;
+  const std::vector<Doubt> doubts = doubts_of(s);
+  nlohmann::ordered_json summary;
+  summary["doubts"] = doubts;
+  const std::vector<Doubt> read = doubts_in(nlohmann::ordered_json::parse(summary.dump()));
+  REQUIRE(read.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(read[i].name == doubts[i].name);
+    CHECK(read[i].value == doubts[i].value);
+    CHECK(sentence_of(read[i]) == sentence_of(doubts[i]));
+  }
+  summary["doubts"][1]["value"] = nullptr;  // infinity in a file
+  CHECK(std::isinf(doubts_in(summary)[1].value));
+  CHECK(doubts_in({{"steady", true}}).empty());
+  CHECK(doubts_in(nullptr).empty());
+}
