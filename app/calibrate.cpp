@@ -31,6 +31,7 @@ void print_found(const calibrate::Study& study, const calibrate::Calibration& c,
     for (const auto& m : c.inference->posterior.marginal) fmt::print("{}\n", m.statement);
   }
   for (const std::string& note : c.notes) fmt::print("note: {}\n", note);
+  for (const campaign::SharedDoubt& doubt : c.doubts) fmt::print("doubt: {}\n", campaign::sentence_of(doubt));
   fmt::print("results in {}: report.md, calibration.json, calibrated.yaml, runs.csv, pictures\n", output.string());
 }
 

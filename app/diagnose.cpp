@@ -29,6 +29,7 @@ void print_found(const diagnose::Question& question, const diagnose::Diagnosis& 
   }
   for (const diagnose::HeldOut& h : d.held_out)
     fmt::print("held out '{}': {}\n", question.study.conditions[h.condition].name, diagnose::sources_sentence(h));
+  for (const campaign::SharedDoubt& doubt : d.doubts) fmt::print("doubt: {}\n", campaign::sentence_of(doubt));
   fmt::print("results in {}: diagnosis.md, diagnosis.json, pictures{}\n", output.string(), d.naming.best ? ", corrected" : "");
 }
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <set>
 
 #include "studies/calibrate/inference.hpp"
 #include "studies/calibrate/methods.hpp"
@@ -186,6 +188,9 @@ Calibration calibrate(Evaluator& evaluator) {
     const std::string said = contradiction(evaluator.study(), p, c.best[static_cast<Eigen::Index>(p)], c.inference->posterior.marginal[p]);
     if (!said.empty()) c.notes.push_back(said);
   }
+  std::set<std::filesystem::path> runs;
+  for (const Trial& t : evaluator.trials()) runs.insert(t.folders.begin(), t.folders.end());
+  c.doubts = campaign::shared_doubts(runs);
   return c;
 }
 

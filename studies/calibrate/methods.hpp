@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "studies/calibrate/evaluator.hpp"
+#include "studies/campaign/doubts.hpp"
 #include "studies/doe/doe.hpp"
 #include "studies/emulate/posterior.hpp"
 
@@ -48,6 +49,7 @@ struct Calibration {
   std::optional<Composite> composite;
   std::optional<Inference> inference;
   std::vector<std::string> notes;
+  std::vector<campaign::SharedDoubt> doubts;  ///< of all simulations that were used
 };
 
 /// Fractional factorial with centre points → ANOVA → steepest descent → central composite design → quadratic surface → optimum.

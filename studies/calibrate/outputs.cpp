@@ -149,6 +149,7 @@ Json calibration_json(const Evaluator& evaluator, const Calibration& c) {
     if (t.failed) failed.push_back(trial_json(evaluator, t));
   }
   j["failed"] = failed;
+  j["doubts"] = campaign::doubts_json(c.doubts);
   j["notes"] = c.notes;
   Json recordings = Json::object();
   for (std::size_t k = 0; k < study.conditions.size(); ++k) {

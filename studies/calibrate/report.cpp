@@ -127,6 +127,8 @@ std::string report_text(const Evaluator& evaluator, const Calibration& c, const 
   add(out, "# Calibration of {}\n\nMethod `{}`, {} simulations{}. The set below is {}.\n\n", study.base.filename().string(),
       name_of(study.method), evaluator.simulations(),
       failed > 0 ? fmt::format(", {} parameter sets failed and are left out (runs.csv says why)", failed) : "", c.how);
+  for (const campaign::SharedDoubt& doubt : c.doubts) add(out, "- Doubt: {}\n", campaign::sentence_of(doubt));
+  if (!c.doubts.empty()) out += "\n";
   parameters(study, c, out);
   objective(evaluator, c, out);
   for (const std::string& note : c.notes) add(out, "- {}\n", note);

@@ -1,7 +1,9 @@
 #include "studies/calibrate/outputs.hpp"
 #include "kernel/base/text.hpp"
+#include "kernel/output/summary.hpp"
 
 #include <fstream>
+#include <span>
 #include <sstream>
 
 #include "studies/calibrate/validate.hpp"
@@ -18,7 +20,15 @@ TEST_CASE("a calibration leaves its numbers, its case, its runs and its report")
                         "method: response_surface\nbudget: {simulations: 26}\n");
   testing::MadeUpMill mill(study, Eigen::Vector2d(0.42, 0.7), 0.02);
   mill.fails = [](const Eigen::VectorXd& p) { return p[0] > 0.62 && p[1] > 0.74; };
-  Evaluator evaluator(study, mill.machinery(), mill.recorded());
+  folder.write("summary.json", R"({"doubts": [{"name": "short_window", "of": "", "value": 1.5, "limit": 2,
+    "unit": "turns", "finding": "a short window", "may_change": "errors", "remedy": "raise time.end_s"}]})");
+  Machinery machinery = mill.machinery();
+  machinery.run = [&, run = machinery.run](std::span<const campaign::Simulation> simulations) {
+    std::vector<campaign::Outcome> outcomes = run(simulations);
+    for (campaign::Outcome& o : outcomes) o.folder = folder.path;
+    return outcomes;
+  };
+  Evaluator evaluator(study, machinery, mill.recorded());
   const Calibration c = calibrate::calibrate(evaluator);
   const std::filesystem::path out = folder.path / "out";
   write_outputs(evaluator, c, out);
@@ -31,6 +41,8 @@ TEST_CASE("a calibration leaves its numbers, its case, its runs and its report")
   CHECK(runs.find("a bead ran away") != std::string::npos);
   CHECK(report.find("The dominant factor is **mu**") != std::string::npos);
   CHECK(report.find("parameter sets failed") != std::string::npos);
+  CHECK(report.find("Doubt: 1 of 1 simulations: a short window; errors; raise time.end_s") != std::string::npos);
+  CHECK(output::read_json(out / "calibration.json")["doubts"][0]["name"] == "short_window");
   for (const char* picture : {"dry75_x.svg", "dry75_speed.svg", "surface.svg", "profile_mu.svg", "posterior_mu_e.svg"})
     CHECK(std::filesystem::exists(out / "pictures" / picture));
   const Validation v = validate(evaluator, c.best, {1});

@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <span>
 
 #include "kernel/config/writer.hpp"
 #include "made_up_study.hpp"
@@ -104,6 +105,7 @@ TEST_CASE("diagnosis.json has every figure that is promised") {
     if (model["from"] == "surrogate") CHECK(model["left_out_error"] < 0.5 * model["judged_difference"].get<double>());
   }
   CHECK(j["bank"]["failures"].empty());
+  CHECK(j["doubts"].empty());
 }
 
 TEST_CASE("diagnosis.md tells the verdict, every candidate, the figures and the pictures, which are there") {
@@ -124,6 +126,31 @@ TEST_CASE("diagnosis.md tells the verdict, every candidate, the figures and the 
     pictures += page.find("pictures/" + std::string(name) + ".svg") != std::string::npos ? 1 : 0;
   }
   CHECK(pictures == 4);
+}
+
+TEST_CASE("what the simulations give cause to doubt is told once, in numbers and on the page") {
+  const Scratch folder;
+  std::filesystem::create_directories(folder / "run");
+  std::ofstream(folder / "run/summary.json") << R"json({"doubts": [{"name": "overlap", "of": "glass~liner (wall)", "value": 0.2,
+    "limit": 0.05, "unit": "bead radii", "finding": "beads sink in", "may_change": "power", "remedy": "stiffer contacts"}]})json";
+  const Question q = question_of(folder, "hypotheses: {rolling_resistance: {}}\nobserve: {beads: 300}\n");
+  MadeUpMill mill(q, {{kRolling, 0, 0.2, 3, {21, 22, 23}}}, kBase);
+  calibrate::Machinery machinery = mill.machinery();
+  machinery.run = [&, run = machinery.run](std::span<const campaign::Simulation> simulations) {
+    std::vector<campaign::Outcome> outcomes = run(simulations);
+    for (campaign::Outcome& o : outcomes) o.folder = folder / "run";
+    return outcomes;
+  };
+  naming::Options options;
+  options.draws = 240, options.comparison_draws = 160;
+  const Diagnosis d = diagnose::diagnose(q, machinery, mill.evidence(), options);
+  write_outputs({q, d}, folder / "out");
+  const nlohmann::json j = nlohmann::json::parse(base::text_of(folder / "out/diagnosis.json"));
+  REQUIRE(j["doubts"].size() == 1);
+  CHECK(j["doubts"][0]["of"] == "glass~liner (wall)");
+  CHECK(j["doubts"][0]["said_by"] == 1);
+  CHECK(j["doubts"][0]["simulations"] == 1);
+  CHECK_THAT(base::text_of(folder / "out/diagnosis.md"), Contains("Doubt: 1 of 1 simulations: beads sink in; power; stiffer contacts"));
 }
 
 TEST_CASE("corrected/ is a case with the physics on, and a study that can be diagnosed again") {

@@ -207,6 +207,7 @@ Json diagnosis_json(const Told& t) {
             {"used", d.problem.data.rows.size()},
             {"chance", d.naming.chance},
             {"failures", d.bank.failures}}},
+          {"doubts", campaign::doubts_json(d.doubts)},
           {"notes", d.notes},
           {"study", t.question.study.file.string()}};
 }

@@ -180,6 +180,8 @@ std::string diagnosis_text(const Told& t, const std::vector<std::filesystem::pat
   std::string out =
       fmt::format("# Diagnosis of {}\n\n**{}** {}\n\n", t.question.study.file.filename().string(), name_of(d.verdict), d.sentence);
   if (!d.next_experiment.empty()) add(out, "Next: {}\n\n", d.next_experiment);
+  for (const campaign::SharedDoubt& doubt : d.doubts) add(out, "- Doubt: {}\n", campaign::sentence_of(doubt));
+  if (!d.doubts.empty()) out += "\n";
   where_it_differs(t, out);
   what_was_tried(t, out);
   parameters(t, out);

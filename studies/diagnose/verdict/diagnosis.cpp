@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <set>
+#include <span>
 
 #include "studies/diagnose/naming/visibility.hpp"
 #include "studies/diagnose/question/camera_frame.hpp"
@@ -82,6 +85,17 @@ void note_recordings(const Question& question, Diagnosis& diagnosis) {
   for (const auto& [what, where] : lines) diagnosis.notes.push_back(fmt::format("recording of {}: {}", where, what));
 }
 
+/// The same machinery, which notes where the simulations are that it is asked for.
+calibrate::Machinery noting(const calibrate::Machinery& machinery, std::set<std::filesystem::path>& runs) {
+  calibrate::Machinery out = machinery;
+  out.run = [&runs, run = machinery.run](std::span<const campaign::Simulation> simulations) {
+    std::vector<campaign::Outcome> outcomes = run(simulations);
+    for (const campaign::Outcome& outcome : outcomes) runs.insert(outcome.folder);
+    return outcomes;
+  };
+  return out;
+}
+
 }  // namespace
 
 const char* name_of(Verdict verdict) {
@@ -100,7 +114,9 @@ const char* name_of(Verdict verdict) {
   return "";
 }
 
-Diagnosis diagnose(const Question& question, const calibrate::Machinery& machinery, Evidence evidence, const naming::Options& options) {
+Diagnosis diagnose(const Question& question, const calibrate::Machinery& given, Evidence evidence, const naming::Options& options) {
+  std::set<std::filesystem::path> runs;
+  const calibrate::Machinery machinery = noting(given, runs);
   Diagnosis diagnosis;
   diagnosis.evidence = std::move(evidence);
   diagnosis.fit = question.study.with_role(calibrate::Role::fit);
@@ -143,6 +159,7 @@ Diagnosis diagnose(const Question& question, const calibrate::Machinery& machine
                                             text_of(diagnosis.evidence.readings[c])));
   }
   for (const std::string& line : question.left_out) diagnosis.notes.push_back("not tested: " + line);
+  diagnosis.doubts = campaign::shared_doubts(runs);
   conclude(question, options.level, options.noise_units, diagnosis);
   return diagnosis;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "studies/calibrate/session.hpp"
+#include "studies/campaign/doubts.hpp"
 #include "studies/diagnose/verdict/missing_force.hpp"
 #include "studies/diagnose/verdict/terms.hpp"
 
@@ -20,6 +21,7 @@ struct Diagnosis {
   bool two_effects = false;        ///< `named` are two that are asked for together
   std::string next_experiment;     ///< what would tell more; "" when nothing is needed
   std::vector<std::string> notes;
+  std::vector<campaign::SharedDoubt> doubts;  ///< of all simulations that were used
 
   std::vector<std::size_t> fit, held;
   Evidence evidence;  ///< as it was compared
