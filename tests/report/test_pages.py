@@ -68,6 +68,21 @@ class StaticPages(Pages):
         self.assertRegex(lines[0], "^No parameters fit \\(misfit 130 for 35 numbers, p = 3 × 10⁻¹³\\)")
         self.assertRegex(lines[1], "^Bead friction 0.4113, weakly determined; .* The most probable set fits")
 
+    def test_doubts_are_told_in_the_contents_and_below_the_first_sentence(self):
+        doubt = {"name": "overlap", "of": "glass~steel (wall)", "value": 0.2, "limit": 0.05, "unit": "bead radii", "finding": "beads sink in by <20 %>",
+                 "may_change": "power may be off", "remedy": "stiffer contacts", "said_by": 3, "simulations": 48}
+        for name, file in (("retuned", "calibration.json"), ("diagnosis", "diagnosis.json")):
+            shutil.copytree(FIXTURES / name, self.folder / f"{name}-doubted")
+            path = self.folder / f"{name}-doubted" / file
+            path.write_text(json.dumps(json.loads(path.read_text()) | {"doubts": [doubt]}))
+        call(self.folder, "report", "out", "retuned-doubted", "diagnosis-doubted", str(FIXTURES / "surface"), "-o", "doubted.html", "-q")
+        lines = looked_at("contents.mjs", self.folder / "doubted.html").stdout.splitlines()
+        self.assertEqual([line.endswith(" Doubts: 1.") for line in lines], [True, True, True, False], lines)
+        told = looked_at("doubts.mjs", self.folder / "doubted.html").stdout.splitlines()
+        self.assertEqual(len(told), 3, told)
+        self.assertRegex(told[0], "^means are over 0.25 turns of the mill, under 2; .*Remedy: raise time.end_s by")
+        self.assertEqual(told[1:], ["3 of 48 simulations, the worst: beads sink in by <20 %>; power may be off. Remedy: stiffer contacts."] * 2)
+
 
 class LivePage(Pages):
     def test_it_follows_and_says_when_the_server_is_gone(self):

@@ -2,6 +2,7 @@
 import { drawVisible } from "./chart.js";
 import { checked, readDocument } from "./data.js";
 import { element, facts, list } from "./dom.js";
+import { doubtsCount, doubtsElement } from "./doubts.js";
 import { follow } from "./live.js";
 import { analysis } from "./sections/analysis.js";
 import { calibration } from "./sections/calibration.js";
@@ -30,13 +31,13 @@ function content(section, key) {
 
 function sectionElement(section, index) {
   const key = `s${index + 1}`;
-  const { kind, sentence, headline = [], blocks = [], broken } = content(section, key);
+  const { kind, sentence, doubts, headline = [], blocks = [], broken } = content(section, key);
   const notes = section.notes?.length ? element("div", { class: "notes" }, element("h3", null, "Notes"), list(section.notes)) : null;
-  return element("section", { class: "part", id: key, "data-kind": section.kind, "data-sentence": sentence ?? "" },
+  return element("section", { class: "part", id: key, "data-kind": section.kind, "data-sentence": [sentence, doubtsCount(doubts)].filter(Boolean).join(" ") },
     element("header", null, element("p", { class: "kind" }, kind, section.source ? [" · ", element("code", null, section.source)] : null),
       element("h2", null, section.title)),
     broken ? element("p", { class: "missing broken", role: "alert" }, broken) : null,
-    sentence ? element("p", { class: "sentence" }, sentence) : null, headline.some(Boolean) ? facts(headline) : null, blocks, notes);
+    sentence ? element("p", { class: "sentence" }, sentence) : null, doubtsElement(doubts), headline.some(Boolean) ? facts(headline) : null, blocks, notes);
 }
 
 function writeContents() {

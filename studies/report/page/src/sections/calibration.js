@@ -89,7 +89,7 @@ export function calibration(section, key) {
   const conditions = Object.entries(found.conditions ?? {}).map(([name, one]) => ({ name, ...one }));
   const failed = found.failed ?? [];
   return {
-    kind: "Calibration", sentence: sentenceOf(found, all, fit),
+    kind: "Calibration", sentence: sentenceOf(found, all, fit), doubts: found.doubts,
     headline: [fit && ["Fit", fit.fits ? "yes" : "none", fit.told], ...all.map((one) => [titleOf(one.name), value(one, one.value), bound(one)]),
       ["Method", words(found.method), `objective: ${OBJECTIVES[found.objective] ?? found.objective}`], ["Simulations", number(found.simulations), failed.length ? `${failed.length} failed` : "none failed"],
       found.at_best && ["Objective at the set", number(found.at_best.objective, 3), isNumber(found.predicted_objective) ? `${number(found.predicted_objective, 3)} was predicted` : null],

@@ -95,7 +95,7 @@ export function diagnosis(section, key) {
   const error = (name) => held.find((model) => model.model === name)?.power_percent;
   const others = (found90.notes ?? []).filter((one) => !one.startsWith("not tested"));
   return {
-    kind: "Diagnosis", sentence: readable(found90.sentence), headline: [
+    kind: "Diagnosis", sentence: readable(found90.sentence), doubts: found90.doubts, headline: [
       ["Verdict", VERDICTS[found90.verdict] ?? words(found90.verdict), found90.named?.length ? found90.named.map(words).join(", ") : null],
       ["p of the best candidate", probability(best?.p_value ?? smallest), "for all candidates together"],
       best && ["Strength", Object.values(best.parameters ?? {}).map((one) => among(one.value, one.low90, one.high90, scale(one.unit).factor)).join(", ") || "–",

@@ -79,7 +79,7 @@ export function run(section, key) {
   const { summary } = section;
   const seed = /^seed:\s*(\S+)/m.exec(section.case ?? "");
   return {
-    kind: "Run", sentence: sentence(section), headline: headline(section),
+    kind: "Run", sentence: sentence(section), doubts: summary?.doubts, headline: headline(section),
     blocks: [
       movieBlock(section, key), powerChart(section, key), ledger(summary, key), spectra(summary, key), dissipation(summary, key), collisions(summary, key),
       block(`${key}-provenance`, "What it was made with", provenance(summary, key), seed ? paragraph("Seed of the case: ", element("code", null, seed[1])) : null,

@@ -59,8 +59,7 @@ export function collisions(summary, key) {
   const { contact } = summary;
   const power = scale("W", pairs.map((pair) => pair.impact_energy_W));
   const resolved = contact && isNumber(contact.steps_per_shortest_contact)
-    ? paragraph(`The shortest contact, at ${quantity(contact.largest_closing_speed_m_per_s, "m/s", 3)}, lasts about ${number(contact.steps_per_shortest_contact, 3)} time steps.`
-      + (contact.warning ? ` ${contact.warning}` : "")) : null;
+    ? paragraph(`The shortest contact, at ${quantity(contact.largest_closing_speed_m_per_s, "m/s", 3)}, lasts about ${number(contact.steps_per_shortest_contact, 3)} time steps.`) : null;
   return block(`${key}-collisions`, "Collisions", table({ caption: "Collisions by pair of materials", rows: pairs, columns: [
     { label: "pair", value: (pair) => pair.pair }, { label: "per second", number: true, value: (pair) => number(pair.collisions_per_s, 3) },
     { label: `impact energy (${power.unit})`, number: true, value: (pair) => number(pair.impact_energy_W * power.factor, 3) },
