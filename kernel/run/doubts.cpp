@@ -10,19 +10,36 @@ namespace millscope::run {
 namespace {
 
 // Where the limits come from, with the commands: docs/doubts.md.
-constexpr double kOverlap = 0.05;          // of the beads' radius
-constexpr double kPowerPerOverlap = 0.04;  // change of the power, as part of it, over the part of the radius that beads sink in
-constexpr double kCentrePerOverlap = 0.6;  // change of the centre of mass, in radii, over the same
+constexpr double kOverlap = 0.05;  // of the beads' radius
 constexpr double kContactSteps = 10;
 constexpr double kTurns = 2;
 constexpr double kDrift = 3;  // standard errors, as steadiness() judges
 constexpr double kGapFill = 0.5;
 
+/// What beads that sink in may change, over the part of their radius by which they do.
+struct Softness {
+  double centre;  ///< of the centre of mass, in radii
+  double power;   ///< part of it
+};
+constexpr Softness kBeads{2.5, 0.16}, kWall{0.6, 0.04};
+
+/// The most that any pair's overlap stands for: all grow together in one mill, and the one that matters is not known.
+Softness softness_of(const Soundness& run) {
+  Softness most{0, 0};
+  for (const DeepestContact& c : run.deepest) {
+    const Softness& of = c.wall ? kWall : kBeads;
+    most = {std::max(most.centre, of.centre * c.overlap), std::max(most.power, of.power * c.overlap)};
+  }
+  return most;
+}
+
 void add_overlap(const Soundness& run, std::vector<Doubt>& out) {
   const auto shallower = [](const DeepestContact& a, const DeepestContact& b) { return a.overlap < b.overlap; };
   const auto deepest = std::max_element(run.deepest.begin(), run.deepest.end(), shallower);
   if (deepest == run.deepest.end() || !(deepest->overlap > kOverlap)) return;
-  const double part = deepest->overlap, power = kPowerPerOverlap * part, centre = kCentrePerOverlap * part * run.bead_radius;
+  const double part = deepest->overlap;
+  const auto [radii, power] = softness_of(run);
+  const double centre = radii * run.bead_radius;
   if (power < run.power_error && centre < run.centre_error) return;
   out.push_back(
       {"overlap", deepest->pair, part, kOverlap, "bead radii",
@@ -30,14 +47,16 @@ void add_overlap(const Soundness& run, std::vector<Doubt>& out) {
        fmt::format("the charge may lie some {:.1g} mm too low, its power be off by {:.1g} %, and fitted friction with them", 1e3 * centre,
                    100 * power),
        // δ ∝ E^(−2/5) at one closing speed (Hertz)
-       fmt::format("make contacts some {:.2g} times as stiff (stiffness_factor)", std::pow(part / kOverlap, 2.5))});
+       fmt::format("make contacts some {:.0f} times as stiff (stiffness_factor)", std::pow(part / kOverlap, 2.5))});
 }
 
 void add_contact_steps(const Soundness& run, std::vector<Doubt>& out) {
-  if (!run.contact_steps || *run.contact_steps >= kContactSteps) return;
-  out.push_back({"contact_steps", "", *run.contact_steps, kContactSteps, "time steps",
-                 fmt::format("the shortest contact lasts {:.2g} time steps, under {:.0f}", *run.contact_steps, kContactSteps),
-                 "impacts lose or gain energy that is not theirs", "lower time.step_fraction"});
+  if (!run.contact_steps || *run.contact_steps >= kContactSteps || std::abs(run.imbalance) < run.power_error) return;
+  out.push_back(
+      {"contact_steps", "", *run.contact_steps, kContactSteps, "time steps",
+       fmt::format("the shortest contact lasts {:.2g} time steps, under {:.0f}", *run.contact_steps, kContactSteps),
+       fmt::format("impacts lose other energies than the law says, here {:.2g} % of all in the end", 100 * std::abs(run.imbalance)),
+       "lower time.step_fraction"});
 }
 
 void add_short_window(const Soundness& run, std::vector<Doubt>& out) {

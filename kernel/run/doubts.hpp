@@ -26,6 +26,7 @@ void from_json(const nlohmann::ordered_json& j, Doubt& doubt);
 /// The deepest contact of one pair of materials since the start.
 struct DeepestContact {
   std::string pair;
+  bool wall = false;  ///< the second material is of a body
   double overlap = 0;  ///< over the beads' radius: against a wall δ/R, between two beads the mean of δ/R₁ and δ/R₂, which is δ/(2 R*)
 };
 
@@ -43,14 +44,14 @@ struct Soundness {
   double window = 0;                    ///< s, that means are taken over
   bool steady = true;
   double drift = 0;         ///< of the power between the window's halves, in its standard errors
+  double imbalance = 0;     ///< energy that the window's book cannot account for, as part of the walls' work
   double power_error = 0;   ///< standard error of the mean power, as part of it; 0: not known
   double centre_error = 0;  ///< m, standard error of the mean place of the charge's centre of mass across the axis; 0: not known
   double bead_radius = 0;   ///< m, mean by mass
   std::optional<LifterGap> gap;
 };
 
-/// Those that apply, always in the same order. What moves power and centre of mass by less than their own standard errors
-/// is left out.
+/// Those that apply, always in the same order. What matters less than the standard errors of power and centre of mass is left out.
 std::vector<Doubt> doubts_of(const Soundness& run);
 
 /// "finding; may_change; remedy".

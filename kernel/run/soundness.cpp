@@ -16,7 +16,7 @@ std::vector<DeepestContact> deepest_contacts(const Assembly& a) {
   const dem::Ledger ledger = a.system->ledger();
   for (std::size_t p = 0; p < ledger.pairs.size(); ++p) {
     const dem::PairPhysics& physics = a.system->physics()[p];
-    out.push_back({physics.name, (physics.wall ? 1.0 : 0.5) * ledger.pairs[p].largest_overlap});
+    out.push_back({physics.name, physics.wall, (physics.wall ? 1.0 : 0.5) * ledger.pairs[p].largest_overlap});
   }
   return out;
 }
@@ -59,6 +59,7 @@ Soundness soundness_of(const Assembly& a, const Json& summary) {
   s.steady = summary["steady"].get<bool>();
   const Json& drift = summary["steadiness"];
   s.drift = std::max(drift["torque_power_drift_standard_errors"].get<double>(), drift["com_power_drift_standard_errors"].get<double>());
+  s.imbalance = summary["energy"]["imbalance_fraction"].get<double>();
   const double power = summary["power_W"]["com"].get<double>(), error = summary["power_W"]["com_sem"].get<double>();
   if (power != 0 && std::isfinite(error)) s.power_error = error / std::abs(power);
   const double centre = std::hypot(summary["com_m_sem"][0].get<double>(), summary["com_m_sem"][1].get<double>());

@@ -13,11 +13,12 @@ namespace {
 /// A run of which nothing is doubted: six turns, and errors that are smaller than whatever is doubted.
 Soundness sound() {
   Soundness s;
-  s.deepest = {{"glass~glass", 0.03}, {"glass~steel (wall)", 0.049}};
+  s.deepest = {{"glass~glass", false, 0.03}, {"glass~steel (wall)", true, 0.049}};
   s.contact_steps = 20;
   s.turn = 0.8;
   s.window = 4.8;
   s.drift = 1.2;
+  s.imbalance = 0.003;
   s.power_error = 1e-5;
   s.centre_error = 1e-7;
   s.bead_radius = 5e-3;
@@ -49,6 +50,7 @@ TEST_CASE("beads that sink in by more than a twentieth of their radius are told 
   CHECK(d.limit == 0.05);
   CHECK(d.unit == "bead radii");
   CHECK_THAT(d.finding, Contains("glass~steel (wall)") && Contains("20 %") && Contains("5 %"));
+  CHECK_THAT(d.may_change, Contains("0.6 mm") && Contains("0.8 %"));           // by the wall; by the beads it were 0.4 mm and 0.5 %
   CHECK_THAT(d.remedy, Contains("stiffness_factor") && Contains("32 times"));  // 4^(5/2), Hertz
   s.deepest[0].overlap = 0.3;
   CHECK(only(s).of == "glass~glass");  // the deepest alone: one remedy serves all
@@ -73,6 +75,9 @@ TEST_CASE("contacts of fewer than ten steps are told") {
   CHECK(d.name == "contact_steps");
   CHECK(d.value == 9.4);
   CHECK_THAT(d.finding, Contains("9.4"));
+  CHECK_THAT(d.may_change, Contains("0.3 %"));
+  s.power_error = 0.004;
+  CHECK(doubts_of(s).empty());
   s.contact_steps = {};  // nothing has touched
   CHECK(doubts_of(s).empty());
 }
