@@ -80,7 +80,7 @@ class StaticPages(Pages):
         self.assertEqual([line.endswith(" Doubts: 1.") for line in lines], [True, True, True, False], lines)
         told = looked_at("doubts.mjs", self.folder / "doubted.html").stdout.splitlines()
         self.assertEqual(len(told), 3, told)
-        self.assertRegex(told[0], "^means are over 0.25 turns of the mill, under 2; .*Remedy: raise time.end_s by")
+        self.assertRegex(told[0], "^means are over 0.28 turns of the mill, under 2; .*Remedy: raise time.end_s by")
         self.assertEqual(told[1:], ["3 of 48 simulations, the worst: beads sink in by <20 %>; power may be off. Remedy: stiffer contacts."] * 2)
 
 
