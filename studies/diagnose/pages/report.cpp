@@ -118,7 +118,8 @@ void held_out(const Told& t, std::string& out) {
       add(out, "| {}: {} | {} | {:.2f} | {} | {} |\n", s.prediction.name, s.prediction.sentence, source(s.prediction), s.misfit, power(s),
           compared ? fmt::format("{:.2f} ({:.2f} … {:.2f})", s.improvement.value, s.improvement.low, s.improvement.high) : "");
     }
-    add(out, "\n{} simulations were asked for.", h.simulations);
+    out += h.simulations > 0 ? fmt::format("\n{} simulations were made for this, beside the bank's.", h.simulations)
+                             : "\nNo simulation beside the bank's was needed.";
     if (std::any_of(h.scores.begin(), h.scores.end(), [](const Score& s) { return !s.prediction.simulated; }))
       out +=
           " *Predicted*: by the surrogate of the bank's own simulations in this condition, whose left-out error is below half of the "

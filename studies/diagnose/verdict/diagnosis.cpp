@@ -129,17 +129,17 @@ Diagnosis diagnose(const Question& question, const calibrate::Machinery& given, 
   diagnosis.problem = problem_of(question, diagnosis.evidence, diagnosis.bank, diagnosis.fit);
   for (naming::Alternative& r : diagnosis.problem.alternatives) r.screened_out = r.candidate && screening.candidate[*r.candidate];
   diagnosis.naming = naming::name_candidates(diagnosis.problem, options);
-  const HeldOutRequest request{question,
-                               machinery,
-                               diagnosis.evidence,
-                               diagnosis.bank,
-                               diagnosis.problem,
-                               diagnosis.naming,
-                               diagnosis.fit,
-                               about_to_name(diagnosis.naming, options.level),
-                               options.level / static_cast<double>(std::max<std::size_t>(1, diagnosis.held.size())),
-                               kSeeds,
-                               options.seed};
+  const HeldOutRequest request{.question = question,
+                               .machinery = machinery,
+                               .evidence = diagnosis.evidence,
+                               .bank = diagnosis.bank,
+                               .problem = diagnosis.problem,
+                               .naming = diagnosis.naming,
+                               .fit = diagnosis.fit,
+                               .at_stake = about_to_name(diagnosis.naming, options.level),
+                               .alarm = options.level / static_cast<double>(std::max<std::size_t>(1, diagnosis.held.size())),
+                               .seeds = kSeeds,
+                               .seed = options.seed};
   diagnosis.alone = fit_alone(request);
   for (const std::size_t condition : diagnosis.held) {
     diagnosis.held_out.push_back(hold_against(request, condition));

@@ -71,9 +71,9 @@ std::vector<MatrixXd> left_out(const naming::BankData& data, const std::vector<n
   return out;
 }
 
-class Trial {
+class HeldOutTrial {
  public:
-  Trial(const HeldOutRequest& request, std::size_t condition)
+  HeldOutTrial(const HeldOutRequest& request, std::size_t condition)
       : r_(request),
         condition_(condition),
         held_(problem_alone(request.question, request.evidence, request.bank, condition, request.problem.data)),
@@ -127,6 +127,13 @@ class Trial {
     return p;
   }
 
+  /// As if the surrogate did not err. A prediction's own error would hide what differs: with it an alarm is too easily missed.
+  Prediction exact(const Prediction& p) const {
+    Prediction out = p;
+    if (!p.simulated) out.covariance = MatrixXd(VectorXd(kFloor * held_.covariance.diagonal()).asDiagonal());
+    return out;
+  }
+
   Prediction moved(const std::string& name, const std::string& sentence, const VectorXd& by) const {
     Prediction p = ways_.back().prediction;
     p.name = name, p.sentence = sentence, p.computed = true;
@@ -161,7 +168,7 @@ class Trial {
       if (!std::binary_search(judge.kept.begin(), judge.kept.end(), Index(i))) out.not_compared.push_back(observables[i].name);
     }
     const Prediction& base = ways_.back().prediction;
-    if (base.failure.empty()) out.base_p = judge.goodness(base, r_.seed);
+    if (base.failure.empty()) out.base_p = judge.goodness(base, r_.seed), out.strict_base_p = judge.goodness(exact(base), r_.seed);
     for (Prediction& p : all) {
       if (!p.failure.empty())
         out.failures.push_back(fmt::format("{}: {}", p.name, p.failure));
@@ -189,6 +196,7 @@ class Trial {
   /// The ways that have to be simulated next; none: what is known suffices.
   std::set<std::size_t> to_simulate(const HeldOut& out) const {
     std::set<std::size_t> wanted;
+    if (r_.naming.best && !compared()) return wanted;  // the corrected case fails: no name is possible
     const auto ask = [&](std::size_t way) {
       if (!ways_[way].prediction.simulated) wanted.insert(way);
     };
@@ -197,7 +205,7 @@ class Trial {
       ask(way_of(out.scores[k].prediction));
       if (compared()) ask(0);
     }
-    if (!r_.naming.best && out.base_p <= r_.alarm) ask(ways_.size() - 1);
+    if (!r_.naming.best && out.strict_base_p <= r_.alarm) ask(ways_.size() - 1);
     if (!r_.at_stake || !compared()) return wanted;
     for (const std::vector<std::size_t>& next : at_stake(out)) {
       if (!wanted.empty()) break;  // simulations make the errors smaller by which the next are chosen
@@ -234,7 +242,18 @@ class Trial {
 
 }  // namespace
 
-HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) { return Trial(r, condition).run(); }
+HeldOut hold_against(const HeldOutRequest& r, std::size_t condition) { return HeldOutTrial(r, condition).run(); }
+
+bool HeldOut::rests_on_simulations() const {
+  if (scores.empty() || !scores[0].prediction.simulated) return false;
+  std::vector<base::Interval90> improvements;
+  for (std::size_t k = 1; k < scores.size(); ++k) {
+    if (scores[k].prediction.name == kToPower && !scores[k].prediction.simulated) return false;
+    improvements.push_back(scores[k].improvement);
+  }
+  const std::vector<std::size_t> near = near_strongest(improvements);
+  return std::all_of(near.begin(), near.end(), [this](std::size_t k) { return scores[k + 1].prediction.simulated; });
+}
 
 std::string sources_sentence(const HeldOut& held) {
   std::vector<std::string> simulated, predicted;
@@ -244,7 +263,8 @@ std::string sources_sentence(const HeldOut& held) {
   std::string out;
   if (!simulated.empty()) out = fmt::format("{} simulated ({} simulations)", fmt::join(simulated, ", "), held.simulations);
   if (!predicted.empty()) out += fmt::format("{}{} predicted by the bank's surrogate", out.empty() ? "" : "; ", fmt::join(predicted, ", "));
-  return out;
+  if (!held.failures.empty()) out += fmt::format("{}{} failed", out.empty() ? "" : "; ", fmt::join(held.failures, ", "));
+  return out.empty() ? "nothing came to its end" : out;
 }
 
 std::vector<Alone> fit_alone(const HeldOutRequest& r) {

@@ -46,17 +46,18 @@ struct HeldOut {
   std::size_t condition = 0;
   int simulations = 0;        ///< that were asked for
   std::vector<Score> scores;  ///< corrected first, where there is one
-  double base_p = 1;          ///< that a recording of the refitted base looks as bad
+  double base_p = 1;          ///< that a recording of the refitted base looks as bad; of a predicted one, with the surrogate's error
+  double strict_base_p = 1;   ///< the same as if a predicted base had no error: what an alarm is not to be missed by
   std::vector<std::string> failures;
   std::vector<std::string> not_compared;  ///< observables that some prediction leaves undefined (NaN in its value)
   bool improves = false;                  ///< the interval against every rival model lies above 0
   bool contradicts = false;               ///< that against some rival model lies below 0
 
-  /// Whether the corrected model was simulated here, so that what it was named for may rest on it.
-  bool rests_on_simulations() const { return !scores.empty() && scores[0].prediction.simulated; }
+  /// Whether a name may rest on this: corrected model, base retuned to power and every rival that may be the strongest were simulated.
+  bool rests_on_simulations() const;
 };
 
-/// "corrected and retuned to power simulated, 6 seeds each; effect removed predicted by the surrogate".
+/// "corrected, retuned to power simulated (12 simulations); effect removed predicted by the bank's surrogate".
 std::string sources_sentence(const HeldOut& held);
 
 /// θ that matches the powers of the fit conditions, nuisances at their priors' means (those varied apart as they are in the case), as near
@@ -73,7 +74,7 @@ struct HeldOutRequest {
   const naming::Result& naming;
   std::vector<std::size_t> fit;
   bool at_stake = false;  ///< nothing but the held-out conditions stands between the best candidate and its name
-  double alarm = 0.05;    ///< p of the base in a held-out condition, up to which it is simulated
+  double alarm = 0.05;    ///< strict p of the base in a held-out condition, up to which it is simulated
   int seeds = 3;
   std::uint64_t seed = 1;
 };

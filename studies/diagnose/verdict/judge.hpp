@@ -2,8 +2,9 @@
 //
 //   improvement = [(y − b)ᵀ C⁻¹ (y − b) − (y − a)ᵀ C⁻¹ (y − a)]/n,  C = recording + (C_a + C_b)/2
 //
-// a is the corrected model, b a rival. An error e of the surrogate moves it by 2 dᵀC⁻¹e/n to first order, with the difference d = a − b:
-// of e only the part along d matters. So the left-out deviations e_r of the runs are taken along d, in noise units:
+// a is the corrected model, b a rival. An error e of the surrogate that both share moves it by 2 dᵀC⁻¹e/n to first order, with the
+// difference d = a − b: of e only the part along d matters (errors of their own count in the interval). So the left-out deviations e_r of
+// the runs are taken along d, in noise units:
 //
 //   relied on where  √⟨(dᵀC⁻¹e_r)²⟩/|d| < |d|/2,  |d|² = dᵀC⁻¹d
 #pragma once
