@@ -2,7 +2,7 @@
 """Times millscope against LIGGGHTS on the cross-check case: bench/run.sh BUILD_DIR [--quick].
 
 Both start from the same developed bed (positions, velocities, spins, wall angle), take the same step, run pinned to one core, one after
-the other; what counts is the CPU time of the steps after a warm-up. Only ratios within one run of this script mean anything: machines
+the other; what counts is the CPU time of the steps after a warm-up (of two threads the wall time, on all cores). Only ratios within one run of this script mean anything: machines
 drift.
 """
 
@@ -109,7 +109,8 @@ def liner(setup, mesh, length_mm, ends):
 
 def case_words(setup, mesh, length_mm, ends=False):
     """The cross-check case with the liner as this mesh, as words of a command line."""
-    words = [CROSSCHECK / "slice.yaml", "--set", "geometry.liner.file=%s" % liner(setup, mesh, length_mm, ends)]
+    words = [CROSSCHECK / "slice.yaml", "--set", "geometry.liner.file=%s" % liner(setup, mesh, length_mm, ends),
+             "--set", "fill.vessel.length=%g mm" % length_mm]
     if ends:
         return words + ["--set", "geometry.liner.period=", "--set", "domain.periodic="]
     return words + ["--set", "geometry.liner.period=%g mm" % length_mm, "--set", "domain.periodic.z=[0, %g mm]" % length_mm]
@@ -148,9 +149,8 @@ def header(bed):
     return dict(zip(names, (float(w) for w in words[1:])))
 
 
-def time_millscope(setup, words, bed, steps, warm_up, threads=1, copies=1, pinned=True):
-    command = (setup.pin if pinned else []) + [setup.bench_program] + words + ["--load", bed, "--replicate-z", copies, "--steps", steps,
-                                                                               "--warm-up", warm_up, "--threads", threads]
+def time_millscope(setup, words, bed, steps, warm_up, copies=1):
+    command = setup.pin + [setup.bench_program] + words + ["--load", bed, "--replicate-z", copies, "--steps", steps, "--warm-up", warm_up]
     return json.loads(run(command).splitlines()[-1])
 
 

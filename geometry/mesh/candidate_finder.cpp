@@ -17,7 +17,7 @@ namespace {
 
 // Entries of the grid below kFirstList; from there on they are places in lists_, shifted by it.
 constexpr std::size_t kCellsAtOnce = 4096;  // FCL's objects for more would take more memory than all beads together
-constexpr std::uint32_t kUnknown = 0, kAsked = 1, kFar = 2, kFirstList = 3;
+constexpr std::uint32_t kUnknown = 0, kFar = 1, kFirstList = 2;
 
 fcl::Vector3d fcl_vector(const Point& p) { return {p.x, p.y, p.z}; }
 
@@ -103,9 +103,10 @@ CandidateFinder::~CandidateFinder() = default;
 
 void CandidateFinder::prepare(double reach) {
   if (reach <= distance_) return;
-  distance_ = 1.1 * reach;  // a little room, so that a growing margin does not empty the lists each time
-  grid_.prepare(box_, distance_);
+  const double distance = 1.1 * reach;  // a little room, so that a growing margin does not empty the lists each time
   lists_.clear();
+  grid_.prepare(box_, distance);
+  distance_ = distance;
 }
 
 /// The beads that are not surely far. False: a cell is not known yet.
@@ -127,10 +128,10 @@ void CandidateFinder::learn(const GeometryBeads& beads) {
   std::vector<std::uint64_t> unknown;
   for (std::int64_t i = 0; i < beads.count; ++i) {
     const std::uint64_t cell = grid_.cell_of({beads.position[0][i], beads.position[1][i], beads.position[2][i]});
-    if (cell == CellGrid::kOutside || grid_.entry(cell) != kUnknown) continue;
-    grid_.entry(cell) = kAsked;
-    unknown.push_back(cell);
+    if (cell != CellGrid::kOutside && grid_.entry(cell) == kUnknown) unknown.push_back(cell);
   }
+  std::sort(unknown.begin(), unknown.end());
+  unknown.erase(std::unique(unknown.begin(), unknown.end()), unknown.end());
   for (std::size_t begin = 0; begin < unknown.size(); begin += kCellsAtOnce) {
     resolve({unknown.data() + begin, std::min(kCellsAtOnce, unknown.size() - begin)});
   }
@@ -164,8 +165,9 @@ void CandidateFinder::send(const NearBead& near, const GeometryBeads& beads, dou
 }
 
 void CandidateFinder::find(const GeometryBeads& beads, double margin, const CandidateSink& sink) {
-  double reach = 0;
-  for (std::int64_t i = 0; i < beads.count; ++i) reach = std::max(reach, beads.radius[i] + margin);
+  double largest = 0;
+  for (std::int64_t i = 0; i < beads.count; ++i) largest = std::max(largest, beads.radius[i]);
+  const double reach = largest + margin;
   if (!std::isfinite(reach)) throw Refusal("mesh: a bead's radius or the list margin is not finite");
   std::vector<NearBead> near;
   std::shared_lock reading(known_);

@@ -114,7 +114,9 @@ void Mill::pad(Neighbours& n) {
 }
 
 void Mill::keep(const Neighbours& n, const GeometryQuery& query, GeometryContacts& out) const {
-  for (int k = 0; k < n.count && out.count < out.capacity; ++k) {
+  for (int k = 0; k < n.count; ++k) {
+    const std::int64_t first = out.count - kMaxWallContacts;  // beads come in order
+    if (first >= 0 && out.bead[first] == n.bead[k]) continue;
     if (n.candidate[k] >= low_end()) {
       keep_end(n, k, query, out);
     } else if (n.overlap[k] > -query.reach) {

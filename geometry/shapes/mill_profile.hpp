@@ -141,7 +141,8 @@ void MillProfile::near_bays(double x, double y, double reach, const Visit& visit
   for (int k = 0; k < bays(); ++k) {
     const ProfileFrame& f = bay(k);
     const double u = x * f.cosine + y * f.sine, v = y * f.cosine - x * f.sine;
-    if (absolute(v) * bay_cosine_ - u * bay_sine_ <= reach) visit(k);
+    const bool before_it = bay_cosine_ < 0 || u > -reach;  // not beyond the axis, where the lines of its feet meet
+    if (before_it && absolute(v) * bay_cosine_ - u * bay_sine_ <= reach) visit(k);
   }
 }
 

@@ -7,7 +7,6 @@
 
 namespace millscope::dem {
 
-using base::cross;
 using base::dot;
 
 /// For the wide loops.
@@ -22,9 +21,5 @@ inline WallPose plain(const Pose& p) {
   }
   return w;
 }
-
-/// Centre of a bead. Periodic coordinates are wrapped at list rebuilds only: wrapped here, a bead that crosses the boundary would jump away
-/// from the features that were listed for it. A surface must therefore reach a skin beyond the box (mesh: `period`).
-inline Vector3 centre(const PositionLine& x) { return {x.centre[0], x.centre[1], x.centre[2]}; }
 
 }  // namespace millscope::dem

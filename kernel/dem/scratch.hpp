@@ -5,7 +5,6 @@
 
 #include "kernel/dem/aligned.hpp"
 #include "kernel/dem/batch.hpp"
-#include "kernel/dem/rows.hpp"
 #include "millscope/geometry.hpp"
 
 namespace millscope::dem {

@@ -14,6 +14,7 @@ struct alignas(kCacheLine) SlabState {
   AlignedVector<ForceLine> halo;                   ///< forces on beads of later slabs, from the slab's end on; zero between steps
   ForceWindow force;                               ///< in use during this step
   IntegrateResult result{false, -1};               ///< of this step
+  std::vector<std::int64_t> stretches;             ///< of this step: where walls and phase B pause behind the pairs; the slab's end is last
   Ledger ledger;                                   ///< since the start
   std::vector<std::vector<double>> impact, shear;  ///< [body][triangle], J since the start
 };

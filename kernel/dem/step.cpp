@@ -69,7 +69,7 @@ IntegrateResult Step::make(std::int64_t step, const std::function<void()>& obser
     common_.each_slab([this](int slab, int worker) { contacts(slab, worker, false); });
     common_.each_slab([&](int slab, int worker) {
       add_halos(slab, slabs.range(slab));
-      if (has_general_body_force_) apply_body_forces(slab, worker, slabs.range(slab));
+      each_stretch(slab, [&](BeadRange range) { apply_body_forces(slab, worker, range); });
     });
     observe();
     common_.each_slab([&](int slab, int) { slabs_[slab].result = integrate(slab, slabs.range(slab)); });
@@ -91,15 +91,26 @@ void Step::share_of(int worker) {
     contacts(slab, worker, !is_late(slab));
     pushed_[slab].store(step_, std::memory_order_release);
   };
-  if (another_follows && last >= begin) push(last);
+  if (another_follows) push(last);
   for (int slab = begin; slab < last; ++slab) push(slab);
-  if (!another_follows && last >= begin) push(last);
+  if (!another_follows) push(last);
   for (int slab = last; slab >= begin; --slab) {
     if (!is_late(slab)) continue;
     for (int earlier = schedule_.first_reference(slab); earlier < begin; ++earlier) {
       if (!common_.workers.wait_for([&] { return pushed_[earlier].load(std::memory_order_acquire) == step_; })) return;
     }
-    slabs_[slab].result = first_of(slabs_[slab].result, finish(slab, worker, common_.slabs.range(slab)));
+    each_stretch(slab, [&](BeadRange range) { slabs_[slab].result = first_of(slabs_[slab].result, finish(slab, worker, range)); });
+  }
+}
+
+/// The beads of a slab in the stretches in which they are finished behind the pairs. Sums that body forces keep come out the same, whenever
+/// that happens.
+template <class Visit>
+void Step::each_stretch(int slab, const Visit& visit) {
+  std::int64_t begin = common_.slabs.begin(slab);
+  for (const std::int64_t end : slabs_[slab].stretches) {
+    visit(BeadRange{begin, end});
+    begin = end;
   }
 }
 
@@ -116,9 +127,11 @@ void Step::contacts(int slab, int worker, bool finish_too) {
   WallSweep walls(pass, walls_, poses_);
   std::int64_t finished = common_.slabs.begin(slab);
   [[maybe_unused]] const auto fits_ring = [&](std::int64_t end) { return !in_ring || end - finished <= schedule_.ring(slab); };
+  state.stretches.clear();
   const auto trail = [&](std::int64_t end) {
     assert(fits_ring(end));
     walls.until(end);
+    state.stretches.push_back(end);
     if (finish_too) state.result = first_of(state.result, finish(slab, worker, {finished, end}));
     finished = end;
   };
@@ -141,7 +154,7 @@ void Step::contacts(int slab, int worker, bool finish_too) {
 IntegrateResult Step::finish(int slab, int worker, BeadRange range) {
   if (range.begin == range.end) return {false, -1};
   add_halos(slab, range);
-  if (has_general_body_force_) apply_body_forces(slab, worker, range);
+  apply_body_forces(slab, worker, range);
   return integrate(slab, range);
 }
 
@@ -164,6 +177,7 @@ void Step::add_halos(int slab, BeadRange range) {
 }
 
 void Step::apply_body_forces(int slab, int worker, BeadRange range) {
+  if (!has_general_body_force_) return;
   const SlabPass pass{common_, particles_, slabs_[slab], *scratch_[worker], slab, step_};
   BodyForcePass forces(pass, body_forces_, acceleration_, time());
   for (std::int64_t begin = range.begin; begin < range.end; begin += kBatch) forces.run({begin, std::min(range.end, begin + kBatch)});

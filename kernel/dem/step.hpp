@@ -37,6 +37,8 @@ class Step {
   void share_of(int worker);
   void contacts(int slab, int worker, bool finish_too);
   IntegrateResult finish(int slab, int worker, BeadRange range);
+  template <class Visit>
+  void each_stretch(int slab, const Visit& visit);
   void add_halos(int slab, BeadRange range);
   void apply_body_forces(int slab, int worker, BeadRange range);
   IntegrateResult integrate(int slab, BeadRange range);

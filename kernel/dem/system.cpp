@@ -57,6 +57,7 @@ void System::rebuild() {
     const BeadRange beads = p.common.slabs.range(slab);
     std::fill(particles.force.begin() + beads.begin, particles.force.begin() + beads.end, ForceLine{});
   });
+  p.walls.end_rebuild();
   p.step.lists_changed();
   ++rebuilds_;
   rebuild_needed_ = false;

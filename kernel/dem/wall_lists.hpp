@@ -69,6 +69,8 @@ class WallLists {
   void rebuild(int slab, const CellOrder& order, Particles& particles);
   /// Adds to the work of each bead that is near a wall, by its new number.
   void add_work(const std::vector<std::uint32_t>& new_index, std::uint32_t near, std::vector<std::uint32_t>& work) const;
+  /// After all slabs.
+  void end_rebuild() { carried_.clear(); }
   /// The walls have moved on by one step. True: by more than the lists allow.
   bool move_on();
 

@@ -63,7 +63,8 @@ void WallSweep::run(Chunk& chunk) {
   }
 }
 
-/// Asks the geometry.
+/// Asks the geometry. Periodic coordinates are wrapped at list rebuilds only: wrapped here, a bead that crosses the boundary would jump
+/// away from the features that were listed for it. A surface must therefore reach a skin beyond the box (mesh: `period`).
 void WallSweep::ask(const Chunk& chunk) {
   const WallList& list = walls_.of(pass_.slab, chunk.body);
   const Body& body = walls_.bodies()[chunk.body];

@@ -253,7 +253,7 @@ IntegrateResult integrate(const IntegrateContext& c) {
     store4(force.f, four(0.0));
     store4(force.t, four(0.0));
     if (!(moved2[0] + moved2[1] + moved2[2] <= static_cast<double>(c.reference[i].allowed2))) result.rebuild = true;
-    if (!(step2[0] + step2[1] + step2[2] <= c.largest_step2)) result.runaway = i;
+    if (result.runaway < 0 && !(step2[0] + step2[1] + step2[2] <= c.largest_step2)) result.runaway = i;
   }
   return result;
 }

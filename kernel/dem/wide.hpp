@@ -63,7 +63,7 @@ struct WallSums {
 /// What a step found out about a slab.
 struct IntegrateResult {
   bool rebuild;          ///< some bead used up its skin (or is not finite)
-  std::int64_t runaway;  ///< index of a bead that moved too far in this one step, or −1
+  std::int64_t runaway;  ///< the first bead that moved too far in this one step, or −1
 };
 
 struct WideTable {

@@ -12,8 +12,9 @@ constexpr int kYields = 100;
 
 }  // namespace
 
-void Workers::pause(int spin) {
-  if (spin < kSpins) {
+void Workers::pause(int& spins) {
+  if (spins < kSpins) {
+    ++spins;
     __builtin_ia32_pause();
   } else {
     std::this_thread::yield();
@@ -55,14 +56,14 @@ void Workers::run(int slabs, const std::function<void(int, int)>& task) {
   for (int worker = 0; worker < count_; ++worker) {
     if (claim(worker, generation)) share(worker);
   }
-  for (int spin = 0; pending_.load(std::memory_order_acquire) != 0; ++spin) pause(spin);
+  for (int spins = 0; pending_.load(std::memory_order_acquire) != 0;) pause(spins);
   if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void Workers::loop(int worker) {
   unsigned seen = 0;
   for (;;) {
-    for (int spin = 0; generation_.load(std::memory_order_acquire) == seen && spin < kSpins + kYields; ++spin) pause(spin);
+    for (int look = 0, spins = 0; generation_.load(std::memory_order_acquire) == seen && look < kSpins + kYields; ++look) pause(spins);
     generation_.wait(seen, std::memory_order_acquire);
     seen = generation_.load(std::memory_order_acquire);
     if (stop_.load()) return;

@@ -30,15 +30,15 @@ class Workers {
   /// Inside a task: waits until `done`, which a share of a lower number brings about. False: a task has failed, so that it may never come.
   template <class Done>
   bool wait_for(const Done& done) const {
-    for (int spin = 0; !done(); ++spin) {
+    for (int spins = 0; !done(); pause(spins)) {
       if (failed_.load(std::memory_order_relaxed)) return false;
-      pause(spin);
     }
     return true;
   }
 
  private:
-  static void pause(int spin);
+  /// Between two looks; `spins` counts them.
+  static void pause(int& spins);
   void loop(int worker);
   void share(int worker);
   /// True for one caller per worker and generation.

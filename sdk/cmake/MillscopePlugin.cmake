@@ -1,8 +1,9 @@
 # millscope_add_plugin(NAME SOURCES file… [WIDE] [LINK target…])
 #
-# Builds one plugin library, the target NAME_plugin. Contact laws, interactions and pair parameters say WIDE: they are built once per instruction set
-# (x86-64-v2, v3, v4) into the sub-folders v2, v3, v4, and the loader takes the best that the machine runs. The same function
-# serves the plugins of the project and those built out of tree with find_package(millscope).
+# Builds one plugin library, the target NAME_plugin. Contact laws, interactions and pair parameters say WIDE, and so does a geometry that
+# computes its contacts in packs: they are built once per instruction set (x86-64-v2, v3, v4) into the sub-folders v2, v3, v4, and the
+# loader takes the best that the machine runs. The same function serves the plugins of the project and those built out of tree with
+# find_package(millscope).
 
 if(NOT DEFINED MILLSCOPE_PLUGIN_OUTPUT)
   set(MILLSCOPE_PLUGIN_OUTPUT ${CMAKE_BINARY_DIR}/lib/millscope/plugins)

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <thread>
 
 #include "geometry/shapes/mill.hpp"
 #include "tests/geometry/helpers.hpp"
@@ -69,4 +70,22 @@ TEST_CASE("A periodic slice feels its neighbour across both ends") {
     CHECK(std::fabs(found[0].normal.y - 1) < 1e-12);
     CHECK(found[0].triangle < 8);
   }
+}
+
+TEST_CASE("Several threads that ask for candidates at once get what one would get") {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> u(0, 0.1);
+  std::vector<std::vector<Point>> places(4);
+  for (std::vector<Point>& p : places) {
+    for (int i = 0; i < 500; ++i) p.push_back({u(random), u(random), u(random)});
+  }
+  const auto alone = make_mesh(cube(0.1)), shared = make_mesh(cube(0.1));
+  std::vector<std::vector<std::vector<std::uint32_t>>> found(places.size());
+  std::vector<std::thread> threads;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    threads.emplace_back([&, k] { found[k] = candidates_of(*shared, places[k], 0.002, 0.001 * static_cast<double>(k)); });
+  }
+  for (std::thread& t : threads) t.join();
+  for (std::size_t k = 0; k < places.size(); ++k)
+    CHECK(found[k] == candidates_of(*alone, places[k], 0.002, 0.001 * static_cast<double>(k)));
 }

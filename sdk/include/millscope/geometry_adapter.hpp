@@ -6,7 +6,7 @@
 //     const std::string& report() const;                  // "key: value" lines
 //     Surface surface() const;                            // pointers stay valid as long as the object
 //     Interior interior() const;
-//     void candidates(const GeometryBeads&, double margin, const CandidateSink&);     // many threads; bead by bead, features ascending
+//     void candidates(const GeometryBeads&, double margin, const CandidateSink&) const;   // many threads; bead by bead, features ascending
 //     void touch(const WallBead&, const std::uint32_t* candidates, std::size_t count, WallContacts&) const;  // many threads
 //     void prefetch(std::uint32_t candidate) const;       // optional: called some beads before touch
 //     void contacts(const GeometryQuery&, GeometryContacts&) const;   // in the place of touch: all beads at once, for packs

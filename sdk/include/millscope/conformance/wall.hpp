@@ -86,6 +86,10 @@ class WallProbe {
                          material.data()};
     held_.table().contacts(held_.get(), &query, &out);
     if (out.count < 0 || out.count > out.capacity) throw Refusal("contacts: more are counted than there was room for");
+    const std::int64_t count = out.count;
+    out.triangle = nullptr;  // where nobody asks for triangles the contacts are the same
+    held_.table().contacts(held_.get(), &query, &out);
+    if (out.count != count) throw Refusal("contacts: without triangles there are others");
     std::vector<Touch> touches;
     for (std::size_t i = 0; i < as_size(out.count); ++i) {
       touches.push_back({bead[i], overlap[i], {normal[0][i], normal[1][i], normal[2][i]}, feature[i], triangle[i], material[i]});
