@@ -22,6 +22,7 @@ namespace {
 
 constexpr Parameter kParameters[] = {
     choice_parameter("grid", "xy|cylindrical|xyz|r_theta_z", "xy", "Coordinates of the cells."),
+    choice_parameter("maps", "all|occupancy_and_speed", "all", "Which maps are made: fewer cost less."),
     integer_parameter("cells_x", 50, 1, 2000, "Cells across the mill; 50 are 6 mm each in a mill of 300 mm."),
     integer_parameter("cells_y", 50, 1, 2000, "Cells up the mill."),
     integer_parameter("cells_z", 10, 1, 2000, "Cells along the axis."),
@@ -42,7 +43,10 @@ class PeptGrid {
   static constexpr std::uint64_t kNeeds = kHasVelocity;
 
   PeptGrid(const Parameters& parameters, const AnalyzerContext& context)
-      : range_(axial_range(parameters, context)), cells_(parameters, context, range_), largest_id_(context.largest_id) {
+      : range_(axial_range(parameters, context)),
+        cells_(parameters, context, range_),
+        largest_id_(context.largest_id),
+        all_maps_(parameters.text("maps") == "all") {
     const double beads = context.charge_count * 4.0 / 3.0 * std::numbers::pi * std::pow(context.bead_radius, 3);
     bead_volume_ = beads > 0 ? beads : context.bead_density > 0 ? context.charge_mass / context.bead_density : 0;
   }
@@ -71,6 +75,7 @@ class PeptGrid {
     add_field(
         results, "occupancy", "1", "Residence-time fraction of each cell; sums to one over the maps.",
         [=](const double* m) { return ratio(m[kTime], in_range); }, moments, kShare);
+    if (!all_maps_) return add_speed(results, moments);
     add_field(
         results, "visits", "1", "Entries into the cell: independent visits.", [](const double* m) { return m[kVisits]; }, moments,
         kBookkeeping | kNotNegative);
@@ -106,7 +111,7 @@ class PeptGrid {
         in_range += counts ? weight : 0;
         if (!cell) continue;
         double* m = sums[0] + *cell * kMoments;
-        m[kVisits] += entered ? 1 : 0;
+        if (all_maps_) m[kVisits] += entered ? 1 : 0;
         add_motion<polar>(m, weight, x, y, block, s);
       }
     }
@@ -118,14 +123,15 @@ class PeptGrid {
   void add_motion(double* m, double weight, double x, double y, const FrameBlock& block, std::int64_t s) const {
     const double u = block.velocity[0][s], v = block.velocity[1][s], w = block.velocity[2][s];
     const double square = u * u + v * v + w * w;
+    m[kTime] += weight;
+    m[kSpeed] += weight * std::sqrt(square);
+    if (!all_maps_) return;
     const double radius_square = std::max(x * x + y * y, 1e-14);  // on the axis itself ω has no value
     const double swirl = cells_.sense() < 0 ? y * u - x * v : x * v - y * u, turning = swirl / radius_square;
     const double per_radius = polar ? 1 / std::sqrt(radius_square) : 0;
-    m[kTime] += weight;
     m[kVelocity0] += weight * (polar ? (x * u + y * v) * per_radius : u);
     m[kVelocity1] += weight * (polar ? swirl * per_radius : v);
     m[kVelocity2] += weight * w;
-    m[kSpeed] += weight * std::sqrt(square);
     m[kTurning] += weight * std::fabs(turning);
     m[kSignedTurning] += weight * turning;
     m[kSquare] += weight * square;
@@ -173,6 +179,11 @@ class PeptGrid {
         results, name, unit, doc, [=](const double* m) { return ratio(m[moment], m[kTime]); }, moments, traits);
   }
 
+  void add_speed(Results& results, const double* moments) const {
+    add_mean(results, "speed", "m/s", "Mean magnitude of the velocity; noise of the measurement raises it where beads are slow.", kSpeed,
+             moments);
+  }
+
   void add_velocities(Results& results, const double* moments) const {
     const bool polar = cells_.polar();
     add_mean(results, polar ? "velocity_r" : "velocity_x", "m/s", polar ? "Mean velocity outwards." : "Mean velocity along x.", kVelocity0,
@@ -180,8 +191,7 @@ class PeptGrid {
     add_mean(results, polar ? "velocity_theta" : "velocity_y", "m/s",
              polar ? "Mean velocity in the turning sense." : "Mean velocity upwards.", kVelocity1, moments);
     add_mean(results, "velocity_z", "m/s", "Mean velocity along the axis.", kVelocity2, moments);
-    add_mean(results, "speed", "m/s", "Mean magnitude of the velocity; noise of the measurement raises it where beads are slow.", kSpeed,
-             moments);
+    add_speed(results, moments);
     add_mean(results, "angular_speed", "rad/s", "Mean of |v_theta|/r (Chagas 2015); noise raises it near the axis.", kTurning, moments);
     if (cells_.sense() != 0) {
       add_mean(results, "angular_velocity", "rad/s", "Mean of v_theta/r, positive in the turning sense.", kSignedTurning, moments);
@@ -219,6 +229,7 @@ class PeptGrid {
   Cells cells_;
   std::vector<double> volumes_ = cells_.volumes();  ///< m³; the same for every resample
   std::int64_t largest_id_;
+  bool all_maps_;
   double bead_volume_ = 0;
 };
 

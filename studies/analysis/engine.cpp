@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "kernel/base/parallel.hpp"
 #include "studies/analysis/covariance.hpp"
 #include "studies/analysis/resample.hpp"
+#include "studies/analysis/resampled_sums.hpp"
 #include "studies/analysis/sums.hpp"
 #include "studies/analysis/times.hpp"
 
@@ -59,7 +61,8 @@ Blocks gather(FrameSource& source, const std::vector<AnalyzerInstance>& instance
   return blocks;
 }
 
-/// Deviations of one analyzer's values: first the draws, then each block left out; [draws + blocks, values].
+/// Deviations of those values of an analyzer whose uncertainty is asked for: first the draws, then each block left out; [draws + blocks,
+/// values].
 struct Deviations {
   std::size_t values = 0;
   std::vector<float> numbers;
@@ -71,9 +74,6 @@ struct Resampling {
   const std::vector<std::uint32_t>& counts;
   std::size_t draws;
   std::size_t items() const { return draws + blocks.size(); }
-  std::size_t group() const {
-    return static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(blocks.size()))));
-  }  ///< blocks in one
 };
 
 void add_part(const SumLayout::Part& part, const Row& row, double count, double* sums) {
@@ -81,63 +81,42 @@ void add_part(const SumLayout::Part& part, const Row& row, double count, double*
   for (std::size_t i = 0; i < part.size; ++i) sums[i] += count * from[i];
 }
 
-/// Sums of neighbouring blocks, √blocks at a time: leaving out one block then costs 2 √blocks additions. A cell that only this block
-/// visited comes out as exactly 0, as it would not if the block were subtracted from the whole.
-std::vector<std::vector<double>> group_sums(const SumLayout::Part& part, const Resampling& resampling) {
-  std::vector<std::vector<double>> groups;
-  for (std::size_t b = 0; b < resampling.blocks.size(); ++b) {
-    if (b % resampling.group() == 0) groups.emplace_back(part.size, 0.0);
-    add_part(part, resampling.blocks[b], 1, groups.back().data());
-  }
-  return groups;
-}
-
-/// The sums of a draw, or of all blocks but one.
-void add_item(const SumLayout::Part& part, const Resampling& resampling, const std::vector<std::vector<double>>& groups, std::size_t item,
-              double* sums) {
-  const std::size_t blocks = resampling.blocks.size();
-  if (item < resampling.draws) {
-    for (std::size_t b = 0; b < blocks; ++b) {
-      const std::uint32_t count = resampling.counts[item * blocks + b];
-      if (count > 0) add_part(part, resampling.blocks[b], count, sums);
-    }
-    return;
-  }
-  const std::size_t left_out = item - resampling.draws, own = left_out / resampling.group();
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    if (g == own) continue;
-    for (std::size_t i = 0; i < part.size; ++i) sums[i] += groups[g][i];
-  }
-  for (std::size_t b = own * resampling.group(); b < std::min(blocks, (own + 1) * resampling.group()); ++b) {
-    if (b != left_out) add_part(part, resampling.blocks[b], 1, sums);
-  }
-}
+/// An array and where its values stand in what `finish_values` fills.
+struct Wanted {
+  ResultArray* array;
+  std::size_t first;
+};
 
 Deviations resample(const AnalyzerInstance& instance, const SumLayout::Part& part, const std::vector<ResultArray>& arrays,
-                    const Resampling& resampling, std::size_t workers) {
+                    const std::vector<Wanted>& wanted, const Resampling& resampling, std::size_t workers) {
+  std::size_t all = 0;
+  for (const ResultArray& a : arrays) all += a.size();
   Deviations deviations;
-  std::vector<double> centre;
-  for (const ResultArray& a : arrays) centre.insert(centre.end(), a.value.begin(), a.value.end());
-  deviations.values = centre.size();
-  const double bytes = 4.0 * static_cast<double>(resampling.items()) * static_cast<double>(centre.size());
+  for (const Wanted& w : wanted) deviations.values += w.array->size();
+  const double bytes = 4.0 * static_cast<double>(resampling.items()) * static_cast<double>(deviations.values);
   if (bytes > kMostDrawBytes) {
     throw UserError(fmt::format("analyzer '{}': {} values in {} resamples need {:.1f} GB; give it fewer cells, or lower resampling.draws",
-                                instance.name, centre.size(), resampling.items(), bytes * 1e-9));
+                                instance.name, deviations.values, resampling.items(), bytes * 1e-9));
   }
-  deviations.numbers.resize(resampling.items() * centre.size());
+  deviations.numbers.resize(resampling.items() * deviations.values);
+  const ResampledSums sums(resampling.blocks, part, resampling.counts, resampling.draws);
   struct Scratch {
     std::vector<double> sums, values;
   };
   std::vector<Scratch> scratch(workers);
-  const std::vector<std::vector<double>> groups = group_sums(part, resampling);
-  base::for_each_item(resampling.items(), workers, [&](std::size_t item, std::size_t worker) {
+  base::for_each_item(sums.group_count(), workers, [&](std::size_t group, std::size_t worker) {
     Scratch& s = scratch[worker];
-    s.sums.assign(part.size, 0.0);
-    s.values.resize(centre.size());
-    add_item(part, resampling, groups, item, s.sums.data());
-    finish_values(instance, part, s.sums.data(), arrays, s.values);
-    float* row = deviations.row(item);
-    for (std::size_t i = 0; i < centre.size(); ++i) row[i] = static_cast<float>(s.values[i] - centre[i]);
+    s.sums.assign(ResampledSums::kGroup * part.size, 0.0);
+    s.values.resize(all);
+    const std::size_t first = group * ResampledSums::kGroup, last = std::min(first + ResampledSums::kGroup, resampling.items());
+    sums.fill(group, s.sums.data());
+    for (std::size_t item = first; item < last; ++item) {
+      finish_values(instance, part, s.sums.data() + (item - first) * part.size, arrays, s.values);
+      float* row = deviations.row(item);
+      for (const Wanted& w : wanted) {
+        for (std::size_t i = 0; i < w.array->size(); ++i) *row++ = static_cast<float>(s.values[w.first + i] - w.array->value[i]);
+      }
+    }
   });
   return deviations;
 }
@@ -257,7 +236,7 @@ ResultSet run_analyzers(FrameSource& source, const std::vector<AnalyzerInstance>
   for (std::string& note : notes_on(results.meta, blocks.rule, total)) results.meta.notes.push_back(std::move(note));
 
   const std::vector<std::uint32_t> counts = draw_counts(count, options.draws, options.seed);
-  for (std::size_t k = 0; k < kBasics; ++k)
+  for (std::size_t k = 0; k < kBasics && !options.uncertain; ++k)
     results.meta.times[k].independent = independent_values(blocks.series, k, results.meta.blocks, counts);
   const Resampling resampling{blocks.table.rows, counts, options.draws};
   const std::vector<std::uint8_t> follows = followers(blocks.table.spans);
@@ -268,16 +247,23 @@ ResultSet run_analyzers(FrameSource& source, const std::vector<AnalyzerInstance>
     std::vector<double> sums(part.size, 0.0);
     for (const Row& row : blocks.table.rows) add_part(part, row, 1.0, sums.data());
     std::vector<ResultArray> arrays = finish_arrays(instances[k], part, sums.data());
-    const Deviations deviations = resample(instances[k], part, arrays, resampling, workers);
+    std::vector<Wanted> wanted;
     std::size_t first = 0;
     for (ResultArray& array : arrays) {
-      const std::size_t size = array.size();
-      if (!array.is_axis) judge(array, first, deviations, resampling, follows);
-      first += size;
-      results.arrays.push_back(std::move(array));
+      if (!array.is_axis && (!options.uncertain || options.uncertain(array.analyzer, array.name))) wanted.push_back({&array, first});
+      first += array.size();
     }
+    if (!wanted.empty()) {
+      const Deviations deviations = resample(instances[k], part, arrays, wanted, resampling, workers);
+      first = 0;
+      for (const Wanted& w : wanted) {
+        judge(*w.array, first, deviations, resampling, follows);
+        first += w.array->size();
+      }
+    }
+    std::move(arrays.begin(), arrays.end(), std::back_inserter(results.arrays));
   }
-  add_covariance(results);
+  if (!options.uncertain) add_covariance(results);
   return results;
 }
 

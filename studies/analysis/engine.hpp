@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "studies/analysis/instances.hpp"
@@ -16,6 +17,8 @@ struct EngineOptions {
   double block = 0;                                                  ///< s: least length of a block; 0: three autocorrelation times
   int threads = 0;                                                   ///< 0: all cores; no influence on results
   std::function<void(const char* doing, double fraction)> progress;  ///< may be empty; called from one thread at a time
+  /// Results whose uncertainty is read: the others get values alone, and there is no joint covariance. Empty: all have one.
+  std::function<bool(const std::string& analyzer, const std::string& result)> uncertain = {};
 };
 
 /// Fills arrays, covariance and, of meta, blocks, times, seed, draws and notes. The rest of meta is the caller's. Throws UserError when a

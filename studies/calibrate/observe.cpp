@@ -141,7 +141,8 @@ struct Observer::Impl {
 };
 
 Observer::Observer(const Study& study, const host::Registry& registry, Recordings recordings, ObserverOptions options)
-    : impl_(new Impl{{study, registry, options.threads, analyzers_of(study, registry)}, std::move(options.cache), std::move(recordings)}) {
+    : impl_(new Impl{
+          {study, registry, options.threads, analyzers_of(study, registry), false}, std::move(options.cache), std::move(recordings)}) {
   fs::create_directories(impl_->cache);
   for (std::size_t c = 0; c < study.conditions.size(); ++c) {
     const std::string& name = study.conditions[c].name;
@@ -179,6 +180,7 @@ analysis::ResultSet Observer::results(std::size_t condition, const campaign::Out
                                       const std::string& camera) const {
   Processing how = impl_->how;
   how.analyzers = analyzers_of(analyzers, how.registry);
+  how.all_uncertain = true;
   const RecordedCondition& r = impl_->recorded[condition];
   if (run.folder.empty()) return results_of_recording(*impl_->recordings[condition], r, how);
   const BeadPaths paths(run.folder, how.study.observing.beads, r.place, how.registry);

@@ -6,6 +6,7 @@
 
 #include "studies/analysis/engine.hpp"
 #include "studies/analysis/follow.hpp"
+#include "studies/calibrate/summaries.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
 namespace millscope::calibrate {
@@ -13,9 +14,14 @@ namespace {
 
 constexpr double kEvenStep = 0.002;  // s between the even times: recordings have a location every 5 ms
 
-std::string as_yaml(std::span<const UsedAnalyzer> analyzers) {
+std::string used_analyzers(const Study& study) {
+  const auto& terms = study.objective.terms;
+  const bool of_power = std::any_of(terms.begin(), terms.end(), [](const Term& t) { return t.analyzer == kPower.plugin; });
   std::string text = "analyzers:\n";
-  for (const UsedAnalyzer& a : analyzers) text += fmt::format("  {}: {}\n", a.plugin, a.parameters);
+  for (const UsedAnalyzer& used : kUsedAnalyzers) {
+    const UsedAnalyzer& a = of_power && used.plugin == kPower.plugin ? kPowerOfTerms : used;
+    text += fmt::format("  {}: {}\n", a.plugin, a.parameters);
+  }
   return text;
 }
 
@@ -51,6 +57,10 @@ analysis::ResultSet process(const Tracks& tracks, const Smoothing& smoothing, co
   analysis::EngineOptions engine;
   engine.draws = how.study.observing.draws;
   engine.threads = how.threads;
+  if (!how.all_uncertain)
+    engine.uncertain = [&](const std::string& analyzer, const std::string& result) {
+      return becomes_summary(analyzer, result, how.study.objective.terms);
+    };
   analysis::ResultSet results =
       analysis::run_analyzers(source, analysis::create_analyzers(how.analyzers, source.context()).instances, engine);
   results.meta.context = source.context();
@@ -66,7 +76,7 @@ std::vector<analysis::AskedAnalyzer> analyzers_of(const std::string& text, const
 }
 
 std::vector<analysis::AskedAnalyzer> analyzers_of(const Study& study, const host::Registry& registry) {
-  std::vector<analysis::AskedAnalyzer> all = analyzers_of(as_yaml(kUsedAnalyzers), registry);
+  std::vector<analysis::AskedAnalyzer> all = analyzers_of(used_analyzers(study), registry);
   const auto section = study.root.valid() ? study.root.find("analyzers") : std::nullopt;
   if (!section) return all;
   for (analysis::AskedAnalyzer& more : analysis::read_analyzers(study.root, true, {}, registry)) {

@@ -44,18 +44,22 @@ struct Processing {
   int threads = 0;
   /// Read beforehand: what reads the study's file must not be done by several threads.
   std::vector<analysis::AskedAnalyzer> analyzers = {};
+  bool all_uncertain = true;  ///< false: only what becomes a summary gets an uncertainty
 };
 
 /// Tracks through spline and analyzers. Those that cannot be followed are left out, and `notes` of the results' meta names them.
 analysis::ResultSet process(const Tracks& tracks, const Smoothing& smoothing, const Processing& how);
 
-/// An analyzer that the observables rest on, with its parameters as in analysis.yaml.
+/// An analyzer that the observables rest on, with its parameters as in analysis.yaml: no bins or maps that nothing is made of.
 struct UsedAnalyzer {
   std::string_view plugin, parameters;
 };
-inline constexpr UsedAnalyzer kDistributions{"distributions", "{bins_x: 50, bins_y: 50, bins_speed: 60, largest_speed: 3}"};
+inline constexpr UsedAnalyzer kDistributions{"distributions",
+                                             "{bins_x: 50, bins_y: 50, bins_z: 1, bins_r: 1, bins_speed: 60, largest_speed: 3}"};
+inline constexpr UsedAnalyzer kPower{"power", "{cells_x: 1, cells_y: 1}"};
+inline constexpr UsedAnalyzer kPowerOfTerms{"power", "{cells_x: 25, cells_y: 25}"};  ///< where a term may ask for Bbosa's sum
 inline constexpr std::array<UsedAnalyzer, 3> kUsedAnalyzers{
-    {kDistributions, {"power", "{cells_x: 25, cells_y: 25}"}, {"pept_grid", "{cells_x: 24, cells_y: 24}"}}};
+    {kDistributions, kPower, {"pept_grid", "{cells_x: 24, cells_y: 24, maps: occupancy_and_speed}"}}};
 
 /// Those behind the observables, and those of the study's own section `analyzers`. Throws base::UserError.
 std::vector<analysis::AskedAnalyzer> analyzers_of(const Study& study, const host::Registry& registry);

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "kernel/base/error.hpp"
 #include "kernel/base/mill_regions.hpp"
@@ -150,6 +152,15 @@ Eigen::MatrixXd drawn(const ResultSet& results, const std::vector<Summary>& summ
 }
 
 }  // namespace
+
+bool becomes_summary(const std::string& analyzer, const std::string& result, const std::vector<Term>& terms) {
+  static const std::set<std::pair<std::string, std::string>> kOwn{
+      {"distributions", "x_percent"}, {"distributions", "y_percent"}, {"distributions", "speed_ratio_percent"},
+      {"pept_grid", "occupancy"},     {"pept_grid", "speed"},         {"power", "specific_power_gravity"},
+      {"power", "centre_of_mass_x"},  {"power", "centre_of_mass_y"}};
+  return kOwn.contains({analyzer, result}) ||
+         std::any_of(terms.begin(), terms.end(), [&](const Term& t) { return t.analyzer == analyzer && t.result == result; });
+}
 
 std::vector<Summary> choose_summaries(const ResultSet& recorded, const Study& study, const SummaryChoice& choice) {
   std::vector<Summary> out;

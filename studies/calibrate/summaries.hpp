@@ -24,6 +24,9 @@ struct Summary {
 
 inline constexpr const char* kCentreX = "centre of mass x";  ///< an observable's name
 
+/// Whether the uncertainty of an analyzer's result is read for a summary, a histogram or a power.
+bool becomes_summary(const std::string& analyzer, const std::string& result, const std::vector<Term>& terms);
+
 struct SummaryChoice {
   bool measured_power = false;  ///< the recording has it: it is compared for itself, and so is the centre's x
   double mass = 0;              ///< kg, of the recorded charge
