@@ -114,6 +114,22 @@ std::vector<double> even_row(const BasicSeries& s, std::size_t basic, double ste
   return row;
 }
 
+/// Of at most about `most` steps in all; 0: unknown.
+double even_step(const std::vector<BasicSeries>& stretches, std::size_t most) {
+  double span = 0;
+  for (const BasicSeries& s : stretches) span += s.size() > 0 ? s.time.back() - s.time.front() : 0;
+  const double usual = usual_step(stretches);
+  return usual > 0 ? usual * std::max(1.0, std::ceil(span / usual / static_cast<double>(most))) : 0;
+}
+
+EvenSeries even_series_of(const std::vector<BasicSeries>& stretches, std::size_t basic, double step) {
+  EvenSeries even;
+  if (!(step > 0)) return even;
+  even.step = step;
+  for (const BasicSeries& s : stretches) even.rows.push_back(even_row(s, basic, step));
+  return even;
+}
+
 /// Lag at which the autocorrelation first falls to zero, s; 0: never.
 double first_zero(const EvenSeries& series, const Moments& m) {
   std::size_t longest = 0;
@@ -161,14 +177,7 @@ BasicSeries basics_of(const FrameBlock& block) {
 }
 
 EvenSeries even_series(const std::vector<BasicSeries>& stretches, std::size_t basic, std::size_t most) {
-  EvenSeries even;
-  double span = 0;
-  for (const BasicSeries& s : stretches) span += s.size() > 0 ? s.time.back() - s.time.front() : 0;
-  const double usual = usual_step(stretches);
-  if (!(usual > 0)) return even;
-  even.step = usual * std::max(1.0, std::ceil(span / usual / static_cast<double>(most)));
-  for (const BasicSeries& s : stretches) even.rows.push_back(even_row(s, basic, even.step));
-  return even;
+  return even_series_of(stretches, basic, even_step(stretches, most));
 }
 
 double autocorrelation_time(const EvenSeries& series) {
@@ -244,8 +253,9 @@ BlockRule block_rule(const std::vector<BasicSeries>& stretches, bool one_bead) {
   BlockRule rule;
   double span = 0;
   for (const BasicSeries& s : stretches) span += s.duration();
+  const double step = even_step(stretches, kMostSteps);
   for (std::size_t k = 0; k < kBasics; ++k) {
-    const EvenSeries even = even_series(stretches, k);
+    const EvenSeries even = even_series_of(stretches, k, step);
     const double time = autocorrelation_time(even);
     const bool sets = k < 3;  // x, y, radius
     rule.times.push_back({kBasicNames[k], time, span / (2 * time), sets, kNaN});

@@ -32,8 +32,10 @@ struct EvenSeries {
   std::vector<std::vector<double>> rows;
 };
 
+inline constexpr std::size_t kMostSteps = 50000;
+
 /// On an even grid (means of what falls into each step) of at most about `most` steps in all.
-EvenSeries even_series(const std::vector<BasicSeries>& stretches, std::size_t basic, std::size_t most = 50000);
+EvenSeries even_series(const std::vector<BasicSeries>& stretches, std::size_t basic, std::size_t most = kMostSteps);
 
 /// Integrated autocorrelation time τ = Δt (½ + Σ_k ρ_k), summed to the first lag W ≥ 5 τ (Sokal 1997), with the correction 1 + (2 W + 1)/n
 /// for the mean that was taken from the data (Wolff 2004); s. Pairs across gaps count at their lag. NaN: fewer than 8 values.

@@ -43,6 +43,12 @@ struct TrajectorySource::Arrays {
   std::vector<std::int64_t> location_id;
 
   std::size_t size() const { return time.size(); }
+  void reserve(std::size_t samples) {
+    piece.reserve(samples);
+    for (auto* values : {&time, &omega, &phase, &weight, &position[0], &position[1], &position[2], &velocity[0], &velocity[1], &velocity[2],
+                         &position_variance, &velocity_variance})
+      values->reserve(samples);
+  }
   void add(const trajectory::Piece& from, std::size_t k, std::int32_t number, double sample_weight) {
     time.push_back(from.start + static_cast<double>(k) * from.step);
     piece.push_back(number);
@@ -114,14 +120,18 @@ std::vector<BasicSeries> TrajectorySource::survey() const {
 std::unique_ptr<FrameSource::Scratch> TrajectorySource::make_scratch() const { return std::make_unique<TrajectoryScratch>(); }
 
 void TrajectorySource::cut(double duration, std::size_t most) {
-  arrays_.clear();
-  chunks_.clear();
-  std::size_t longest = 0;
   std::vector<double> own;
   for (const trajectory::Trajectory& t : trajectories_) own.push_back(covered(t));
   const double total = std::accumulate(own.begin(), own.end(), 0.0);
+  std::vector<std::size_t> parts;
+  for (const double seconds : own) parts.push_back(parts_of(seconds, total, duration, most));
+  if (parts == parts_) return;  // many short trajectories stay whole, however they are cut
+  parts_ = std::move(parts);
+  arrays_.clear();
+  chunks_.clear();
+  std::size_t longest = 0;
   for (std::size_t k = 0; k < trajectories_.size(); ++k) {
-    lay_out(k, parts_of(own[k], total, duration, most));
+    lay_out(k, parts_[k]);
     longest = std::max(longest, arrays_.back()->size());
   }
   first_.resize(longest + 1);
@@ -131,6 +141,9 @@ void TrajectorySource::cut(double duration, std::size_t most) {
 void TrajectorySource::lay_out(std::size_t number, std::size_t parts) {
   const trajectory::Trajectory& t = trajectories_[number];
   auto arrays = std::make_unique<Arrays>();
+  std::size_t samples = parts;
+  for (const trajectory::Piece& piece : t.pieces) samples += piece.size();
+  arrays->reserve(samples);
   const double total = covered(t);
   double before = 0;
   std::size_t part = 0;

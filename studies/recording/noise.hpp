@@ -12,4 +12,10 @@ namespace millscope::recording {
 /// are left out. 0 where no four points lie together.
 std::array<double, 3> difference_noise(const Run& run, double gap_limit);
 
+/// With all contrasts, and without those across gaps.
+struct DifferenceNoises {
+  std::array<double, 3> all{}, unbroken{};
+};
+DifferenceNoises difference_noises(const Run& run, double gap_limit);
+
 }  // namespace millscope::recording

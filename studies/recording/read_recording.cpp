@@ -199,7 +199,6 @@ Recording clean_recording(Recording given) {
       given.runs.push_back(std::move(parts[part]));
     }
   }
-  check_units(given.runs, given.condition, {given.file.string(), 0}, "s", "m");
   if (given.gap_limit == 0) given.gap_limit = default_gap_limit(given.runs);
   clean(given);
   refuse_few(given);

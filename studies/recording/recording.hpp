@@ -95,7 +95,8 @@ struct Recording {
 Recording read_recording(const std::filesystem::path& file);
 
 /// Points that no file holds, e.g. of a virtual camera, cleaned by the same rules: `given` has its file's name for messages, runs in the
-/// order of their rows, condition and frame; gap_limit 0: from the data. Throws as read_recording.
+/// order of their rows, condition and frame; gap_limit 0: from the data. Units, which no file states, are not doubted. Throws as
+/// read_recording.
 Recording clean_recording(Recording given);
 
 /// Writes the points in the layout of tracks.h5 (docs/format.md), one track per run; whole or not at all. What that layout has no place for

@@ -88,10 +88,8 @@ class Fitter {
     // To a spline that is wider than a few points, noise with a correlation of φ looks like white noise (1 + φ)/(1 − φ) times as strong.
     const double phi = correlation_;
     const double inflation = kind == SplineKind::smoothing ? std::sqrt((1 + phi) / (1 - phi)) : 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      noise_[axis] = trajectory.noise[axis] * inflation;
-      if (kind == SplineKind::smoothing) roughness_[axis] = likely_roughness(run, axis, spans, noise_[axis]);
-    }
+    for (std::size_t axis = 0; axis < 3; ++axis) noise_[axis] = trajectory.noise[axis] * inflation;
+    if (kind == SplineKind::smoothing) roughness_ = likely_roughness(run, spans, noise_);
   }
 
   /// The spline of a span; `points()` are its knots.

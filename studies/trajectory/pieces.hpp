@@ -73,11 +73,11 @@ struct Evidence {
 void smooth(const Points& points, const Lanes& noise, const Lanes& roughness, const std::vector<double>& factor, Spline& spline,
             std::vector<Evidence>& evidence);
 
-/// −2 log likelihood of one coordinate of a span under a roughness that is the same everywhere, without constants.
-double misfit(const Points& points, std::size_t axis, double noise, double roughness);
+/// −2 log likelihood of each coordinate of a span under a roughness that is the same everywhere, without constants.
+Lanes misfit(const Points& points, const Lanes& noise, const Lanes& roughness);
 
-/// The roughness that makes a coordinate most likely given the noise, from at most some ten thousand points of the run.
-double likely_roughness(const recording::Run& run, std::size_t axis, const std::vector<Span>& spans, double noise);
+/// The roughness that makes each coordinate most likely given the noise, from at most some ten thousand points of the run.
+Lanes likely_roughness(const recording::Run& run, const std::vector<Span>& spans, const Lanes& noise);
 
 /// Smoothing splines whose strength follows the motion: at an impact the roughness rises in all three coordinates by one factor, in calm
 /// motion it falls.

@@ -61,27 +61,41 @@ double median_interval(const Points& points) {
   return base::quantile(some, 0.5);
 }
 
-double likely_roughness(const recording::Run& run, std::size_t axis, const std::vector<Span>& spans, double noise) {
+Lanes likely_roughness(const recording::Run& run, const std::vector<Span>& spans, const Lanes& noise) {
   const std::vector<Span> sample = sample_of(spans);
-  const auto cost = [&](double log_q) {
-    double sum = 0;
-    for (const Span& span : sample) sum += misfit(points_of(run, span), axis, noise, std::exp(log_q));
+  const auto cost = [&](const Lanes& log_q) {
+    Lanes sum{};
+    for (const Span& span : sample) {
+      const Lanes one = misfit(points_of(run, span), noise, {std::exp(log_q[0]), std::exp(log_q[1]), std::exp(log_q[2])});
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += one[k];
+    }
     return sum;
   };
   // Golden section over log q, from a bead at rest to one that is thrown about at 10 m/s every millisecond.
-  double low = std::log(1e-8), high = std::log(1e5);
-  constexpr double kGolden = 0.6180339887498949;
-  double a = high - kGolden * (high - low), b = low + kGolden * (high - low), cost_a = cost(a), cost_b = cost(b);
-  while (high - low > 0.05) {
-    if (cost_a < cost_b) {
-      high = b, b = a, cost_b = cost_a;
-      a = high - kGolden * (high - low), cost_a = cost(a);
-    } else {
-      low = a, a = b, cost_a = cost_b;
-      b = low + kGolden * (high - low), cost_b = cost(b);
+  constexpr double kGolden = 0.6180339887498949, kFinest = 0.05;
+  const double bottom = std::log(1e-8), top = std::log(1e5);
+  Lanes low{bottom, bottom, bottom}, high{top, top, top}, a, b;
+  a.fill(top - kGolden * (top - bottom)), b.fill(bottom + kGolden * (top - bottom));
+  Lanes cost_a = cost(a), cost_b = cost(b);
+  const auto searches = [&](std::size_t k) { return high[k] - low[k] > kFinest; };
+  while (searches(0) || searches(1) || searches(2)) {
+    Lanes next{};
+    std::array<bool, 3> below{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      below[k] = cost_a[k] < cost_b[k];
+      if (!searches(k)) next[k] = a[k];
+      if (!searches(k)) continue;
+      if (below[k])
+        high[k] = b[k], b[k] = a[k], cost_b[k] = cost_a[k], next[k] = a[k] = high[k] - kGolden * (high[k] - low[k]);
+      else
+        low[k] = a[k], a[k] = b[k], cost_a[k] = cost_b[k], next[k] = b[k] = low[k] + kGolden * (high[k] - low[k]);
     }
+    const Lanes found = cost(next);
+    for (std::size_t k = 0; k < 3; ++k) (below[k] ? cost_a : cost_b)[k] = found[k];
   }
-  return std::exp((low + high) / 2);
+  Lanes roughness;
+  for (std::size_t k = 0; k < 3; ++k) roughness[k] = std::exp((low[k] + high[k]) / 2);
+  return roughness;
 }
 
 void smooth_adaptively(const Points& points, const Lanes& noise, const Lanes& roughness, Spline& spline) {

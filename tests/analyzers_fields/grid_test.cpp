@@ -59,6 +59,18 @@ TEST_CASE("cylindrical components count in the turning sense, from 6 o'clock") {
   CHECK(values(o, "angular_velocity")[cell] == Approx(3).epsilon(1e-2));
 }
 
+TEST_CASE("two maps alone are those among all, to the bit") {
+  const auto frames = all_beads(turning_disc(300, 0.14, kOmega), 300, even_times(20, 0.01), std::vector<double>(20, 0.01), kOmega);
+  const Outcome all = Analyzer("pept_grid", study()).of(frames),
+                two = Analyzer("pept_grid", study(), "maps=occupancy_and_speed").of(frames);
+  CHECK(values(two, "occupancy") == values(all, "occupancy"));
+  const auto &a = values(all, "speed"), &b = values(two, "speed");
+  CHECK(std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); }));
+  CHECK(number(two, "outside_fraction") == number(all, "outside_fraction"));
+  CHECK(all.count("visits") == 1);
+  CHECK(two.count("visits") == 0);
+}
+
 TEST_CASE("two cells in turn: shares by time, visits by entries") {
   const std::array<double, 3> first{0.003, 0.003, 0.1}, second{0.063, -0.057, 0.1};
   Frames frames;

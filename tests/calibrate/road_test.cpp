@@ -109,6 +109,23 @@ TEST_CASE("the same tracks give the same bits, be they recorded or simulated") {
   CHECK(numbers > 10000);
 }
 
+TEST_CASE("summaries do not feel that nothing else is resampled") {
+  const testing::Folder folder;
+  const Study study =
+      study_in(folder, "observe: {draws: 100}\nobjective: {terms: [power.specific_power_bbosa, pept_grid.outside_fraction]}\n");
+  Processing how{study, registry(), 1, analyzers_of(study, registry())};
+  const Tracks tracks{made_recording(), analysis::know_mill(made_recording(), {}), Side::recorded};
+  const analysis::ResultSet all = process(tracks, smoothing_of(made_recording()), how);
+  how.all_uncertain = false;
+  const analysis::ResultSet few = process(tracks, smoothing_of(made_recording()), how);
+  const std::vector<Summary> summaries = choose_summaries(all, study, {true, 1});
+  CHECK(choose_summaries(few, study, {true, 1}) == summaries);
+  CHECK(summaries.size() > 20);
+  CHECK(summarise(few, summaries) == summarise(all, summaries));
+  CHECK(beads_power(few, 1, "") == beads_power(all, 1, ""));
+  CHECK(few.find("distributions", "x_cumulative")->sem.empty());
+}
+
 TEST_CASE("a recording is read once: what looks at it later needs its file no more") {
   const testing::Folder folder;
   const Study study = study_in(folder, "observe: {camera: exact, draws: 100}\n");
