@@ -5,9 +5,6 @@
 
 #include "analysis/support.hpp"
 #include "kernel/base/parallel.hpp"
-#include "millscope/random.hpp"
-#include "studies/analysis/resample.hpp"
-#include "studies/analysis/resampled_sums.hpp"
 #include "studies/analysis/times.hpp"
 
 using namespace analysis_test;
@@ -245,35 +242,6 @@ TEST_CASE("what alone is asked for has the uncertainty that it has among all, to
   }
   CHECK(!all.covariance.empty());
   CHECK(some.covariance.empty());
-}
-
-TEST_CASE("resampled sums are those of the blocks one after the other, to the bit") {
-  const std::size_t blocks = GENERATE(1, 2, 7, 30), columns = 19, draws = 21;
-  Random random(blocks);
-  std::vector<analysis::Row> rows(blocks, analysis::Row(columns + 2));
-  for (analysis::Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) row[i] = i % 3 == 1 ? 0 : random.normal();  // every third was never visited
-  }
-  const analysis::SumLayout::Part part{2, columns, {0}};
-  const std::vector<std::uint32_t> counts = analysis::draw_counts(blocks, draws, 5);
-  const analysis::ResampledSums sums(rows, part, counts, draws);
-  std::size_t item = 0;
-  for (std::size_t group = 0; group < sums.group_count(); ++group) {
-    std::vector<double> found(analysis::ResampledSums::kGroup * columns, 0.0);
-    sums.fill(group, found.data());
-    for (std::size_t k = 0; k < analysis::ResampledSums::kGroup && item < draws + blocks; ++k, ++item) {
-      for (std::size_t i = 0; i < columns; ++i) {
-        double exact = 0, about = 0;
-        for (std::size_t b = 0; b < blocks; ++b) {
-          if (item < draws) exact += counts[item * blocks + b] * rows[b][2 + i];
-          if (item >= draws && b != item - draws) about += rows[b][2 + i];
-        }
-        if (item < draws) CHECK(found[k * columns + i] == exact);
-        if (item >= draws) CHECK_THAT(found[k * columns + i], WithinAbs(about, 1e-13));  // added in groups
-      }
-    }
-  }
-  CHECK(item == draws + blocks);
 }
 
 TEST_CASE("blocks join without loss and stay within their stretch") {

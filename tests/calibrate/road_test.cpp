@@ -112,7 +112,7 @@ TEST_CASE("the same tracks give the same bits, be they recorded or simulated") {
 TEST_CASE("summaries do not feel that nothing else is resampled") {
   const testing::Folder folder;
   const Study study =
-      study_in(folder, "observe: {draws: 100}\nobjective: {terms: [power.specific_power_bbosa, pept_grid.outside_fraction]}\n");
+      study_in(folder, "observe: {draws: 100}\nobjective: {kind: likelihood, terms: [power.specific_power_bbosa, pept_grid.outside_fraction]}\n");
   Processing how{study, registry(), 1, analyzers_of(study, registry())};
   const Tracks tracks{made_recording(), analysis::know_mill(made_recording(), {}), Side::recorded};
   const analysis::ResultSet all = process(tracks, smoothing_of(made_recording()), how);

@@ -1,11 +1,14 @@
 // The splines themselves, against what is known exactly or computed another way.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <random>
 
 #include "recording/support.hpp"
 #include "studies/trajectory/pieces.hpp"
 #include "studies/trajectory/sample.hpp"
+#include "studies/trajectory/smooth_wide.hpp"
+#include "tests/skip.hpp"
 
 using namespace millscope;
 using namespace recording_test;
@@ -192,4 +195,37 @@ TEST_CASE("roughness follows the likelihood, and the evidence is its slope") {
   const double difference = (misfit_at(q * (1 + step)) - misfit_at(q * (1 - step))) / (2 * step);
   // d(−2 log L)/d log q = Σ (expected − found); the first interval, which `misfit` leaves out, makes the small difference.
   CHECK(slope == Approx(difference).epsilon(0.02).margin(0.5));
+}
+
+TEST_CASE("the smoother has the same bits with and without the wide instruction set") {
+  if (!__builtin_cpu_supports("x86-64-v3")) return ::testing::skip("this machine has no x86-64-v3");
+  constexpr std::size_t kPoints = 400;
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal;
+  std::array<std::vector<double>, 4> data;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    data[0].push_back(0.005 * static_cast<double>(i) + 0.001 * std::sin(static_cast<double>(i)));
+    for (std::size_t k = 1; k < 4; ++k) data[k].push_back(0.1 * std::sin(0.02 * static_cast<double>(i * k)) + 5e-4 * normal(generator));
+  }
+  const trajectory::PointView points{data[0].data(), data[1].data(), data[2].data(), data[3].data(), kPoints};
+  const std::vector<double> noise{4e-4, 5e-4, 6e-4}, roughness{0.1, 0.4, 0.02}, factor(kPoints - 1, 1.3);
+  struct alignas(32) Scratch {
+    char bytes[trajectory::kFilteredBytes];
+  };
+  std::vector<Scratch> scratch(kPoints);
+  struct Outcome {
+    std::vector<double> knots, between, evidence, misfit;
+    bool operator==(const Outcome&) const = default;
+  };
+  const auto run = [&](auto smooth, auto misfit) {
+    Outcome o{std::vector<double>(kPoints * trajectory::kKnot), std::vector<double>((kPoints - 1) * trajectory::kBetween),
+              std::vector<double>((kPoints - 1) * trajectory::kEvidence), std::vector<double>(3)};
+    smooth(points, trajectory::Noise{noise.data(), roughness.data(), factor.data()}, scratch.data(),
+           trajectory::SplineView{o.knots.data(), o.between.data(), o.evidence.data()});
+    misfit(points, noise.data(), roughness.data(), o.misfit.data());
+    return o;
+  };
+  const Outcome v2 = run(trajectory::wide_v2::smooth, trajectory::wide_v2::misfit);
+  CHECK(v2 == run(trajectory::wide_v3::smooth, trajectory::wide_v3::misfit));
+  CHECK(std::all_of(v2.knots.begin(), v2.knots.end(), [](double x) { return std::isfinite(x); }));
 }
