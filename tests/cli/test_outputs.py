@@ -123,8 +123,10 @@ class Outputs(CliTest):
         self.assertEqual((self.out / "case.resolved.yaml").read_text(), (self.folder / "again/case.resolved.yaml").read_text())
 
     def test_two_threads_give_the_same_bits(self):
-        self.assertEqual(self.run_case("two", "--threads", 2)["threads"], 2)
-        self.assert_same_run("out", "two")
+        for threads in (1, 2):
+            summary = self.run_case("threads%d" % threads, "--threads", threads, "--set", "run.partitions=2")
+            self.assertEqual(summary["threads"], threads)
+        self.assert_same_run("threads1", "threads2")
 
     def test_every_instruction_set_moves_the_beads_alike(self):
         """To the last bit; the sums of the ledger are taken in another order."""

@@ -115,7 +115,7 @@ TEST_CASE("diagnosis.md tells the verdict, every candidate, the figures and the 
   CHECK_THAT(page, Contains("**named**") && Contains(j["sentence"].get<std::string>()));
   for (const auto& h : j["hypotheses"]) CHECK_THAT(page, Contains(h["name"].get<std::string>()));
   CHECK_THAT(page, Contains("| corrected: with the best candidate, all parameters fitted together | simulated |"));
-  CHECK_THAT(page, Contains("simulations were asked for."));
+  CHECK_THAT(page, Contains("simulations were made for this, beside the bank's."));
   CHECK_THAT(page, Contains("retuned to power") && Contains("Gaussian-process discrepancy") && Contains("placebo"));
   CHECK_THAT(page, Contains(j["mismatch"][0]["sentence"].get<std::string>()));
   CHECK_THAT(page, !Contains("nan") && !Contains("inf"));
