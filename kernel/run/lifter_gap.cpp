@@ -11,8 +11,9 @@ namespace {
 
 using Point = std::array<double, 2>;
 
-constexpr int kDirections = 7200;       // 0.05°: 0.13 mm on the shell of a mill of 300 mm
-constexpr double kLeastHeight = 0.005;  // of the radius: what is lower is a shell's facets, no lifter
+constexpr int kDirections = 7200;      // 0.05°: 0.13 mm on the shell of a mill of 300 mm
+constexpr double kLeastOfMill = 0.01;  // of the radius: what is lower is a mesh's unevenness, no lifter
+constexpr double kLeastOfBead = 0.2;   // of a bead's radius: the bead rolls over it as up a slope of 37°, cos⁻¹ (1 − 0.2)
 constexpr double kTurn = 2 * std::numbers::pi;
 
 /// Where the plane z cuts a triangle, seen from the axis; false: it does not.
@@ -59,9 +60,21 @@ int shortest_gap(const std::vector<double>& nearest, double level) {
   return gaps > 1 ? shortest : 0;
 }
 
+/// Whether the surface comes out towards the axis anywhere; the facets of a round shell do not. Along a straight line u = 1/r has
+/// u(φ−h) + u(φ+h) = 2 cos h u(φ), it is more at an edge that stands away from the axis, and less where a lifter rises from the shell.
+bool comes_out(const std::vector<double>& nearest) {
+  constexpr double kRounding = 1e-6;  // a mesh's places may have but seven digits
+  const double along = 2 * std::cos(kTurn / kDirections);
+  for (std::size_t k = 0; k < nearest.size(); ++k) {
+    const double before = nearest[(k + nearest.size() - 1) % nearest.size()], after = nearest[(k + 1) % nearest.size()];
+    if (nearest[k] * (1 / before + 1 / after) < along - kRounding) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
-std::optional<double> narrowest_lifter_gap(const Surface& surface, const Interior& in) {
+std::optional<double> narrowest_lifter_gap(const Surface& surface, const Interior& in, double bead_radius) {
   if (!in.is_bounded || !in.is_cylinder || std::abs(in.axis[2]) < 1 - 1e-9) return {};
   const double middle = in.low[2] + 0.5003 * (in.high[2] - in.low[2]);  // beside the rows of vertices that a mesh may have in the middle
   std::vector<double> nearest(kDirections, in.radius);
@@ -70,7 +83,7 @@ std::optional<double> narrowest_lifter_gap(const Surface& surface, const Interio
     if (cut(surface, t, in, middle, ends)) look_at(ends, nearest);
   }
   const double top = *std::min_element(nearest.begin(), nearest.end());
-  if (in.radius - top < kLeastHeight * in.radius) return {};
+  if (in.radius - top < std::max(kLeastOfMill * in.radius, kLeastOfBead * bead_radius) || !comes_out(nearest)) return {};
   const double level = 0.5 * (in.radius + top);
   const int directions = shortest_gap(nearest, level);
   if (directions == 0) return {};

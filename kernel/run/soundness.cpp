@@ -35,11 +35,11 @@ double mean_radius_by_mass(const config::Case& c) {
 }
 
 /// The narrowest of all bodies that turn.
-std::optional<LifterGap> lifter_gap(const Assembly& a) {
+std::optional<LifterGap> lifter_gap(const Assembly& a, double bead_radius) {
   std::optional<LifterGap> narrowest;
   for (std::size_t g = 0; g < a.geometries.size(); ++g) {
     if (!a.c.geometry[g].motion.rotation) continue;
-    const std::optional<double> width = narrowest_lifter_gap(a.geometries[g].surface, a.geometries[g].interior);
+    const std::optional<double> width = narrowest_lifter_gap(a.geometries[g].surface, a.geometries[g].interior, bead_radius);
     if (width && (!narrowest || *width < narrowest->width)) narrowest = LifterGap{a.c.geometry[g].plugin.name, *width};
   }
   return narrowest;
@@ -53,7 +53,7 @@ Soundness soundness_of(const Assembly& a, const Json& summary) {
   if (summary.contains("contact")) s.contact_steps = summary["contact"]["steps_per_shortest_contact"].get<double>();
   if (a.mill_speed != 0) s.turn = 2 * std::numbers::pi / std::abs(a.mill_speed);
   s.bead_radius = mean_radius_by_mass(a.c);
-  s.gap = lifter_gap(a);
+  s.gap = lifter_gap(a, s.bead_radius);
   if (!summary.contains("window_s")) return s;
   s.window = summary["window_s"][1].get<double>() - summary["window_s"][0].get<double>();
   s.steady = summary["steady"].get<bool>();
