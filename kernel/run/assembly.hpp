@@ -34,11 +34,12 @@ struct Assembly {
   std::vector<GeometryUse> geometries;
   std::unique_ptr<dem::System> system;
 
-  double rayleigh_time = 0;       ///< s, of the smallest and softest bead
-  double time_step = 0;           ///< s
-  double typical_speed = 0;       ///< m/s
-  double hertz_contact_time = 0;  ///< s, shortest over the pairs at the typical speed; Hertz's where the law gives none
-  double mill_speed = 0;          ///< Ω about z, rad/s
+  double rayleigh_time = 0;          ///< s, of the smallest and softest bead
+  double time_step = 0;              ///< s
+  double typical_speed = 0;          ///< m/s
+  double hertz_contact_time = 0;     ///< s, shortest over the pairs at the typical speed; Hertz's where the law gives none
+  bool stiffness_from_young = true;  ///< by what the law says, its contacts get shorter where materials get stiffer
+  double mill_speed = 0;             ///< Ω about z, rad/s
   std::int64_t settle_steps = 0, end_step = 0, analyze_step = 0;
   std::uint64_t bead_count = 0;
   std::array<double, 3> gravity{};

@@ -26,8 +26,8 @@ void from_json(const nlohmann::ordered_json& j, Doubt& doubt);
 /// The deepest contact of one pair of materials since the start.
 struct DeepestContact {
   std::string pair;
-  bool wall = false;  ///< the second material is of a body
-  double overlap = 0;  ///< over the beads' radius: against a wall δ/R, between two beads the mean of δ/R₁ and δ/R₂, which is δ/(2 R*)
+  bool wall = false;   ///< the second material is of a body
+  double overlap = 0;  ///< against a wall δ/R; between two beads δ/(2 R*), which is δ/R for equal ones: each is flattened by half of it
 };
 
 /// The narrowest gap between neighbouring lifters.
@@ -36,18 +36,26 @@ struct LifterGap {
   double width = 0;  ///< m
 };
 
+/// A difference between the window's halves.
+struct Drift {
+  double errors = 0;  ///< in its standard errors
+  double part = 0;    ///< of the mean
+};
+
 /// What doubts are judged from.
 struct Soundness {
   std::vector<DeepestContact> deepest;
+  double stiffness_factor = 1;
+  bool stiffness_from_young = true;     ///< as Assembly has it; else stiffness_factor may change nothing
   std::optional<double> contact_steps;  ///< time steps in the shortest contact; nothing: none was counted
   double turn = 0;                      ///< s, of the mill; 0: nothing turns
-  double window = 0;                    ///< s, that means are taken over
+  std::optional<double> window;         ///< s, that means are taken over; nothing: it is too short for means
   bool steady = true;
-  double drift = 0;         ///< of the power between the window's halves, in its standard errors
-  double imbalance = 0;     ///< energy that the window's book cannot account for, as part of the walls' work
-  double power_error = 0;   ///< standard error of the mean power, as part of it; 0: not known
-  double centre_error = 0;  ///< m, standard error of the mean place of the charge's centre of mass across the axis; 0: not known
-  double bead_radius = 0;   ///< m, mean by mass
+  Drift drift;                      ///< of the power
+  std::optional<double> imbalance;  ///< energy that the window's book cannot account for, as part of the walls' work; nothing: they do none
+  double power_error = 0;           ///< standard error of the mean power, as part of it; 0: not known
+  double centre_error = 0;          ///< m, standard error of the mean place of the charge's centre of mass across the axis; 0: not known
+  double bead_radius = 0;           ///< m, mean by mass
   std::optional<LifterGap> gap;
 };
 

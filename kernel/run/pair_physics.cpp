@@ -64,6 +64,19 @@ double contact_time(const dem::LawReference& law, const PairContext& p, double s
   return 2.87 * std::pow(p.smallest_mass * p.smallest_mass / (p.smallest_radius * young * young * speed), 0.2);
 }
 
+/// With both materials so many times as stiff.
+PairContext stiffer(PairContext p, double factor) {
+  for (double* young : {&p.first.young, &p.second.young, &p.effective_young, &p.effective_shear}) *young *= factor;
+  return p;
+}
+
+/// Whether a pair's contacts last shorter by the second law than by the first, as both say; false where they say nothing.
+bool gets_shorter(const host::LawObject& law, const host::LawObject& stiffer_law, const PairContext& p) {
+  constexpr double kSpeed = 1;  // m/s; any
+  const auto time = [&](const host::LawObject& l) { return l.table().contact_time(l.self(), p.smallest_radius, p.smallest_mass, kSpeed); };
+  return time(stiffer_law) < time(law);
+}
+
 /// Creates law, interactions and pair parameters of one pair of materials.
 dem::PairPhysics make_pair(Assembly& a, const host::Registry& registry, int first, int second, bool wall) {
   dem::PairPhysics p;
@@ -74,28 +87,32 @@ dem::PairPhysics make_pair(Assembly& a, const host::Registry& registry, int firs
   p.name = n1 + "~" + n2 + (wall ? " (wall)" : "");
   const config::Node section = a.c.pairs.lookup(n1, n2);
   const PairContext context = context_of(a, first, second, wall);
-  const auto create = [&]<class Object>(Object*, Kind kind, const config::PluginInstance& use) {
+  const auto create = [&]<class Object>(Object*, Kind kind, const config::PluginInstance& use, const PairContext& between) {
     const host::Loaded& plugin = registry.find(kind, use.kind, use.where);
     const config::ResolvedValues values = config::resolve_for_pair(*plugin.descriptor, use.node, section);
-    return Object::create(plugin, values.view(), section.where(), context);
+    return Object::create(plugin, values.view(), section.where(), between);
   };
-  a.laws.push_back(create(static_cast<host::LawObject*>(nullptr), Kind::contact_law, a.c.contact.law));
+  const auto law_between = [&](const PairContext& between) {
+    return create(static_cast<host::LawObject*>(nullptr), Kind::contact_law, a.c.contact.law, between);
+  };
+  a.laws.push_back(law_between(context));
   const host::LawObject& law = a.laws.back();
   p.law = {&law.table(), law.self()};
   p.reach = law.table().reach(law.self(), context.largest_radius);
   for (const config::PluginInstance& use : a.c.contact.interactions) {
-    a.interactions.push_back(create(static_cast<host::InteractionObject*>(nullptr), Kind::interaction, use));
+    a.interactions.push_back(create(static_cast<host::InteractionObject*>(nullptr), Kind::interaction, use, context));
     const host::InteractionObject& i = a.interactions.back();
     p.interactions.push_back({&i.table(), i.self(), host::acts_before(i), use.name});
     p.reach = std::max(p.reach, i.table().reach(i.self(), context.largest_radius));
   }
   for (const config::PluginInstance& use : a.c.contact.pair_parameters) {
-    a.pair_parameters.push_back(create(static_cast<host::PairParameterObject*>(nullptr), Kind::pair_parameter, use));
+    a.pair_parameters.push_back(create(static_cast<host::PairParameterObject*>(nullptr), Kind::pair_parameter, use, context));
     const host::PairParameterObject& i = a.pair_parameters.back();
     const std::uint64_t features = i.plugin().descriptor->features;
     p.pair_parameters.push_back({&i.table(), i.self(), (features & kGivesRestitution) != 0, (features & kGivesFriction) != 0});
   }
   const double time = contact_time(p.law, context, a.typical_speed);
+  a.stiffness_from_young &= gets_shorter(law, law_between(stiffer(context, 2)), context);
   a.hertz_contact_time = a.hertz_contact_time > 0 ? std::min(a.hertz_contact_time, time) : time;
   return p;
 }

@@ -30,6 +30,7 @@ std::vector<SharedDoubt> shared_doubts(const std::set<std::filesystem::path>& ru
   std::vector<SharedDoubt> shared;
   std::size_t simulations = 0;
   for (const std::filesystem::path& run : runs) {
+    if (run.empty()) continue;  // no folder came of it: not the working directory
     const nlohmann::ordered_json summary = output::read_json(run / "summary.json");
     if (!summary.is_object()) continue;
     ++simulations;

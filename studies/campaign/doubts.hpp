@@ -17,7 +17,7 @@ struct SharedDoubt {
   std::size_t simulations = 0;  ///< of so many
 };
 
-/// The doubts of the runs' summaries, in the order in which they are first met. What has no summary is no simulation.
+/// The doubts of the runs' summaries, in the order in which they are first met. An empty path, and what has no summary, is no simulation.
 std::vector<SharedDoubt> shared_doubts(const std::set<std::filesystem::path>& runs);
 
 /// "12 of 48 simulations: …", the worst of them.

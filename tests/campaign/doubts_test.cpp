@@ -51,4 +51,14 @@ TEST_CASE("simulations of before there were doubts, and what is no simulation, s
   CHECK(shared_doubts({}).empty());
 }
 
+TEST_CASE("a simulation that left no folder does not take the working directory's doubts") {
+  const Folder folder;
+  const fs::path run = run_with(folder, "a", {doubt("overlap", "glass~glass", 0.2, 0.05)}), before = fs::current_path();
+  fs::current_path(run);
+  const std::size_t without = shared_doubts({fs::path()}).size(), there = shared_doubts({fs::path(".")}).size();
+  fs::current_path(before);
+  CHECK(without == 0);
+  CHECK(there == 1);
+}
+
 }  // namespace millscope::campaign::test

@@ -36,6 +36,18 @@ TEST_CASE("an unstable step is refused at its line, a step that hardly resolves 
   CHECK_THROWS_WITH(assembled(s), Catch::Contains("fewer than 10 steps"));
 }
 
+TEST_CASE("whether a law takes its stiffness from Young's modulus is seen from its contact time") {
+  Setup s;
+  CHECK(assembled(s).stiffness_from_young);
+  s.law = "{kind: linear_spring_dashpot}";
+  s.time = "{end_s: 1, step_s: 1e-6}";
+  for (const std::string own : {"contact_time: 1e-4 s", "normal_stiffness: 1e4 N/m", "largest_overlap: 0.01"}) {
+    INFO(own);
+    s.pairs = "restitution: 0.8, static_friction: 0.3, " + own;
+    CHECK_FALSE(assembled(s).stiffness_from_young);
+  }
+}
+
 TEST_CASE("a law that gives no contact time is checked against that of Hertz") {
   host::RegistryOptions options;
   options.directories = {std::string(MILLSCOPE_BINARY_DIR) + "/lib/millscope/plugins", TEMPLATE_LAW};
