@@ -82,6 +82,7 @@ TEST_CASE("a number beside its limit is told with the digits that tell it from t
   CHECK_THAT(only(s).finding, Contains("by up to 5.004 % of their radius, over 5 %"));
   s.deepest[1].overlap = 0.6;
   s.bead_radius = 0.05;
+  s.gap = {};
   CHECK(only(s).may_change == "the charge may lie some 20 mm too low, its power be off by 2 %, and fitted friction be off");
   s = sound();
   s.window = 1.592;

@@ -106,7 +106,7 @@ TEST_CASE("the facets of a round mesh are no lifters, however coarse it is") {
 
 TEST_CASE("a mesh's lifters are found between its facets, unless a bead does not feel them") {
   const double wanted = 2 * 0.1459 * std::sin(std::numbers::pi / 8 - std::asin(0.01 / 0.15) + 0.5e-3);
-  const Prism high(faceted(24, 8, 0.008)), low(faceted(48, 8, 0.0019));
+  const Prism high(faceted(24, 8, 0.008)), low(faceted(48, 8, 0.0016));
   CHECK_THAT(high.gap(5e-3).value(), WithinAbs(wanted, 0.3e-3));
   CHECK(low.gap(5e-3));
   CHECK_FALSE(low.gap(10e-3));
