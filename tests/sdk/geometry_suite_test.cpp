@@ -129,4 +129,9 @@ TEST_CASE("the suite finds what is wrong with a geometry's answers") {
                 }
               }),
               "bead by bead"));
+  CHECK(names(violations_of_table([](const void* self, const GeometryQuery* query, GeometryContacts* out) {
+                find_contacts<Wall>(self, query, out);
+                if (out->triangle == nullptr) out->count = std::min<std::int64_t>(out->count, 1);
+              }),
+              "triangles"));
 }

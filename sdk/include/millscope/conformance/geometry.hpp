@@ -188,6 +188,12 @@ inline void answers_are_the_same(WallProbe& wall, const WallSample& sample, Viol
     }
   }
   if (!same_touches(all, one_by_one)) return out.push_back({"bead by bead", "a bead alone has other contacts than among others"});
+  std::vector<Touch> bare = all;
+  for (Touch& touch : bare) touch.triangle = kNoTriangle;
+  wall.asks_for_triangles = false;
+  if (!same_touches(bare, wall.touches(sample.beads, reach, reach)))
+    out.push_back({"triangles", "where nobody asks for triangles there are other contacts"});
+  wall.asks_for_triangles = true;
   const std::size_t room = all.size() / 2;
   if (!same_touches({all.begin(), all.begin() + static_cast<std::ptrdiff_t>(room)}, wall.touches(sample.beads, reach, reach, room)))
     out.push_back({"capacity", "with half the room the contacts are not the first half"});

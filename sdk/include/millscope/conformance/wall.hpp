@@ -46,6 +46,9 @@ class WallProbe {
     return {vertex(corner[0]), vertex(corner[1]), vertex(corner[2])};
   }
 
+  /// Whether the host asks which triangles are touched; where it does not, they come as UINT32_MAX.
+  bool asks_for_triangles = true;
+
   /// Contacts and gaps up to `reach` of the beads, with the candidates found with `margin`; at most `capacity`, which
   /// without a number is what the host keeps.
   std::vector<Touch> touches(const std::vector<ProbeBead>& beads, double margin, double reach, std::optional<std::size_t> capacity = {}) {
@@ -75,21 +78,17 @@ class WallProbe {
     const std::size_t room = std::max<std::size_t>(capacity, 1);
     std::vector<std::int32_t> bead(room);
     std::vector<double> overlap(room), normal[3] = {overlap, overlap, overlap};
-    std::vector<std::uint32_t> feature(room), triangle(room), material(room);
+    std::vector<std::uint32_t> feature(room), triangle(room, 0xffffffffU), material(room);
     GeometryContacts out{static_cast<std::int64_t>(capacity),
                          0,
                          bead.data(),
                          overlap.data(),
                          {normal[0].data(), normal[1].data(), normal[2].data()},
                          feature.data(),
-                         triangle.data(),
+                         asks_for_triangles ? triangle.data() : nullptr,
                          material.data()};
     held_.table().contacts(held_.get(), &query, &out);
     if (out.count < 0 || out.count > out.capacity) throw Refusal("contacts: more are counted than there was room for");
-    const std::int64_t count = out.count;
-    out.triangle = nullptr;  // where nobody asks for triangles the contacts are the same
-    held_.table().contacts(held_.get(), &query, &out);
-    if (out.count != count) throw Refusal("contacts: without triangles there are others");
     std::vector<Touch> touches;
     for (std::size_t i = 0; i < as_size(out.count); ++i) {
       touches.push_back({bead[i], overlap[i], {normal[0][i], normal[1][i], normal[2][i]}, feature[i], triangle[i], material[i]});
