@@ -111,6 +111,18 @@ def cost_of_sizes(setup, now):
     return rows
 
 
+def compare_looks(before, now):
+    """Looks at one simulation of the story's mill, in pairs of their own (bench/look.sh)."""
+    other = before.build / "bin" / "millscope_look_bench"
+    if not other.exists():
+        bench.say("look: that commit has no millscope_look_bench yet; left out")
+        return []
+    text = bench.run(["sh", bench.HERE / "look.sh", now.build, other])
+    rows = [[float(w) for w in line.replace(" s before, ", " ").replace(" s now, ratio ", " ").split()[:2]] for line in text.splitlines() if " s before, " in line]
+    bench.say(text.splitlines()[-1])
+    return [summary("look", "core-s", rows)]
+
+
 def child_seconds(command, **more):
     """CPU seconds of a command and all that it starts, on any core, and its wall time."""
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
@@ -154,7 +166,7 @@ def compare_sets(setup, before, now):
 
 
 def main():
-    parts = list(STEPS) + ["sizes", "bank", "set"]
+    parts = list(STEPS) + ["sizes", "look", "bank", "set"]
     parser = argparse.ArgumentParser(prog="bench/against.py", description="Times this build against that of an earlier commit.")
     parser.add_argument("build", type=Path, help="build directory, e.g. build/release")
     parser.add_argument("commit", help="the earlier commit")
@@ -172,6 +184,8 @@ def main():
                 results["rows"].append(compare_steps(setup, part, before, now, options.pairs))
             elif part == "sizes":
                 results["sizes"] = cost_of_sizes(setup, now)
+            elif part == "look":
+                results["rows"] += compare_looks(before, now)
             elif part == "bank":
                 results["rows"].append(compare_banks(setup, before, now, max(1, options.pairs // 2)))
             else:
