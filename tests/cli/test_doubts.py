@@ -28,6 +28,7 @@ class Doubts(CliTest):
         self.assertEqual(found["overlap"]["of"], "glass~hdpe (wall)")
         self.assertEqual(found["overlap"]["value"], pairs["glass~hdpe (wall)"])
         self.assertGreater(found["overlap"]["value"], 0.3)
+        self.assertRegex(found["overlap"]["remedy"], r"^raise stiffness_factor to 0\.0\d+, at about \d+ times the time$")
 
     def test_a_coarse_step(self):
         found = self.doubts("time.step_fraction=55 %", "run.allow_unstable=true")
@@ -39,6 +40,15 @@ class Doubts(CliTest):
         found = self.doubts("time.end_s=1.7")
         self.assertEqual(list(found), ["short_window"])
         self.assertAlmostEqual(found["short_window"]["value"], 0.9 * self.summary("out")["mill_speed_rad_per_s"] / 6.2832, 2)
+
+    def test_a_window_without_means(self):
+        found = self.doubts("time.end_s=0.805")
+        self.assertEqual(list(found), ["short_window"])
+        self.assertEqual(found["short_window"]["value"], 0)
+        self.assertEqual(found["short_window"]["finding"], "the analysis window is too short for any mean")
+
+    def test_a_mill_at_rest(self):
+        self.assertEqual(self.doubts("geometry.liner.motion=~", "time.end_s=1.2"), {})
 
     def test_a_mill_that_gathers_speed(self):
         found = self.doubts("geometry.liner.motion={rotation: {speed: mill, ramp_s: 2.4}}")
