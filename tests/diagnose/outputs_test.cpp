@@ -218,7 +218,7 @@ TEST_CASE("where nothing was found there is no corrected case, an older one goes
   CHECK(j["held_out"][0]["simulations"] == 0);
   for (const auto& model : j["held_out"][0]["models"]) CHECK(model["from"] == "surrogate");
   CHECK_THAT(base::text_of(folder / "out/diagnosis.md"),
-             Contains("| predicted |") && Contains("0 simulations were asked for. *Predicted*"));
+             Contains("| predicted |") && Contains("No simulation beside the bank's was needed. *Predicted*"));
   CHECK_FALSE(j["contact_parameters"].contains("unmasked"));
   CHECK_FALSE(std::filesystem::exists(folder / "out/corrected"));
   CHECK(j["hypotheses"][0]["class"] == "not needed");
