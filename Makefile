@@ -24,11 +24,12 @@ bench: packages-test binary ## time against LIGGGHTS (20 minutes on a quiet mach
 	cmake --build --preset release -j $(JOBS) --target millscope_bench
 	$(if $(AGAINST),bench/against.py $(BUILD) $(AGAINST),bench/run.sh $(BUILD)) $(BENCH_OPTIONS)
 
-figures: packages-test ## tables that tests print for docs/analysis.md and docs/analyzers.md (minutes on a quiet machine)
+figures: packages-test ## tables that tests print for docs/analysis.md, docs/analyzers.md and docs/campaigns.md (minutes on a quiet machine)
 	cmake --preset release -DMILLSCOPE_TESTS=ON $(CMAKE_OPTIONS)
-	cmake --build --preset release -j $(JOBS) --target test_analysis analyzers_fields_test
+	cmake --build --preset release -j $(JOBS) --target test_analysis analyzers_fields_test test_run
 	$(BUILD)/bin/test_analysis "[.coverage]"
 	$(BUILD)/bin/analyzers_fields_test "[.speed]"
+	$(BUILD)/bin/test_run "[.warm]"
 
 verify: packages-test binary ## the long checks (hours), written to docs/validation.md; VERIFY="crosscheck memory" for some
 	tools/verify.py --build $(BUILD) $(VERIFY)

@@ -162,6 +162,15 @@ struct TimeCase {
   Location where;
 };
 
+/// `start`: the beads begin where another run ended, in place of being filled in and settled.
+struct StartCase {
+  std::string run;     ///< `run`: folder of a finished run of the same geometry and motion, absolute
+  double develop = 0;  ///< `develop_s`, s, 0 < … ≤ analyze_from_s: from the start to the analysis
+  std::optional<double>
+      walls_ahead{};  ///< `walls_ahead_s`, s: by how much the walls' clock is ahead of the run's; a run finds it out itself
+  Node node;
+};
+
 /// `output`. Absent or `off`: not written; `series` and `checkpoint` are on by default. `frames: {}` takes the defaults below.
 struct OutputCase {
   struct Series {
@@ -213,9 +222,12 @@ struct Case {
   std::vector<GeometryCase> geometry;
   DomainCase domain;
   TimeCase time;
+  std::optional<StartCase> start;
   OutputCase output;
   RunCase run;
   Node root;
+
+  double walls_ahead() const { return start ? start->walls_ahead.value_or(0) : 0; }  ///< s
 
   const MaterialCase& material(std::string_view material_name) const;
   double softened_young(const MaterialCase& m) const { return stiffness_factor * m.young; }  ///< Pa

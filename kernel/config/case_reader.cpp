@@ -28,7 +28,7 @@ void read_head(const Node& root, Case& c) {
 
 Case from_tree(const Node& root, const std::string& file) {
   root.expect({"schema_version", "name", "seed", "stiffness_factor", "materials", "groups", "beads", "fill", "contact", "pairs",
-               "body_forces", "mill", "geometry", "domain", "time", "output", "run"});
+               "body_forces", "mill", "geometry", "domain", "time", "start", "output", "run"});
   Case c;
   c.file = file;
   c.root = root;
@@ -49,6 +49,7 @@ Case from_tree(const Node& root, const std::string& file) {
   c.domain.box.high.fill(kUnbounded);
   if (const auto domain = root.find("domain")) c.domain = read_domain(*domain);
   c.time = read_time(root.at("time", "{end_s: 4}"));
+  if (const auto start = root.find("start")) c.start = read_start(*start, c.time);
   c.output = read_output(root.find("output"), c.time);
   if (const auto run = root.find("run")) c.run = read_run(*run);
   return c;

@@ -109,6 +109,19 @@ TimeCase read_time(const Node& section) {
   return time;
 }
 
+StartCase read_start(const Node& section, const TimeCase& time) {
+  section.expect({"run", "develop_s", "walls_ahead_s"});
+  StartCase start;
+  start.node = section.at("run", "the folder of a finished run of the same mill");
+  start.run = resolve_file(start.node);
+  const std::string reason = fmt::format("the mill turns for so long before the analysis, which begins at time.analyze_from_s = {} s",
+                                         number_text(time.analyze_from));
+  const Range before{0, time.analyze_from, true, false, reason.c_str()};
+  start.develop = read_number(section.at("develop_s", "how long the mill turns before the analysis, e.g. 0.5 s"), "s", before);
+  if (const auto ahead = section.find("walls_ahead_s")) start.walls_ahead = read_number(*ahead, "s");
+  return start;
+}
+
 OutputCase read_output(const std::optional<Node>& section, const TimeCase& time) {
   OutputCase output;
   if (!section) return output;

@@ -34,6 +34,7 @@ MotionCase read_motion(const Node& node, const std::optional<MillCase>& mill);
 std::vector<GeometryCase> read_geometry(const Node& section, const Case& c);
 DomainCase read_domain(const Node& section);
 TimeCase read_time(const Node& section);
+StartCase read_start(const Node& section, const TimeCase& time);
 OutputCase read_output(const std::optional<Node>& section, const TimeCase& time);
 RunCase read_run(const Node& section);
 

@@ -183,6 +183,13 @@ json time_schema() {
                 {"end_s"});
 }
 
+json start_schema() {
+  return object({{"run", text("folder of a finished run of the same mill")},
+                 {"develop_s", quantity("s that the mill turns before the analysis")},
+                 {"walls_ahead_s", quantity("s; a run finds it out itself")}},
+                {"run", "develop_s"});
+}
+
 }  // namespace
 
 json case_schema(std::span<const Descriptor* const> descriptors) {
@@ -214,6 +221,7 @@ json case_schema(std::span<const Descriptor* const> descriptors) {
                         {"geometry", geometry_schema(descriptors)},
                         {"domain", domain_schema()},
                         {"time", time_schema()},
+                        {"start", start_schema()},
                         {"output", output_schema()},
                         {"run", run}},
                        {"schema_version", "materials", "beads", "fill", "contact", "pairs", "body_forces", "time"});

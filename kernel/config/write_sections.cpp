@@ -155,6 +155,15 @@ void write_time(Lines& out, const TimeCase& time) {
   out.close();
 }
 
+void write_start(Lines& out, const std::optional<StartCase>& start) {
+  if (!start) return;
+  out.open("start");
+  out.value("run", quoted(start->run));
+  out.value("develop_s", start->develop);
+  if (start->walls_ahead) out.value("walls_ahead_s", *start->walls_ahead);
+  out.close();
+}
+
 void write_output(Lines& out, const OutputCase& o) {
   const auto off_or = [&out](const char* key, bool on, const std::string& text) { out.value(key, on ? "{" + text + "}" : "off"); };
   out.open("output");

@@ -27,6 +27,7 @@ class Writer {
     geometry();
     write_domain(out_, c_.domain);
     write_time(out_, c_.time);
+    write_start(out_, c_.start);
     write_output(out_, c_.output);
     write_run(out_, c_.run);
     return out_.text();

@@ -41,6 +41,7 @@ void write_mill(Lines& out, const std::optional<MillCase>& mill);
 void write_motion(Lines& out, const MotionCase& motion);
 void write_domain(Lines& out, const DomainCase& domain);
 void write_time(Lines& out, const TimeCase& time);
+void write_start(Lines& out, const std::optional<StartCase>& start);
 void write_output(Lines& out, const OutputCase& output);
 void write_run(Lines& out, const RunCase& run);
 

@@ -10,7 +10,7 @@ constexpr double kTwoPi = 2 * std::numbers::pi;
 
 /// θ(t) of Ω(t) = Ω · ramp(t) · (1 + a sin 2πf t), the ripple starting when the ramp ends.
 double angle_at(const Motion& m, double time) {
-  const double t = time - m.start;
+  const double t = time + m.ahead - m.start;
   if (t <= 0) return 0;
   if (t < m.ramp) return 0.5 * m.speed * t * t / m.ramp;
   const double steady = t - m.ramp;
@@ -25,7 +25,7 @@ double angle_at(const Motion& m, double time) {
 }  // namespace
 
 double angular_speed(const Motion& m, double time) {
-  const double t = time - m.start;
+  const double t = time + m.ahead - m.start;
   if (t <= 0) return 0;
   if (t < m.ramp) return m.speed * t / m.ramp;
   return m.speed * (1 + m.ripple_amplitude * std::sin(kTwoPi * m.ripple_frequency * (t - m.ramp) + m.ripple_phase));
@@ -45,7 +45,7 @@ Pose pose_at(const Motion& m, double time) {
   }
   const double w = kTwoPi * m.oscillation_frequency;
   const double omega = angular_speed(m, time);
-  const double moving = time - m.translation_start;
+  const double moving = time + m.ahead - m.translation_start;
   for (std::size_t i = 0; i < 3; ++i) {
     const double swing = m.oscillation_amplitude[i];
     const double shift =

@@ -22,6 +22,9 @@ struct Motion {
   double oscillation_frequency = 0;        ///< Hz
   double oscillation_phase = 0;            ///< rad
   double translation_start = 0;            ///< s
+  double ahead = 0;                        ///< s, what the walls' clock shows beyond the time: they may have been turning before
+
+  bool operator==(const Motion&) const = default;
 };
 
 /// Where the body is and how it moves: x_world = R x_body + offset; v = velocity + Ω × (x − centre).

@@ -156,7 +156,7 @@ void add_bodies(Assembly& a) {
     body.name = a.c.geometry[g].plugin.name;
     body.table = &use.object.table();
     body.self = use.object.self();
-    body.motion = motion_of(a.c.geometry[g].motion);
+    body.motion = motion_of(a.c.geometry[g].motion, a.c.walls_ahead());
     for (const std::string& slot : use.slots) body.material_of_slot.push_back(a.index_of_material(a.c.geometry[g].material_of(slot)));
     body.greatest_distance = greatest_distance(use.surface, body.motion);
     body.triangle_count = use.surface.triangle_count;
@@ -219,12 +219,13 @@ Assembly assemble(config::Case c, const host::Registry& registry, const Assembly
       std::make_unique<dem::System>(settings_of(a, registry, options), layout, std::move(pairs), static_cast<int>(a.materials.size()));
   add_bodies(a);
   add_body_forces(a);
-  a.settle_steps = steps_until(a.c.fill.settle, a.time_step);
+  a.first_step =
+      a.c.start ? steps_until(a.c.time.analyze_from - a.c.start->develop, a.time_step) : -steps_until(a.c.fill.settle, a.time_step);
   a.end_step = steps_until(a.c.time.end, a.time_step);
   a.analyze_step = steps_until(a.c.time.analyze_from, a.time_step);
   return a;
 }
 
-void begin(Assembly& a) { a.system->start(-a.settle_steps); }
+void begin(Assembly& a) { a.system->start(a.first_step); }
 
 }  // namespace millscope::run

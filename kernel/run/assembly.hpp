@@ -40,7 +40,8 @@ struct Assembly {
   double hertz_contact_time = 0;     ///< s, shortest over the pairs at the typical speed; Hertz's where the law gives none
   bool stiffness_from_young = true;  ///< by what the law says, its contacts get shorter where materials get stiffer
   double mill_speed = 0;             ///< Ω about z, rad/s
-  std::int64_t settle_steps = 0, end_step = 0, analyze_step = 0;
+  std::int64_t first_step = 0;       ///< below 0: of settling, with the walls at rest
+  std::int64_t end_step = 0, analyze_step = 0;
   std::uint64_t bead_count = 0;
   std::array<double, 3> gravity{};
 
@@ -56,10 +57,11 @@ struct AssemblyOptions {
 /// Creates every plugin object, derives the time step and checks it; no beads yet. Throws UserError.
 Assembly assemble(config::Case c, const host::Registry& registry, const AssemblyOptions& options = {});
 
-/// Puts the beads in, so that none overlaps another or a wall. Throws UserError when they do not fit.
+/// Puts the beads in: so that none overlaps another or a wall, or, where the case has a `start`, as another run left them (warm_start.cpp).
+/// Throws UserError when they do not fit.
 void insert_beads(Assembly& a);
 
-/// The steps at which settling begins (−settle_steps) … end_step are absolute: time = step · Δt.
+/// first_step … end_step are absolute: time = step · Δt.
 void begin(Assembly& a);
 
 /// The shortest contact of any pair at this closing speed, m/s, in s: as its law says, Hertz's where it says nothing.

@@ -180,8 +180,9 @@ std::vector<GeometryUse> make_geometries(const config::Case& c, const host::Regi
   return geometries;
 }
 
-dem::Motion motion_of(const config::MotionCase& m) {
+dem::Motion motion_of(const config::MotionCase& m, double ahead) {
   dem::Motion r;
+  r.ahead = ahead;
   if (m.rotation) {
     r.speed = m.rotation->speed;
     r.axis = m.rotation->axis;

@@ -11,7 +11,8 @@ namespace millscope::run {
 /// for a motion of an endless one whose speed has no bound.
 std::vector<GeometryUse> make_geometries(const config::Case& c, const host::Registry& registry);
 
-dem::Motion motion_of(const config::MotionCase& motion);
+/// `ahead`: of the walls' clock, s (config::Case::walls_ahead).
+dem::Motion motion_of(const config::MotionCase& motion, double ahead = 0);
 
 /// Greatest distance of the surface's vertices from the axis of rotation, m.
 double greatest_distance(const Surface& surface, const dem::Motion& motion);

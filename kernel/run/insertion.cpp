@@ -6,9 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernel/run/scatter.hpp"
-#include "kernel/run/space.hpp"
-#include "millscope/random.hpp"
+#include "kernel/run/insertion.hpp"
+#include "kernel/run/warm_start.hpp"
 
 namespace millscope::run {
 namespace {
@@ -61,7 +60,33 @@ std::vector<base::Vector3> sites_of(const Assembly& a, const Region& r, double d
   return sites;
 }
 
-/// How many of each class and size: largest remainders, so that the numbers add up and no seed changes them; then shuffled.
+/// The lowest `bead_count` free sites of the lattice, or all when it has fewer. Grows from below, so that a large vessel with few beads
+/// costs little.
+std::vector<base::Vector3> lattice_sites(const Assembly& a, const Region& region, double jitter) {
+  const double diameter = a.c.largest_diameter(), cell = std::pow(kSpacing * diameter, 3) / std::numbers::sqrt2;
+  for (double part = first_part(a, region, 8 * static_cast<double>(a.bead_count) * cell);; part = std::min(1.0, 2 * part)) {
+    std::vector<base::Vector3> sites = sites_of(a, region, diameter, level(a, region, part));
+    const std::vector<std::uint8_t> bad = blocked(a, sites, 0.5 * diameter + 2 * jitter);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      if (!bad[i]) sites[kept++] = sites[i];
+    }
+    sites.resize(kept);
+    if (kept >= a.bead_count) {
+      // Lowest first; ties by position so that the choice is the same everywhere.
+      std::sort(sites.begin(), sites.end(), [&a](const base::Vector3& p, const base::Vector3& q) {
+        const double hp = height(a, p), hq = height(a, q);
+        return hp != hq ? hp < hq : p < q;
+      });
+      sites.resize(a.bead_count);
+      return sites;
+    }
+    if (part >= 1) return sites;
+  }
+}
+
+}  // namespace
+
 std::vector<BeadType> draw_types(const Assembly& a, std::uint64_t count, Random& random) {
   struct Share {
     BeadType type;
@@ -90,31 +115,6 @@ std::vector<BeadType> draw_types(const Assembly& a, std::uint64_t count, Random&
   return types;
 }
 
-/// The lowest `bead_count` free sites of the lattice, or all when it has fewer. Grows from below, so that a large vessel with few beads
-/// costs little.
-std::vector<base::Vector3> lattice_sites(const Assembly& a, const Region& region, double jitter) {
-  const double diameter = a.c.largest_diameter(), cell = std::pow(kSpacing * diameter, 3) / std::numbers::sqrt2;
-  for (double part = first_part(a, region, 8 * static_cast<double>(a.bead_count) * cell);; part = std::min(1.0, 2 * part)) {
-    std::vector<base::Vector3> sites = sites_of(a, region, diameter, level(a, region, part));
-    const std::vector<std::uint8_t> bad = blocked(a, sites, 0.5 * diameter + 2 * jitter);
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < sites.size(); ++i) {
-      if (!bad[i]) sites[kept++] = sites[i];
-    }
-    sites.resize(kept);
-    if (kept >= a.bead_count) {
-      // Lowest first; ties by position so that the choice is the same everywhere.
-      std::sort(sites.begin(), sites.end(), [&a](const base::Vector3& p, const base::Vector3& q) {
-        const double hp = height(a, p), hq = height(a, q);
-        return hp != hq ? hp < hq : p < q;
-      });
-      sites.resize(a.bead_count);
-      return sites;
-    }
-    if (part >= 1) return sites;
-  }
-}
-
 void put_bead(Assembly& a, std::size_t i, const BeadType& type, const base::Vector3& centre) {
   dem::Particles& p = a.system->particles;
   const config::BeadCase& bead = a.c.beads[type.bead_class];
@@ -130,9 +130,8 @@ void put_bead(Assembly& a, std::size_t i, const BeadType& type, const base::Vect
   p.material[i] = static_cast<std::uint8_t>(std::find(a.materials.begin(), a.materials.end(), bead.material) - a.materials.begin());
 }
 
-}  // namespace
-
 void insert_beads(Assembly& a) {
+  if (a.c.start) return take_over_beads(a);
   Random random(a.c.seed);
   const double jitter = 0.25 * (kSpacing - 1) * a.c.largest_diameter();
   const Region region = region_of(a);

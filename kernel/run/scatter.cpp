@@ -54,10 +54,6 @@ class Cells {
   void add(const base::Vector3& p, double radius) { cells_[index({cell(p, 0), cell(p, 1), cell(p, 2)})].push_back({p, radius}); }
 
  private:
-  struct Sphere {
-    base::Vector3 centre;
-    double radius;
-  };
   std::int64_t cell(const base::Vector3& p, std::size_t axis) const {
     const auto at = static_cast<std::int64_t>((p[axis] - low_[axis]) / extent_[axis] * static_cast<double>(count_[axis]));
     return std::clamp<std::int64_t>(at, 0, count_[axis] - 1);
@@ -133,14 +129,21 @@ class Points {
 
 }  // namespace
 
-std::vector<base::Vector3> scattered(const Assembly& a, const Region& region, const std::vector<BeadType>& types, Random& random) {
+std::vector<base::Vector3> scattered(const Assembly& a, const Region& region, const std::vector<BeadType>& types, Random& random,
+                                     const std::vector<Sphere>& occupied) {
   std::vector<std::size_t> order(types.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&types](std::size_t p, std::size_t q) { return types[p].diameter > types[q].diameter; });
   double solid = 0;
   for (const BeadType& t : types) solid += std::numbers::pi / 6 * t.diameter * t.diameter * t.diameter;
+  double widest = types[order.front()].diameter;
+  for (const Sphere& s : occupied) {
+    solid += std::numbers::pi / 6 * std::pow(2 * s.radius, 3);
+    widest = std::max(widest, 2 * s.radius);
+  }
   double part = first_part(a, region, solid / kFirstShare);
-  Cells cells(a, region, types[order.front()].diameter);
+  Cells cells(a, region, widest);
+  for (const Sphere& s : occupied) cells.add(s.centre, s.radius);
   Points points(a, region, random);
   std::vector<base::Vector3> centres(types.size());
   for (std::size_t done = 0; done < order.size(); ++done) {

@@ -16,6 +16,7 @@
 #include "kernel/run/progress.hpp"
 #include "kernel/run/recorder.hpp"
 #include "kernel/run/soundness.hpp"
+#include "kernel/run/warm_start.hpp"
 
 namespace millscope::run {
 namespace {
@@ -88,11 +89,7 @@ std::int64_t fingerprint(const Assembly& a, const host::Registry& registry) {
   c.output = {};
   base::Hash hash;
   hash.add(config::resolved_yaml(c, registry.descriptors()));
-  for (const GeometryUse& g : a.geometries) {
-    hash.add(g.surface.vertices, 3 * g.surface.vertex_count * sizeof *g.surface.vertices);
-    hash.add(g.surface.triangles, 3 * g.surface.triangle_count * sizeof *g.surface.triangles);
-  }
-  return static_cast<std::int64_t>(hash.value());
+  return static_cast<std::int64_t>(add_surfaces(a, hash).value());
 }
 
 void write_checkpoint(Session& s) {
@@ -105,7 +102,11 @@ void write_checkpoint(Session& s) {
                           });
   archive.write_value("wall_s", s.wall());
   archive.write_value("case", s.case_fingerprint);
+  archive.write_value<std::int64_t>("first_step", s.assembly.first_step);
   archive.write_value<std::int64_t>("analyze_step", s.assembly.analyze_step);
+  archive.write_value("time_s", s.assembly.system->time());
+  base::Hash surfaces;
+  archive.write_value("surfaces", static_cast<std::int64_t>(add_surfaces(s.assembly, surfaces).value()));
   const std::vector<Sample>& samples = s.recorder->samples();
   archive.write("window/samples",
                 std::span<const double>(reinterpret_cast<const double*>(samples.data()), samples.size() * sizeof(Sample) / sizeof(double)));
@@ -120,7 +121,7 @@ void write_checkpoint(Session& s) {
 Json summary_of(Session& s) {
   const Assembly& a = s.assembly;
   const dem::System& system = *a.system;
-  const std::int64_t steps = system.step() + a.settle_steps;
+  const std::int64_t steps = system.step() - a.first_step;
   const std::int64_t stepped = system.step() - s.first_step;
   const double wall = seconds_since(s.started);
   Json j;
@@ -132,7 +133,8 @@ Json summary_of(Session& s) {
   j["dt_s"] = a.time_step;
   j["dt_rayleigh_fraction"] = a.time_step / a.rayleigh_time;
   j["simulated_s"] = system.time();
-  j["settle_s"] = static_cast<double>(a.settle_steps) * a.time_step;
+  j["settle_s"] = static_cast<double>(std::max<std::int64_t>(0, -a.first_step)) * a.time_step;
+  if (a.c.start) j["start"] = {{"run", a.c.start->run}, {"develop_s", a.c.start->develop}};
   j["wall_s"] = s.wall();
   j["particle_steps_per_s"] = wall > 0 ? static_cast<double>(a.bead_count) * static_cast<double>(stepped) / wall : 0.0;
   j["threads"] = system.threads();
@@ -287,7 +289,7 @@ Outcome run_once(const std::string& case_file, const host::Registry& registry, c
     directory.undo();
     throw;
   }
-  s.first_step = -s.assembly.settle_steps;
+  s.first_step = s.assembly.first_step;
   s.started = Clock::now();
   return step_to_end(s, registry);
 }
@@ -335,6 +337,8 @@ Outcome resume_run(const host::Registry& registry, const RunOptions& options) {
   dem::System& system = *s.assembly.system;
   system.restore([&archive](const std::string& name) { return archive.read<double>("system/" + name); },
                  [&archive](const std::string& name) { return archive.read<std::int64_t>("system/" + name); });
+  // The analysis may have been moved since.
+  if (archive.has("first_step")) s.assembly.first_step = archive.read_value<std::int64_t>("first_step");
   // A run that ended before it could write its summary is brought to its end.
   const std::filesystem::path summary = options.output / kSummary;
   if (system.step() > s.assembly.end_step || (system.step() == s.assembly.end_step && std::filesystem::exists(summary))) {
@@ -378,7 +382,7 @@ Estimate estimate(const std::string& case_file, const host::Registry& registry, 
   e.time_step = a.time_step;
   e.rayleigh_fraction = a.time_step / a.rayleigh_time;
   e.contact_steps = a.hertz_contact_time / a.time_step;
-  e.steps = a.end_step + a.settle_steps;
+  e.steps = a.end_step - a.first_step;
   e.partitions = a.system->settings().partitions;
   // A trial of this very case: half a second of stepping, the first rebuilds left out. A settling bed is as dense as a developed one.
   const Clock::time_point warm = Clock::now();

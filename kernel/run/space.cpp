@@ -102,6 +102,18 @@ void mark_hidden(const GeometryUse& g, const std::vector<base::Vector3>& sites, 
   }
 }
 
+/// Points as a geometry sees them when the run begins.
+std::vector<base::Vector3> in_frame_of(const Assembly& a, std::size_t geometry, const std::vector<base::Vector3>& points) {
+  const dem::Pose pose = dem::pose_at(a.system->bodies[geometry].motion, static_cast<double>(a.first_step) * a.time_step);
+  std::vector<base::Vector3> turned(points.size(), base::Vector3{});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t row = 0; row < 3; ++row) turned[i][k] += pose.rotation[row][k] * (points[i][row] - pose.offset[row]);
+    }
+  }
+  return turned;
+}
+
 }  // namespace
 
 /// Where beads may be put: what the user says, else the intersection of what the geometries call their inside.
@@ -163,9 +175,10 @@ double first_part(const Assembly& a, const Region& r, double volume) {
 
 std::vector<std::uint8_t> blocked(const Assembly& a, const std::vector<base::Vector3>& centres, double radius) {
   std::vector<std::uint8_t> bad(centres.size(), 0);
-  for (const GeometryUse& g : a.geometries) {
-    mark_touching(g, centres, std::vector<double>(centres.size(), radius), bad);
-    mark_hidden(g, centres, bad);
+  for (std::size_t g = 0; g < a.geometries.size(); ++g) {
+    const std::vector<base::Vector3> sites = in_frame_of(a, g, centres);
+    mark_touching(a.geometries[g], sites, std::vector<double>(centres.size(), radius), bad);
+    mark_hidden(a.geometries[g], sites, bad);
   }
   return bad;
 }

@@ -35,7 +35,7 @@ Shell find_shell(const config::Case& c, const host::Registry& registry) {
   for (const config::GeometryCase& g : c.geometry) {
     const Interior interior = interior_of(g, registry);
     if (interior.is_bounded == 0 || interior.is_cylinder == 0) continue;
-    const dem::Motion motion = run::motion_of(g.motion);
+    const dem::Motion motion = run::motion_of(g.motion, c.walls_ahead());
     if (shell.interior && (shell.motion.speed != 0 || motion.speed == 0)) continue;
     shell = {interior, motion};
   }

@@ -75,7 +75,7 @@ Found look_at(const fs::path& case_file, const Choices& choices, const host::Reg
     return {e.beads, static_cast<std::uint64_t>(e.steps), e.time_step, e.wall_seconds};
   }
   const run::Assembly a = run::assemble(config::read_case(case_file.string()), registry);
-  return {a.bead_count, static_cast<std::uint64_t>(a.end_step + a.settle_steps), a.time_step, 0};
+  return {a.bead_count, static_cast<std::uint64_t>(a.end_step - a.first_step), a.time_step, 0};
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
