@@ -22,7 +22,7 @@ struct Left {
   std::uint32_t id;
   base::Vector3 centre;
   double radius, mass;
-  dem::MotionLine motion;
+  base::Vector3 velocity, spin;
 };
 
 /// What the other run left.
@@ -71,7 +71,13 @@ void take_beads(const output::ArchiveReader& archive, Donor& donor) {
   dem::demand(p.motion.size() == p.position.size() && p.id.size() == p.position.size());
   for (std::size_t i = 0; i < p.position.size(); ++i) {
     const dem::PositionLine& x = p.position[i];
-    donor.beads.push_back({p.id[i], {x.centre[0], x.centre[1], x.centre[2]}, x.radius, 1 / p.motion[i].inverse_mass, p.motion[i]});
+    const dem::MotionLine& m = p.motion[i];
+    donor.beads.push_back({p.id[i],
+                           {x.centre[0], x.centre[1], x.centre[2]},
+                           x.radius,
+                           1 / m.inverse_mass,
+                           {m.v[0], m.v[1], m.v[2]},
+                           {m.w[0], m.w[1], m.w[2]}});
   }
   std::sort(donor.beads.begin(), donor.beads.end(), [](const Left& one, const Left& other) { return one.id < other.id; });
 }
@@ -173,8 +179,8 @@ void check_places(const Assembly& a, Donor& donor) {
 void put_moving(Assembly& a, std::size_t i, const BeadType& type, const Left& bead) {
   put_bead(a, i, type, bead.centre);
   for (dem::MotionLine* line : {&a.system->particles.motion[i], &a.system->particles.half[i]}) {
-    std::copy_n(bead.motion.v, 3, line->v);
-    std::copy_n(bead.motion.w, 3, line->w);
+    std::copy_n(bead.velocity.data(), 3, line->v);
+    std::copy_n(bead.spin.data(), 3, line->w);
   }
 }
 

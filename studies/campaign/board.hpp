@@ -2,7 +2,9 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -12,10 +14,12 @@
 
 namespace millscope::campaign {
 
-/// A simulation to compute; several of the caller's may be the same.
+/// A simulation to compute; several of the caller's may be the same, and none where it is only another's donor.
 struct Job {
   Entry entry;
   std::vector<std::size_t> indices;  ///< of the caller's simulations
+  std::string donor;                 ///< key; "": it begins from a filling at rest
+  double develop_s = 0;              ///< s, with a donor
   double work = 1;                   ///< as Identity::work
   double end_s = 0;                  ///< s
   std::uint64_t memory = 0;          ///< predicted, bytes
@@ -34,6 +38,8 @@ class Board {
   const Options& options() const { return options_; }
   ProgressLine& progress() { return progress_; }
 
+  /// Key of the nearest donor that came to its end, "" where there is none; nothing while that is not settled.
+  std::optional<std::string> donor_of(const Job& job) const;
   /// What another head has found meanwhile, or nothing.
   std::optional<TaskRecord> settled(const Job& job) const;
   /// Books the end of a job. `cached`: this call computed nothing for it.
@@ -45,8 +51,15 @@ class Board {
   std::string interrupted_message(const std::string& what_remains) const;
 
  private:
+  void add(const Simulation& simulation, Identity id, std::optional<std::size_t> index);
   void settle(std::size_t index, const Outcome& outcome, double work);
   const Options& options_;
+  const Identifier identifier_;
+  std::map<std::string, std::size_t> places_;  ///< key → place in open_ when it was made
+  std::map<std::string, std::string> donors_;  ///< key → its donor's, where it has one
+  std::set<std::string> unsettled_, failed_;   ///< keys of jobs that are not finished; of simulations that failed
+  std::vector<Identity> missing_;
+  std::size_t found_ = 0;
   std::vector<Outcome> outcomes_;
   std::deque<Job> open_;
   ProgressLine progress_;

@@ -1,6 +1,7 @@
 #include "studies/campaign/cache.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -79,6 +80,15 @@ void Entry::prepare(const Identity& identity, const std::string& label) const {
   record.label = label;
   record.program = identity.program;
   write(record);
+}
+
+void Entry::begin_from(const std::string& donor_key, double develop_s) const {
+  constexpr std::string_view kStart = "\nstart: ";
+  std::string text = base::text_of(case_file());
+  const std::string before = text;
+  if (const std::size_t at = text.rfind(kStart); at != std::string::npos) text.resize(at + 1);
+  if (!donor_key.empty()) text += fmt::format("{}{{run: ../{}/run, develop_s: {}}}\n", kStart.substr(1), donor_key, develop_s);
+  if (text != before) output::write_file(case_file(), text);
 }
 
 TaskRecord Entry::read() const {

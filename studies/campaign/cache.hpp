@@ -38,6 +38,9 @@ class Entry {
   /// Writes case.yaml, copies the files that it names into CACHE/files, and begins task.json; what is there stays.
   void prepare(const Identity& identity, const std::string& label) const;
 
+  /// Says in case.yaml at the end of which simulation of the same cache this one begins; "": of none.
+  void begin_from(const std::string& donor_key, double develop_s) const;
+
   /// What is known of it. A run with a summary is done, whatever task.json says: its head may have died between the two.
   TaskRecord read() const;
   void write(const TaskRecord& record) const;

@@ -1,7 +1,8 @@
 // Many simulations, each computed once: cached by what its result depends on, on this machine or through Slurm.
 //
 // CACHE/<key>/         one simulation
-//   case.yaml          the resolved case, with meshes as copies in CACHE/files: what is run, whatever becomes of the user's files
+//   case.yaml          the resolved case, with meshes as copies in CACHE/files: what is run, whatever becomes of the user's files; and from
+//                      which other simulation's end it begins, once that is known
 //   task.json          state, message, wall time, label
 //   run/               what `millscope run` writes
 //   lock               the head that works on it (host, process); taken over when that head is dead
@@ -16,6 +17,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,6 +31,11 @@ struct Simulation {
   std::filesystem::path case_file;
   std::vector<std::string> settings;  ///< "path.to.key=value", as `--set`
   std::string label;                  ///< for people: progress, tables, task.json
+
+  /// The simulation at whose end this one begins, of the same mill at the same speed; null: from a filling at rest. It is run, too, where
+  /// it has not been. Where it fails, its own donor takes its place, and so on; where none is left, this one is filled in and settled.
+  std::shared_ptr<const Simulation> donor = {};
+  double develop_s = 0;  ///< s, with a donor: from the start to time.analyze_from_s
 };
 
 enum class State { done, failed };
@@ -70,8 +77,8 @@ class Interrupted : public base::UserError {
 std::vector<Outcome> run(std::span<const Simulation> simulations, const Options& options);
 
 /// 32 hexadecimal digits over the case, a hyphen, and 16 over the program. The case: resolved, with what it writes (not its name, threads
-/// or checkpoint interval) and the contents of the files it names. The program: the code of the kernel, compiler, flags and libraries, and
-/// the code of every build of the libraries of the case's plugins. Throws UserError when the case cannot be read.
+/// or checkpoint interval) and the contents of the files it names, and the donor's key. The program: the code of the kernel, compiler,
+/// flags and libraries, and the code of every build of the libraries of the case's plugins. Throws UserError when the case cannot be read.
 std::string key(const Simulation& simulation, const Options& options);
 
 }  // namespace millscope::campaign

@@ -12,6 +12,7 @@
 #include "kernel/base/text.hpp"
 #include "kernel/config/values.hpp"
 #include "kernel/config/writer.hpp"
+#include "kernel/output/archive.hpp"
 #include "kernel/run/assembly.hpp"
 
 namespace millscope::campaign {
@@ -102,6 +103,7 @@ std::string essence(config::Case c, const host::Registry& registry, const std::v
   c.name.clear();
   c.run.threads = 0;
   c.output.checkpoint = config::OutputCase::Checkpoint{};
+  if (c.start) c.start->run = "content " + content_hash(read_file(output::checkpoint_path(c.start->run).string()));
   std::string text = config::resolved_yaml(c, registry.descriptors());
   for (const NamedFile& file : files) text = replaced(std::move(text), config::quoted(file.path), "content " + file.hash);
   return text;
@@ -127,6 +129,14 @@ std::uint64_t predicted_memory(double beads, const std::vector<NamedFile>& files
     if (!ignored) bytes += size * kMemoryPerMeshByte;
   }
   return bytes;
+}
+
+void check_start(const Simulation& simulation, const config::Case& c) {
+  if (c.start) c.start->node.fail("is given, but the campaign chooses the run from which this simulation begins; leave 'start' out");
+  if (simulation.develop_s > 0 && simulation.develop_s <= c.time.analyze_from) return;
+  throw UserError(c.time.where, fmt::format("the analysis begins at time.analyze_from_s = {:.6g} s, and the mill is to turn for {:.6g} s "
+                                            "before; give a time above 0 and no longer than that",
+                                            c.time.analyze_from, simulation.develop_s));
 }
 
 host::RegistryOptions registry_options(const Options& options) {
@@ -159,18 +169,41 @@ std::string case_of(const std::string& key) { return key.substr(0, key.find('-')
 
 Identifier::Identifier(const Options& options) : registry_(registry_options(options)) {}
 
+const Identifier::Donor& Identifier::donor_of(const Simulation& simulation) const {
+  static const Donor kNone;
+  if (!simulation.donor) return kNone;
+  if (const auto known = donors_.find(simulation.donor); known != donors_.end()) return known->second;
+  Donor donor;
+  try {
+    const Identity identity = identify(*simulation.donor);
+    donor = {simulation.donor, identity.key, identity.program};
+  } catch (const UserError&) {
+    donor = donor_of(*simulation.donor);
+  }
+  return donors_.emplace(simulation.donor, std::move(donor)).first->second;
+}
+
 Identity Identifier::identify(const Simulation& simulation) const {
   const config::Case c = config::read_case(simulation.case_file.string(), simulation.settings);
   config::finish(c, registry_.descriptors());
+  const Donor& donor = donor_of(simulation);
+  if (donor.simulation) check_start(simulation, c);
   Identity id;
+  id.donor = donor.key;
   id.files = files_of(c, registry_);
   id.program = plugins_of(c, registry_);
   id.program.merge(base::program_parts(base::simulating_folders()));
-  id.key = content_hash(fmt::format("cache {}\n{}", kCacheVersion, essence(c, registry_, id.files))) + "-" +
-           content_hash(text_of(id.program)).substr(0, kProgramDigits);
+  base::ProgramParts of_donor = donor.program;
+  id.program.merge(of_donor);
+  std::string content = fmt::format("cache {}\n{}", kCacheVersion, essence(c, registry_, id.files));
+  if (donor.simulation) {
+    id.develop_s = simulation.develop_s;
+    content += fmt::format("begins at the end of {}, {} s before the analysis\n", case_of(donor.key), simulation.develop_s);
+  }
+  id.key = content_hash(content) + "-" + content_hash(text_of(id.program)).substr(0, kProgramDigits);
   id.case_yaml = config::resolved_yaml(c, registry_.descriptors());
   const double beads = beads_of(simulation, c, registry_);
-  id.work = std::max(1.0, beads) * (c.time.end + c.fill.settle);
+  id.work = std::max(1.0, beads) * (c.time.end + (donor.simulation ? simulation.develop_s - c.time.analyze_from : c.fill.settle));
   id.end_s = c.time.end;
   id.memory = predicted_memory(beads, id.files);
   return id;

@@ -1,6 +1,8 @@
 // What a simulation's result depends on, and its key in the cache.
 #pragma once
 
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,8 @@ struct NamedFile {
 /// A simulation that has been read.
 struct Identity {
   std::string key;
+  std::string donor;             ///< its key; "" without
+  double develop_s = 0;          ///< s, with a donor
   base::ProgramParts program;    ///< what of program and plugins the key stands for
   std::string case_yaml;         ///< the resolved case; files by the paths of `files`
   std::vector<NamedFile> files;  ///< each once
@@ -33,11 +37,20 @@ struct Identity {
 class Identifier {
  public:
   explicit Identifier(const Options& options);
-  /// Throws UserError when the case cannot be read.
+  /// Throws UserError when the case cannot be read. A donor whose case cannot be read is passed over for its own donor.
   Identity identify(const Simulation& simulation) const;
+
+  struct Donor {
+    std::shared_ptr<const Simulation> simulation;  ///< null: none
+    std::string key;
+    base::ProgramParts program;
+  };
+  /// The nearest donor whose case can be read. Each is read once.
+  const Donor& donor_of(const Simulation& simulation) const;
 
  private:
   host::Registry registry_;
+  mutable std::map<std::shared_ptr<const Simulation>, Donor> donors_;
 };
 
 /// A text that differs where the case, the content of a file that it names or the code of a plugin that it loads does; its name, threads

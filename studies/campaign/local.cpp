@@ -106,7 +106,7 @@ class Local {
   void fill() {
     std::deque<Job>& open = board_.open();
     for (auto job = open.begin(); job != open.end() && static_cast<int>(running_.size()) < slots_;) {
-      if (job->next_look > now()) {
+      if (job->next_look > now() || !board_.donor_of(*job)) {
         ++job;
         continue;
       }

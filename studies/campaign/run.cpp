@@ -24,46 +24,63 @@ Options with_absolute_paths(Options options) {
 }  // namespace
 
 Board::Board(std::span<const Simulation> simulations, const Options& options)
-    : options_(options), outcomes_(simulations.size()), progress_(options.quiet, simulations.size()) {
+    : options_(options), identifier_(options), outcomes_(simulations.size()), progress_(options.quiet, simulations.size()) {
   make_directory(options.cache);
-  const Identifier identifier(options);
-  std::map<std::string, std::size_t> places;  // key → place in open_
-  std::vector<Identity> missing;
-  std::size_t found = 0;
   for (std::size_t i = 0; i < simulations.size(); ++i) {
-    Identity id;
+    std::optional<Identity> id;
     try {
-      id = identifier.identify(simulations[i]);
+      id = identifier_.identify(simulations[i]);
     } catch (const base::UserError& e) {
       settle(i, {State::failed, {}, e.what(), true, 0, ""}, 0);
-      continue;
     }
-    if (const auto same = places.find(id.key); same != places.end()) {
-      open_[same->second].indices.push_back(i);
-      continue;
-    }
-    const Entry entry(options.cache, id.key);
-    {
-      const Guard guard(options.cache);
-      entry.prepare(id, simulations[i].label);
-    }
-    const TaskRecord record = entry.read();
-    const bool failed = record.stage == Stage::failed;
-    if (record.stage == Stage::done || (failed && !options.retry_failed)) {
-      Outcome outcome = outcome_of(entry, record);
-      outcome.cached = true;
-      ++found;
-      settle(i, outcome, id.work);
-      continue;
-    }
-    places.emplace(id.key, open_.size());
-    open_.push_back({entry, {i}, id.work, id.end_s, id.memory, record.attempts, failed, 0});
-    missing.push_back(std::move(id));
+    if (id) add(simulations[i], std::move(*id), i);
   }
   if (!options.say) return;
-  if (found > 0) options.say(fmt::format("simulations found in the cache: {} of {}", found, simulations.size()));
+  if (found_ > 0) options.say(fmt::format("simulations found in the cache: {} of {}", found_, simulations.size()));
   if (!options.say_of_other_programs) return;
-  if (const std::string others = other_programs_sentence(options.cache, missing); !others.empty()) options.say(others);
+  if (const std::string others = other_programs_sentence(options.cache, missing_); !others.empty()) options.say(others);
+}
+
+/// `index`: of the caller's simulations; none for a donor of one that is to be computed: where it has failed, its own donor is needed.
+void Board::add(const Simulation& simulation, Identity id, std::optional<std::size_t> index) {
+  if (const auto same = places_.find(id.key); same != places_.end()) {
+    if (index) open_[same->second].indices.push_back(*index);
+    return;
+  }
+  const Entry entry(options_.cache, id.key);
+  {
+    const Guard guard(options_.cache);
+    entry.prepare(id, simulation.label);
+  }
+  if (!id.donor.empty()) donors_[id.key] = id.donor;
+  const TaskRecord record = entry.read();
+  const bool failed = record.stage == Stage::failed, is_final = failed && !options_.retry_failed;
+  if (is_final) failed_.insert(id.key);
+  if (!id.donor.empty() && (is_final ? !index : record.stage != Stage::done) && !unsettled_.contains(id.donor)) {
+    const Simulation& donor = *identifier_.donor_of(simulation).simulation;
+    add(donor, identifier_.identify(donor), {});
+  }
+  if (record.stage == Stage::done || is_final) {
+    if (!index) return;
+    Outcome outcome = outcome_of(entry, record);
+    outcome.cached = true;
+    ++found_;
+    return settle(*index, outcome, id.work);
+  }
+  places_.emplace(id.key, open_.size());
+  unsettled_.insert(id.key);
+  open_.push_back({entry, {}, id.donor, id.develop_s, id.work, id.end_s, id.memory, record.attempts, failed, 0});
+  if (index) open_.back().indices.push_back(*index);
+  missing_.push_back(std::move(id));
+}
+
+std::optional<std::string> Board::donor_of(const Job& job) const {
+  std::string key = job.donor;
+  while (failed_.contains(key)) {
+    const auto next = donors_.find(key);
+    key = next == donors_.end() ? "" : next->second;
+  }
+  return unsettled_.contains(key) ? std::nullopt : std::optional(key);
 }
 
 std::optional<TaskRecord> Board::settled(const Job& job) const {
@@ -73,6 +90,9 @@ std::optional<TaskRecord> Board::settled(const Job& job) const {
 }
 
 void Board::finish(const Job& job, const TaskRecord& record, bool cached) {
+  const std::string key = job.entry.folder().filename().string();
+  unsettled_.erase(key);
+  if (record.stage == Stage::failed) failed_.insert(key);
   Outcome outcome = outcome_of(job.entry, record);
   for (const std::size_t index : job.indices) {
     outcome.cached = cached || index != job.indices.front();
@@ -103,7 +123,9 @@ std::string Board::interrupted_message(const std::string& what_remains) const {
 
 std::unique_ptr<Lock> take(const Job& job, const Board& board) {
   std::unique_ptr<Lock> lock = Lock::try_take(board.options().cache, job.entry.folder() / "lock");
-  if (!lock || !job.afresh || board.settled(job)) return lock;
+  if (!lock || board.settled(job)) return lock;
+  if (!job.donor.empty()) job.entry.begin_from(board.donor_of(job).value(), job.develop_s);
+  if (!job.afresh) return lock;
   TaskRecord record = job.entry.read();
   if (record.stage != Stage::failed) return lock;
   std::filesystem::remove_all(job.entry.run());

@@ -74,7 +74,7 @@ class Slurm {
   void take_over() {
     std::deque<Job>& open = board_.open();
     for (auto job = open.begin(); job != open.end();) {
-      if (job->next_look > now()) {
+      if (job->next_look > now() || !board_.donor_of(*job)) {
         ++job;
         continue;
       }

@@ -223,10 +223,7 @@ calibrate::Observation Evidence::look(const calibrate::Machinery& machinery, con
 
 Bank fill_bank(const Question& question, const calibrate::Machinery& machinery, const Evidence& evidence, std::vector<BankPoint> points,
                std::vector<std::size_t> conditions) {
-  std::vector<campaign::Simulation> simulations;
-  for (const BankPoint& p : points) {
-    for (const std::size_t c : conditions) simulations.push_back(simulation_of(question, p, c));
-  }
+  const std::vector<campaign::Simulation> simulations = simulations_of(question, points, conditions);
   const std::vector<campaign::Outcome> outcomes = machinery.run(simulations);
   machinery.say(fmt::format("looking at {} simulations through the recordings' cameras", outcomes.size()));
   Bank bank{std::move(points), std::move(conditions), {}, {}, {}};

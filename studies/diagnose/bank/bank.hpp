@@ -46,7 +46,11 @@ std::vector<BankPoint> plan_rest(const Question& question, Index candidate);
 /// Both, for all candidates.
 std::vector<BankPoint> plan_bank(const Question& question);
 
+/// From a filling at rest.
 campaign::Simulation simulation_of(const Question& question, const BankPoint& point, std::size_t condition);
+/// [points × conditions] as the bank has them: where it develops (BankSize::develop), most begin at another's end (warm_starts.cpp).
+std::vector<campaign::Simulation> simulations_of(const Question& question, const std::vector<BankPoint>& points,
+                                                 const std::vector<std::size_t>& conditions);
 
 /// A simulation at a chosen parameter set; `replicate`: seed.
 campaign::Simulation simulation_at(const Question& question, const VectorXd& theta, const std::vector<naming::ActiveCandidate>& active,

@@ -51,9 +51,12 @@ void estimate(const std::vector<Work>& work, BankStatus& status) {
 std::vector<PlannedRun> planned_runs(const Question& q) {
   std::vector<std::size_t> conditions = q.study.with_role(calibrate::Role::fit);
   for (const std::size_t c : q.study.with_role(calibrate::Role::held_out)) conditions.push_back(c);
+  const std::vector<BankPoint> points = plan_bank(q);
+  const std::vector<campaign::Simulation> simulations = simulations_of(q, points, conditions);
   std::vector<PlannedRun> runs;
-  for (const std::size_t c : conditions) {
-    for (const BankPoint& p : plan_bank(q)) runs.push_back({p.group, c, simulation_of(q, p, c)});
+  for (std::size_t c = 0; c < conditions.size(); ++c) {
+    for (std::size_t p = 0; p < points.size(); ++p)
+      runs.push_back({points[p].group, conditions[c], simulations[p * conditions.size() + c]});
   }
   return runs;
 }

@@ -203,6 +203,20 @@ void read_usual(Question& question) {
   }
 }
 
+std::optional<double> read_develop(const Node& bank, const calibrate::Study& study) {
+  const auto node = bank.find("develop_s");
+  if (!node) return {};
+  const double develop = config::read_number(*node, "s", config::positive());
+  for (const calibrate::Condition& c : study.conditions) {
+    const double from = config::read_case(study.base.string(), c.settings).time.analyze_from;
+    if (develop > from)
+      node->fail(
+          fmt::format("is {:.6g} s, and the analysis of condition '{}' begins at time.analyze_from_s = {:.6g} s; give no more than that",
+                      develop, c.name, from));
+  }
+  return develop;
+}
+
 void settle_speeds(Question& question) {
   for (calibrate::Condition& c : question.study.conditions) {
     const config::Case at = config::read_case(question.study.base.string(), c.settings);
@@ -308,12 +322,12 @@ Question read_question(const std::filesystem::path& file, const std::vector<std:
                        [&](const Candidate& c) { return line.starts_with(c.name + ":"); });
   });
   if (const auto node = root.find("bank")) {
-    node->expect({"base", "each", "first"});
+    node->expect({"base", "each", "first", "develop_s"});
     const auto whole = [&](const char* key, int standard, double least) {
       const auto value = node->find(key);
       return value ? static_cast<int>(config::read_integer(*value, config::between(least, 1e5))) : standard;
     };
-    question.bank = {whole("base", 24, 8), whole("each", 10, 1), whole("first", 4, 1)};
+    question.bank = {whole("base", 24, 8), whole("each", 10, 1), whole("first", 4, 1), read_develop(*node, question.study)};
   }
   return question;
 }
