@@ -105,8 +105,7 @@ void write_checkpoint(Session& s) {
   archive.write_value<std::int64_t>("first_step", s.assembly.first_step);
   archive.write_value<std::int64_t>("analyze_step", s.assembly.analyze_step);
   archive.write_value("time_s", s.assembly.system->time());
-  base::Hash surfaces;
-  archive.write_value("surfaces", static_cast<std::int64_t>(add_surfaces(s.assembly, surfaces).value()));
+  archive.write_value("surfaces", surfaces_of(s.assembly));
   const std::vector<Sample>& samples = s.recorder->samples();
   archive.write("window/samples",
                 std::span<const double>(reinterpret_cast<const double*>(samples.data()), samples.size() * sizeof(Sample) / sizeof(double)));

@@ -96,8 +96,7 @@ Donor donor_of(const Assembly& a) {
 }
 
 void check_walls(const Assembly& a, const Donor& donor) {
-  base::Hash own;
-  if (static_cast<std::int64_t>(add_surfaces(a, own).value()) != donor.surfaces || donor.c.geometry.size() != a.c.geometry.size())
+  if (surfaces_of(a) != donor.surfaces || donor.c.geometry.size() != a.c.geometry.size())
     refuse(a, "that mill has other walls; begin from a run of the same geometry, or without 'start'");
   for (std::size_t g = 0; g < a.c.geometry.size(); ++g) {
     const dem::Motion mine = motion_of(a.c.geometry[g].motion), other = motion_of(donor.c.geometry[g].motion);

@@ -13,5 +13,9 @@ void take_over_beads(Assembly& a);
 
 /// Of all geometries, without their motion.
 base::Hash& add_surfaces(const Assembly& a, base::Hash& hash);
+inline std::int64_t surfaces_of(const Assembly& a) {
+  base::Hash hash;
+  return static_cast<std::int64_t>(add_surfaces(a, hash).value());
+}
 
 }  // namespace millscope::run
