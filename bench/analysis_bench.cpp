@@ -5,14 +5,13 @@
 #include <unistd.h>
 
 #include <boost/program_options.hpp>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <numbers>
 
+#include "bench/program.hpp"
 #include "kernel/base/error.hpp"
 #include "kernel/output/frames.hpp"
 #include "millscope/observation_adapter.hpp"
@@ -36,12 +35,6 @@ mill: {diameter: 300 mm, speed: 6.1 rad/s}
 geometry: {shell: {kind: cylinder, radius: 150 mm, length: 270 mm, material: glass, motion: mill}}
 time: {end_s: 4}
 )";
-
-double seconds(clockid_t clock) {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// Loops of random size about the middle of a charge, each bead at a phase and a place along the axis of its own.
 void write_frames(const fs::path& directory, std::size_t beads, std::size_t frames) {
@@ -83,9 +76,9 @@ int measure(const po::variables_map& options) {
   request.threads = options["threads"].as<int>();
   const host::Registry registry;
   const double megabytes = 36e-6 * static_cast<double>(beads * frames);
-  const double wall = seconds(CLOCK_MONOTONIC), cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
+  const double wall = wall_seconds(), cpu = cpu_seconds();
   const analysis::ResultSet results = analysis::analyze(request, registry);
-  const double wall_used = seconds(CLOCK_MONOTONIC) - wall, cpu_used = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu;
+  const double wall_used = wall_seconds() - wall, cpu_used = cpu_seconds() - cpu;
   fs::remove_all(directory);
   std::size_t analyzers = 0;
   for (std::size_t i = 0; i < results.arrays.size(); ++i)
@@ -114,11 +107,4 @@ int run(int count, char** words) {
 }  // namespace
 }  // namespace millscope::bench
 
-int main(int count, char** words) {
-  try {
-    return millscope::bench::run(count, words);
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "millscope_analysis_bench: {}\n", e.what());
-    return 2;
-  }
-}
+int main(int count, char** words) { return millscope::bench::run_as("millscope_analysis_bench", count, words, millscope::bench::run); }

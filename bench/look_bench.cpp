@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <boost/program_options.hpp>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 
+#include "bench/program.hpp"
 #include "kernel/base/error.hpp"
 #include "studies/calibrate/observe.hpp"
 
@@ -19,12 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 namespace po = boost::program_options;
-
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// Every number of an observation to its last bit, so that two programs can be compared: `cmp`.
 void write_values(std::ostream& out, int look, const calibrate::Observation& o) {
@@ -96,11 +90,4 @@ int run(int count, char** words) {
 }  // namespace
 }  // namespace millscope::bench
 
-int main(int count, char** words) {
-  try {
-    return millscope::bench::run(count, words);
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "millscope_look_bench: {}\n", e.what());
-    return 2;
-  }
-}
+int main(int count, char** words) { return millscope::bench::run_as("millscope_look_bench", count, words, millscope::bench::run); }

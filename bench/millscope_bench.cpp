@@ -3,12 +3,11 @@
 #include <malloc.h>
 
 #include <boost/program_options.hpp>
-#include <chrono>
-#include <ctime>
 #include <fstream>
 #include <iostream>
 
 #include "bench/bed.hpp"
+#include "bench/program.hpp"
 #include "kernel/config/case.hpp"
 
 namespace millscope::bench {
@@ -16,14 +15,6 @@ namespace {
 
 namespace po = boost::program_options;
 using base::UserError;
-
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double wall_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// From now on `peak_bytes` counts anew.
 void forget_peak() {
@@ -93,7 +84,7 @@ void time_steps(run::Assembly& a, int warm_up, int steps) {
       peak_bytes(), s.time(), s.state_hash());
 }
 
-int run_bench(const po::variables_map& options) {
+int time_case(const po::variables_map& options) {
   host::RegistryOptions where;
   where.directories = options["plugin-dir"].as<std::vector<std::string>>();
   const host::Registry registry(where);
@@ -115,25 +106,21 @@ int run_bench(const po::variables_map& options) {
   return 0;
 }
 
+int run(int count, char** words) {
+  po::variables_map options;
+  const po::options_description all = description();
+  po::positional_options_description position;
+  position.add("case", 1);
+  store(po::command_line_parser(count, words).options(all).positional(position).run(), options);
+  notify(options);
+  if (options.count("help") || !options.count("case")) {
+    std::cout << all;
+    return options.count("help") ? 0 : 2;
+  }
+  return time_case(options);
+}
+
 }  // namespace
 }  // namespace millscope::bench
 
-int main(int count, char** words) {
-  using namespace millscope;
-  try {
-    boost::program_options::variables_map options;
-    const auto description = bench::description();
-    boost::program_options::positional_options_description position;
-    position.add("case", 1);
-    store(boost::program_options::command_line_parser(count, words).options(description).positional(position).run(), options);
-    notify(options);
-    if (options.count("help") || !options.count("case")) {
-      std::cout << description;
-      return options.count("help") ? 0 : 2;
-    }
-    return bench::run_bench(options);
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "millscope_bench: {}\n", e.what());
-    return 2;
-  }
-}
+int main(int count, char** words) { return millscope::bench::run_as("millscope_bench", count, words, millscope::bench::run); }

@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <boost/program_options.hpp>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <map>
 #include <random>
 
+#include "bench/program.hpp"
 #include "kernel/base/error.hpp"
 #include "kernel/output/track_reader.hpp"
 #include "studies/trajectory/trajectory.hpp"
@@ -23,12 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 namespace po = boost::program_options;
-
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// A bead that circulates in a mill of 0.3 m, seen 220 times a second, as an `.a` file.
 void write_points(const fs::path& file, std::size_t count) {
@@ -180,23 +174,19 @@ void score_tracks(const fs::path& file) {
   }
 }
 
-}  // namespace
-}  // namespace millscope::bench
-
-int main(int argc, char** argv) {
-  namespace po = boost::program_options;
+int run(int count, char** words) {
   po::options_description description("millscope_recording_bench [options]");
   description.add_options()("help,h", "explain")("points", po::value<std::size_t>(), "time that many points")(
       "tracks", po::value<std::string>(), "judge the stated uncertainty on the beads of a tracks.h5");
-  try {
-    po::variables_map options;
-    po::store(po::parse_command_line(argc, argv, description), options);
-    if (options.count("points") != 0) millscope::bench::time_points(options["points"].as<std::size_t>());
-    if (options.count("tracks") != 0) millscope::bench::score_tracks(options["tracks"].as<std::string>());
-    if (options.count("points") + options.count("tracks") == 0) std::cout << description;
-    return 0;
-  } catch (const std::exception& error) {
-    std::cerr << "millscope_recording_bench: " << error.what() << "\n";
-    return 2;
-  }
+  po::variables_map options;
+  po::store(po::parse_command_line(count, words, description), options);
+  if (options.count("points") != 0) time_points(options["points"].as<std::size_t>());
+  if (options.count("tracks") != 0) score_tracks(options["tracks"].as<std::string>());
+  if (options.count("points") + options.count("tracks") == 0) std::cout << description;
+  return 0;
 }
+
+}  // namespace
+}  // namespace millscope::bench
+
+int main(int count, char** words) { return millscope::bench::run_as("millscope_recording_bench", count, words, millscope::bench::run); }

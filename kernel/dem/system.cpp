@@ -48,7 +48,7 @@ void System::start(std::int64_t step) {
 void System::rebuild() {
   Parts& p = *parts_;
   p.order.renew(particles, time());
-  if (rebuilds_ > 0) p.share_work();
+  if (rebuilds_ > 0 && p.common.slabs.count > 1) p.share_work();
   p.pairs.begin_rebuild(p.order);
   p.walls.begin_rebuild(p.order, time());
   p.common.each_slab([&](int slab, int) {
