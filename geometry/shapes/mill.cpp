@@ -9,7 +9,6 @@ namespace millscope::geometry {
 
 namespace {
 
-constexpr std::uint32_t kNoTriangle = 0xffffffffU;
 constexpr double kMaxTriangles = 20e6;  // of the tessellation: about 1 GB
 
 std::string details(const MillProfile& profile) {

@@ -41,7 +41,7 @@ void Plane::candidates(const GeometryBeads& beads, double margin, const Candidat
 }
 
 void Plane::touch(const WallBead& bead, const std::uint32_t*, std::size_t, WallContacts& out) const {
-  out.add({bead.radius - (dot(normal_, bead.position) - offset_), normal_, 0, 0xffffffffU, 0});
+  out.add({bead.radius - (dot(normal_, bead.position) - offset_), normal_, 0, kNoTriangle, 0});
 }
 
 }  // namespace millscope::geometry

@@ -44,6 +44,9 @@ struct Layout<GeometryQuery> {
                                        MILLSCOPE_MEMBER(S, reach)};
 };
 
+/// What stands for a triangle where a contact has none.
+inline constexpr std::uint32_t kNoTriangle = 0xffffffffU;
+
 /// Contacts found, at most `capacity` of them, ordered by bead.
 struct GeometryContacts {
   std::int64_t capacity;
@@ -52,7 +55,7 @@ struct GeometryContacts {
   double* overlap;          ///< out: δ, m; negative: a gap
   double* normal[3];        ///< out: unit, from the wall to the bead's centre, in the geometry's frame
   std::uint32_t* feature;   ///< out: names the smooth patch; stays the same while a bead slides over it
-  std::uint32_t* triangle;  ///< out: index into the surface's triangles (for per-triangle work), or UINT32_MAX; nullptr: nobody asks
+  std::uint32_t* triangle;  ///< out: index into the surface's triangles (for per-triangle work), or kNoTriangle; nullptr: nobody asks
   std::uint32_t* material;  ///< out: index into the geometry's material slots
 };
 template <>

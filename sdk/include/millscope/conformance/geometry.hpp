@@ -14,8 +14,6 @@ struct GeometrySetting {
 
 namespace detail {
 
-constexpr std::uint32_t kNoTriangle = 0xffffffffU;
-
 /// Beads near the wall, on its right side, and the lengths of the setting.
 struct WallSample {
   std::vector<ProbeBead> beads;

@@ -46,7 +46,7 @@ class WallProbe {
     return {vertex(corner[0]), vertex(corner[1]), vertex(corner[2])};
   }
 
-  /// Whether the host asks which triangles are touched; where it does not, they come as UINT32_MAX.
+  /// Whether the host asks which triangles are touched; where it does not, they come as kNoTriangle.
   bool asks_for_triangles = true;
 
   /// Contacts and gaps up to `reach` of the beads, with the candidates found with `margin`; at most `capacity`, which
@@ -78,7 +78,7 @@ class WallProbe {
     const std::size_t room = std::max<std::size_t>(capacity, 1);
     std::vector<std::int32_t> bead(room);
     std::vector<double> overlap(room), normal[3] = {overlap, overlap, overlap};
-    std::vector<std::uint32_t> feature(room), triangle(room, 0xffffffffU), material(room);
+    std::vector<std::uint32_t> feature(room), triangle(room, kNoTriangle), material(room);
     GeometryContacts out{static_cast<std::int64_t>(capacity),
                          0,
                          bead.data(),
