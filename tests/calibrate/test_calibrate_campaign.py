@@ -9,15 +9,15 @@ import tempfile
 import time
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "campaign"))
-import slurm_machine
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1]), str(pathlib.Path(__file__).resolve().parents[1] / "campaign")]
+import slurm_machine  # noqa: E402
+from patience import PATIENCE  # noqa: E402
 
 COMMAND = os.environ["MILLSCOPE"]
 CONFIGS = pathlib.Path(__file__).resolve().parents[2] / "configs"
 STORY = CONFIGS / "story"
 SHORT = "{mill.speed: 75 %critical, stiffness_factor: 0.0002, time.end_s: 1.5, time.analyze_from_s: 0.5}"
 LACKING = slurm_machine.lacking()
-PATIENCE = 240  # s
 
 
 class Campaign(unittest.TestCase):

@@ -2,8 +2,12 @@
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from patience import PATIENCE  # noqa: E402
 
 COMMAND = os.environ["MILLSCOPE"]
 CONFIGS = pathlib.Path(__file__).resolve().parents[2] / "configs"
@@ -26,7 +30,7 @@ class Calibrate(unittest.TestCase):
         (self.folder / "r.yaml").write_text("files: [r.csv]\ncondition: {mill_diameter: 460 mm, bead_diameter: 5 mm}\n")
 
     def refused(self, *words):
-        done = subprocess.run([COMMAND, *words], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        done = subprocess.run([COMMAND, *words], cwd=self.folder, capture_output=True, text=True, timeout=PATIENCE)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         self.assertFalse((self.folder / "out").exists(), "nothing may be written")
@@ -48,7 +52,7 @@ class Calibrate(unittest.TestCase):
 
     def test_sections_of_diagnose_are_known_and_said_to_be_unused(self):
         (self.folder / "study.yaml").write_text(STUDY + "hypotheses: {rolling_resistance: {}}\nnuisances: {fill.filling: {range: [0.3, 0.4]}}\n")
-        done = subprocess.run([COMMAND, "calibrate", "study.yaml", "-o", "out"], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        done = subprocess.run([COMMAND, "calibrate", "study.yaml", "-o", "out"], cwd=self.folder, capture_output=True, text=True, timeout=PATIENCE)
         self.assertIn("section 'hypotheses' is for diagnose and is not used here", done.stdout)
         self.assertIn("section 'nuisances' is for diagnose", done.stdout)
         self.assertIn("a mill diameter of 460 mm", done.stderr)

@@ -52,8 +52,8 @@ class CampaignTest(CliTest):
     def run_summary(self, folder):
         return json.loads((pathlib.Path(folder) / "summary.json").read_text(encoding="utf-8"))
 
-    def wait_until(self, condition, what, patience=PATIENCE):
-        end = time.monotonic() + patience
+    def wait_until(self, condition, what):
+        end = time.monotonic() + PATIENCE
         while not condition():
             self.assertLess(time.monotonic(), end, f"waited in vain until {what}")
             time.sleep(0.01)

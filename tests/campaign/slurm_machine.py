@@ -5,11 +5,14 @@ import secrets
 import shutil
 import socket
 import subprocess
+import sys
 import tempfile
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from patience import PATIENCE  # noqa: E402
+
 NEEDED = ("munged", "slurmctld", "slurmd", "sbatch", "squeue", "scancel", "scontrol", "sinfo")
-PATIENCE = 60  # s
 
 
 def lacking():
@@ -103,7 +106,7 @@ PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
         process.wait(30)
 
     def ask(self, *words):
-        return subprocess.run(words, env=self.environment, capture_output=True, text=True, timeout=60).stdout
+        return subprocess.run(words, env=self.environment, capture_output=True, text=True, timeout=PATIENCE).stdout
 
     def tasks(self):
         """"<job>_<task>" → (state, job name)."""

@@ -56,7 +56,7 @@ class Kills(CampaignTest):
         head.send_signal(signal.SIGKILL)
         head.wait(60)
         finished = {run: tree_of(run) for run in runs if (run / "summary.json").exists()}
-        self.wait_until(lambda: not any(self.is_writing(run) for run in runs), "the orphan had stopped", patience=10)
+        self.wait_until(lambda: not any(self.is_writing(run) for run in runs), "the orphan had stopped")
         return finished, [run for run in runs if (run / "checkpoint.h5").exists() and not (run / "summary.json").exists()]
 
     def test_kill_the_head(self):
@@ -106,7 +106,7 @@ class Kills(CampaignTest):
             self.wait_until(lambda: self.children_of(head.pid) and any((run / "checkpoint.h5").exists() for run in self.unfinished_runs()),
                             "a simulation ran and had a checkpoint")
             head.send_signal(number)
-            _, err = head.communicate(timeout=60)
+            _, err = head.communicate(timeout=PATIENCE)
             self.assertEqual(head.returncode, 3, err)
             known = "" if number == signal.SIGINT else r"( \(\d from the cache\))?"  # the first may have finished some
             self.assertRegex(err, r"millscope: stopped: \d of 4 done" + known + r"; .*checkpoints; the same command goes on")
@@ -120,7 +120,7 @@ class Kills(CampaignTest):
             head = self.start_campaign("--slots", 1)
             self.wait_until(lambda: head.poll() is not None or self.children_of(head.pid), "a simulation was started")
             head.send_signal(signal.SIGTERM)
-            _, err = head.communicate(timeout=60)
+            _, err = head.communicate(timeout=PATIENCE)
             self.assertEqual(head.returncode, 3, err)
         self.finish()
 
@@ -128,7 +128,7 @@ class Kills(CampaignTest):
         heads = [self.start("campaign", "tasks.yaml", "-o", out, "--cache", "cache", "--slots", 1) for out in ("out", "other")]
         computed = 0
         for head in heads:
-            out, err = head.communicate(timeout=120)
+            out, err = head.communicate(timeout=PATIENCE)
             self.assertEqual(head.returncode, 0, err)
             computed += int(out.split(" computed now")[0].rsplit(" ", 1)[1])
         self.assertEqual(computed, 4)
@@ -150,7 +150,7 @@ class Kills(CampaignTest):
         head = self.start_campaign("--slots", 1)
         self.wait_until(lambda: len(self.children_of(head.pid)) > 0, "a simulation ran")
         os.kill(self.children_of(head.pid)[0], signal.SIGSEGV)
-        _, err = head.communicate(timeout=120)
+        _, err = head.communicate(timeout=PATIENCE)
         self.assertEqual(head.returncode, 0, err)
         states = [row["state"] for row in self.table().values()]
         self.assertEqual(sorted(states), ["done", "done", "done", "failed"])
@@ -173,7 +173,7 @@ class Kills(CampaignTest):
         head.kill()
         head.wait(60)
         runs = [folder / "run" for folder, _ in self.tasks_of("out/cache").values()]
-        self.wait_until(lambda: not any(self.is_writing(run) for run in runs), "the orphan had stopped", patience=10)
+        self.wait_until(lambda: not any(self.is_writing(run) for run in runs), "the orphan had stopped")
         for run in runs:
             for file in run.glob("checkpoint*.h5"):
                 if not (run / "summary.json").exists():

@@ -94,7 +94,7 @@ class Slurm(CampaignTest):
         self.wait_until(self.running, "a task had a checkpoint")
         task, _ = self.running()[0]
         self.machine.ask("scancel", task)
-        _, err = head.communicate(timeout=120)
+        _, err = head.communicate(timeout=PATIENCE)
         self.assertEqual(head.returncode, 0, err)
         self.assertEqual(self.hashes("out"), Slurm.expected)
         self.assertGreaterEqual(len(self.batches()), 2)
@@ -113,7 +113,7 @@ class Slurm(CampaignTest):
         head = self.on_slurm(start=True)
         self.wait_until(self.running, "a task had a checkpoint")
         head.send_signal(signal.SIGINT)
-        _, err = head.communicate(timeout=60)
+        _, err = head.communicate(timeout=PATIENCE)
         self.assertEqual(head.returncode, 3, err)
         self.assertRegex(err, r"the tasks stay in Slurm and go on \(scancel --name=millscope-\S+ ends them\)")
         self.finish()
@@ -125,7 +125,7 @@ class Slurm(CampaignTest):
         self.machine.stop_controller()
         self.assertEqual(self.machine.ask("squeue", "-h"), "")
         self.machine.start_controller()
-        _, err = head.communicate(timeout=120)
+        _, err = head.communicate(timeout=PATIENCE)
         self.assertEqual(head.returncode, 0, err)
         self.assertEqual(self.hashes("out"), Slurm.expected)
 

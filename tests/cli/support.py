@@ -7,13 +7,16 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from patience import PATIENCE  # noqa: E402
+
 SOURCE = pathlib.Path(os.environ.get("MILLSCOPE_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
 COMMAND = os.environ.get("MILLSCOPE", str(SOURCE / "build/release/bin/millscope"))
-PATIENCE = 120  # s, for what takes a second
 
 # 324 beads of 8 mm in a slice of a 150 mm mill with six lifters, softened so far that a second takes 16 000 steps.
 CASE = """\

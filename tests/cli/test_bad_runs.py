@@ -78,7 +78,7 @@ class FullDisk(CliTest):
                     ballast.write(b"x" * 4096)
             except OSError:
                 pass
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=PATIENCE)
         result = subprocess.CompletedProcess("run", process.returncode, out, err)
         self.assert_one_line(result, "the disk is full", "the last checkpoint is intact", "make room, then 'millscope resume disk/out'", code=4)
         self.assertEqual([p for p in tree_of(place) if p.endswith(".tmp")], [])

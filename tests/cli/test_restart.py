@@ -34,7 +34,7 @@ class Restart(CliTest):
         process = self.start("run", "case.yaml", "-o", out, *words)
         self.wait_for(f"{out}/vtk/beads_{picture:06d}.vtp", process)
         process.send_signal(number)
-        _, err = process.communicate(timeout=60)
+        _, err = process.communicate(timeout=PATIENCE)
         return process.returncode, err
 
     def test_a_signal_before_or_in_the_window_makes_a_checkpoint(self):
@@ -52,7 +52,7 @@ class Restart(CliTest):
         process = self.start("run", "case.yaml", "-o", "settling", "-q", "--set", "fill.settle_s=5")
         self.wait_for("settling/vtk", process)
         process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=PATIENCE)
         self.assertEqual((process.returncode, out, err), (3, "", ""))
         self.assertTrue((self.folder / "settling/checkpoint.h5").exists())
 
@@ -61,7 +61,7 @@ class Restart(CliTest):
         process = self.start("resume", "twice")
         self.wait_for("twice/vtk/beads_000007.vtp", process)
         process.send_signal(signal.SIGTERM)
-        process.communicate(timeout=60)
+        process.communicate(timeout=PATIENCE)
         self.assertEqual(process.returncode, 3)
         self.resume("twice", "--threads", 2)
         self.assert_same_run("whole", "twice")

@@ -5,8 +5,12 @@ import os
 import pathlib
 import random
 import subprocess
+import sys
 import tempfile
 import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from patience import PATIENCE  # noqa: E402
 
 COMMAND = os.environ["MILLSCOPE"]
 YAML = """files: [%s.csv]
@@ -47,7 +51,7 @@ class Compare(unittest.TestCase):
 
     @classmethod
     def call(cls, *arguments):
-        return subprocess.run([COMMAND, *arguments], cwd=cls.folder, text=True, capture_output=True, timeout=120)
+        return subprocess.run([COMMAND, *arguments], cwd=cls.folder, text=True, capture_output=True, timeout=PATIENCE)
 
     def test_alike(self):
         done = self.call("compare", "one", "two", "-q")

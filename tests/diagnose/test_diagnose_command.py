@@ -2,8 +2,12 @@
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from patience import PATIENCE  # noqa: E402
 
 COMMAND = os.environ["MILLSCOPE"]
 CONFIGS = pathlib.Path(__file__).resolve().parents[2] / "configs"
@@ -29,7 +33,7 @@ class Diagnose(unittest.TestCase):
         (self.folder / "r.yaml").write_text("files: [r.csv]\ncondition: {mill_diameter: 300 mm, bead_diameter: 10 mm}\n")
 
     def call(self, *words):
-        return subprocess.run([COMMAND, *words], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        return subprocess.run([COMMAND, *words], cwd=self.folder, capture_output=True, text=True, timeout=PATIENCE)
 
     def refused(self, *words):
         done = self.call("diagnose", *words)

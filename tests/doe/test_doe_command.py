@@ -3,8 +3,12 @@ import json
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from patience import PATIENCE  # noqa: E402
 
 COMMAND = os.environ["MILLSCOPE"]
 DATA = pathlib.Path(os.environ["MILLSCOPE_SOURCE_DIR"]) / "tests/doe/data"
@@ -17,7 +21,7 @@ class Doe(unittest.TestCase):
         self.folder = pathlib.Path(scratch.name)
 
     def call(self, *arguments):
-        return subprocess.run([COMMAND, "doe", *map(str, arguments)], cwd=self.folder, text=True, capture_output=True, timeout=60)
+        return subprocess.run([COMMAND, "doe", *map(str, arguments)], cwd=self.folder, text=True, capture_output=True, timeout=PATIENCE)
 
     def succeed(self, *arguments):
         done = self.call(*arguments)

@@ -4,13 +4,17 @@ import json
 import math
 import os
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from patience import PATIENCE  # noqa: E402
+
 
 def millscope(*words):
-    return subprocess.run([os.environ["MILLSCOPE"], *map(str, words)], capture_output=True, text=True, timeout=60)
+    return subprocess.run([os.environ["MILLSCOPE"], *map(str, words)], capture_output=True, text=True, timeout=PATIENCE)
 
 
 def write_rotor(file, rows=6000, step_ms=10.0):

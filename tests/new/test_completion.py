@@ -6,14 +6,14 @@ import shutil
 import subprocess
 import unittest
 
-from support import COMMAND, CliTest
+from support import COMMAND, PATIENCE, CliTest
 
 
 class Completion(CliTest):
     def shell(self, shell, script):
         """Runs a script in a shell that finds the command first and has read its completion."""
         environment = os.environ | {"PATH": f"{pathlib.Path(COMMAND).resolve().parent}:{os.environ['PATH']}", "HOME": str(self.folder)}
-        result = subprocess.run([shell, "-c", script], cwd=self.folder, env=environment, capture_output=True, text=True, timeout=60, check=False)
+        result = subprocess.run([shell, "-c", script], cwd=self.folder, env=environment, capture_output=True, text=True, timeout=PATIENCE, check=False)
         self.assertEqual(result.stderr, "")
         return result.stdout.splitlines()
 

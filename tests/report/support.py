@@ -4,6 +4,10 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from patience import PATIENCE  # noqa: E402
 
 COMMAND = os.environ["MILLSCOPE"]
 CONFIGS = pathlib.Path(__file__).resolve().parents[2] / "configs"
@@ -11,7 +15,7 @@ SMALL = ["--set", "fill.filling=5 %", "--set", "time.end_s=0.3", "--set", "time.
 
 
 def call(folder, *words, code=0):
-    done = subprocess.run([COMMAND, *words], cwd=folder, capture_output=True, text=True, timeout=200)
+    done = subprocess.run([COMMAND, *words], cwd=folder, capture_output=True, text=True, timeout=PATIENCE)
     assert done.returncode == code, done.stderr
     return done
 

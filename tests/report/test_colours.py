@@ -24,7 +24,7 @@ class Colours(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.agreed = json.loads(AGREED.read_text(encoding="utf-8"))
-        done = subprocess.run(["node", "--input-type=module", "-e", ASK, str(COLOURS), str(AGREED)], capture_output=True, text=True, timeout=60)
+        done = subprocess.run(["node", "--input-type=module", "-e", ASK, str(COLOURS), str(AGREED)], capture_output=True, text=True, timeout=120)
         assert done.returncode == 0, done.stderr
         cls.found = json.loads(done.stdout)
 

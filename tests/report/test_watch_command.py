@@ -9,11 +9,11 @@ import unittest
 import urllib.error
 import urllib.request
 
-from support import COMMAND, CONFIGS, SMALL, call, data_of, simulate
+from support import COMMAND, CONFIGS, PATIENCE, SMALL, call, data_of, simulate
 
 
 def fetch(address, method="GET"):
-    with urllib.request.urlopen(urllib.request.Request(address, method=method), timeout=20) as answer:
+    with urllib.request.urlopen(urllib.request.Request(address, method=method), timeout=PATIENCE) as answer:
         return answer.read().decode()
 
 
@@ -58,7 +58,7 @@ class Watch(unittest.TestCase):
         ends = [row.split()[1] for row in listening.splitlines()[1:] if row.split()[3] == "0A" and row.split()[1].endswith(":" + port)]
         self.assertEqual(ends, ["0100007F:" + port])
         process.terminate()
-        self.assertEqual(process.wait(timeout=20), 0)
+        self.assertEqual(process.wait(timeout=PATIENCE), 0)
 
     def test_beside_a_run(self):
         process, address = self.started("run", str(CONFIGS / "demo.yaml"), "-o", "out", "-q", *SMALL, "--set", "time.end_s=60", "--watch", stream="stderr")
