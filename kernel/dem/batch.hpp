@@ -8,7 +8,7 @@ namespace millscope::dem {
 /// Numbers that law, interactions and pair parameters may keep per contact, all together.
 inline constexpr int kMaxHistories = 24;
 
-/// One part of the pair list: all listed pairs of one slab and one pair of materials. Owner i < partner j. Histories stand in the order of
+/// One part of the pair list: all listed pairs of one slab and one pair of materials. Owner i > partner j. Histories stand in the order of
 /// the slots, for the touching ones only: a sweep reads those of the last step and writes those of its own.
 ///
 ///     slot                        0  1  2  3  4  5  6

@@ -54,7 +54,7 @@ void BodyForcePass::scatter(BeadRange beads) {
   const BodyForceArrays& b = pass_.scratch.bodies;
   for (std::int64_t i = beads.begin; i < beads.end; ++i) {
     const std::int64_t k = i - beads.begin;
-    ForceLine& line = pass_.state.force[i];
+    ForceLine& line = pass_.force[i];
     for (int a = 0; a < 3; ++a) {
       line.f[a] += b.force[a][k];
       line.t[a] += b.moment[a][k];

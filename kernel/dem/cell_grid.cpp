@@ -80,7 +80,7 @@ std::int64_t CellGrid::cell_at(std::int64_t bead) const {
   return std::upper_bound(start_.begin(), start_.end(), static_cast<std::uint32_t>(bead)) - start_.begin() - 1;
 }
 
-Neighbourhood CellGrid::round(std::int64_t cell, std::int64_t bead) const {
+Neighbourhood CellGrid::round(std::int64_t cell) const {
   const int n[3] = {cells_[axis_[0]], cells_[axis_[1]], cells_[axis_[2]]};
   const std::int64_t own[3] = {cell / (n[1] * n[2]), cell / n[2] % n[1], cell % n[2]};
   int near[3][3], m[3];
@@ -91,7 +91,7 @@ Neighbourhood CellGrid::round(std::int64_t cell, std::int64_t bead) const {
       for (int c = 0; c < m[2]; ++c) {
         const std::int64_t k = (std::int64_t{near[0][a]} * n[1] + near[1][b]) * n[2] + near[2][c];
         const BeadRange range{start_[k], start_[k + 1]};
-        if (range.end > bead && range.begin < range.end) found.add(range);
+        if (range.begin < range.end && range.begin < end_of(cell)) found.add(range);
       }
     }
   }

@@ -36,8 +36,8 @@ class CellGrid {
   /// Cell of a bead by its new number.
   std::int64_t cell_at(std::int64_t bead) const;
   std::int64_t end_of(std::int64_t cell) const { return start_[cell + 1]; }
-  /// Of a cell, without the ranges that lie before `bead`.
-  Neighbourhood round(std::int64_t cell, std::int64_t bead) const;
+  /// Of a cell, without the ranges that lie behind it.
+  Neighbourhood round(std::int64_t cell) const;
 
  private:
   void choose_axes(const Settings& settings);

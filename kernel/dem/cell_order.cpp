@@ -106,10 +106,10 @@ void CellOrder::renew(Particles& p, double time) {
 std::span<const std::uint32_t> CellOrder::near(std::int64_t i, const Neighbourhood& round, std::vector<std::uint32_t>& memory) const {
   std::int64_t count = 0;
   for (const BeadRange& range : round) {
-    const std::int64_t from = std::max(range.begin, i + 1), more = range.end - from;
+    const std::int64_t end = std::min(range.end, i), more = end - range.begin;
     if (more <= 0) continue;
     if (std::ssize(memory) < count + more + 8) memory.resize(2 * (count + more) + 64);
-    count += common_.wide.near(reaches_.data(), common_.settings.periodic, i, from, range.end, memory.data() + count);
+    count += common_.wide.near(reaches_.data(), common_.settings.periodic, i, range.begin, end, memory.data() + count);
   }
   return {memory.data(), static_cast<std::size_t>(count)};
 }

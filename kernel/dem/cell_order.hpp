@@ -21,7 +21,7 @@ class CellOrder {
   /// In the new order. Centre; `radius`: radius + skin + half the largest reach of a law.
   const AlignedVector<PositionLine>& reaches() const { return reaches_; }
   const CellGrid& grid() const { return grid_; }
-  /// The beads j > i of a neighbourhood whose reach overlaps that of bead i. They stand in `memory`.
+  /// The beads j < i of a neighbourhood whose reach overlaps that of bead i. They stand in `memory`.
   std::span<const std::uint32_t> near(std::int64_t i, const Neighbourhood& round, std::vector<std::uint32_t>& memory) const;
 
   template <class Visit>

@@ -45,12 +45,12 @@ std::int64_t PairLists::count() const {
   return sum;
 }
 
-std::int64_t PairLists::reach_end(int slab) const {
-  std::int64_t end = common_.slabs.end(slab);
+std::int64_t PairLists::first_touched(int slab) const {
+  std::uint32_t first = static_cast<std::uint32_t>(common_.slabs.begin(slab));
   for (const PairList& list : slabs_[slab].lists) {
-    for (const std::uint32_t partner : list.partner) end = std::max<std::int64_t>(end, std::int64_t{partner} + 1);
+    for (const std::uint32_t partner : list.partner) first = std::min(first, partner);
   }
-  return end;
+  return first;
 }
 
 void PairLists::add_work(const std::vector<std::uint32_t>& new_index, std::uint32_t listed, std::uint32_t touching,
@@ -71,7 +71,7 @@ void PairLists::begin_rebuild(const CellOrder& order) {
   const auto next = [](std::uint32_t& counter) { return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed); };
   common_.each_slab([&](int slab, int) {
     each_contact(slab, [&](const PairList& list, std::int64_t slot, std::int64_t) {
-      next(carried_.start[std::min(new_index[list.owner[slot]], new_index[list.partner[slot]])]);
+      next(carried_.start[std::max(new_index[list.owner[slot]], new_index[list.partner[slot]])]);
     });
   });
   std::exclusive_scan(carried_.start.begin(), carried_.start.end(), carried_.start.begin(), std::uint32_t{0});
@@ -81,10 +81,10 @@ void PairLists::begin_rebuild(const CellOrder& order) {
   common_.each_slab([&](int slab, int) {
     each_contact(slab, [&](const PairList& list, std::int64_t slot, std::int64_t contact) {
       const std::uint32_t i = new_index[list.owner[slot]], j = new_index[list.partner[slot]];
-      const std::int64_t at = next(carried_.filled[std::min(i, j)]);
-      carried_.partner[at] = std::max(i, j);
+      const std::int64_t at = next(carried_.filled[std::max(i, j)]);
+      carried_.partner[at] = std::min(i, j);
       for (std::int64_t h = 0; h < histories; ++h) {
-        carried_.history[at * histories + h] = (i < j ? 1.0 : common_.layout.history_sign[h]) * list.history[h][contact];
+        carried_.history[at * histories + h] = (i > j ? 1.0 : common_.layout.history_sign[h]) * list.history[h][contact];
       }
     });
   });
@@ -107,7 +107,7 @@ class PairLists::Builder {
     std::int64_t cell = order.grid().cell_at(slab.begin);
     for (std::int64_t i = slab.begin; i < slab.end;) {
       while (order.grid().end_of(cell) <= i) ++cell;
-      const Neighbourhood round = order.grid().round(cell, i);
+      const Neighbourhood round = order.grid().round(cell);
       for (const std::int64_t end = std::min(slab.end, order.grid().end_of(cell)); i < end; ++i) {
         const std::span<const std::uint32_t> partners = order.near(i, round, memory);
         const std::uint32_t owner = static_cast<std::uint32_t>(i);

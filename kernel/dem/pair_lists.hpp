@@ -41,8 +41,8 @@ class PairLists {
 
   PairList& of(int slab, int physics_index) { return slabs_[slab].lists[physics_index]; }
   const PairList& of(int slab, int physics_index) const { return slabs_[slab].lists[physics_index]; }
-  /// The beads of later slabs that a slab reaches begin at its end, and end here.
-  std::int64_t reach_end(int slab) const;
+  /// The first bead that pairs of a slab touch; its own first, where none touches an earlier one.
+  std::int64_t first_touched(int slab) const;
   std::int64_t count() const;
 
   /// visit(list, slot, contact) for all pairs that touch: `contact` is the place in `history`.

@@ -47,28 +47,18 @@ PairSweep::PairSweep(const SlabPass& pass, int physics_index, PairList& list, co
   batch_.radius_i = batch_.radius_j = const_cast<double*>(alike->radii.data());
 }
 
-void PairSweep::look_ahead(BeadRange ahead) {
-  gather_.ahead = ahead.begin;
-  gather_.ahead_end = ahead.end;
-  gather_.ahead_force = nullptr;
-  const std::int64_t slab_end = pass_.common.slabs.end(pass_.slab);
-  if (ahead.begin == ahead.end) return;
-  if (ahead.begin >= slab_end) {
-    gather_.ahead_force = pass_.state.halo.data() + (ahead.begin - slab_end);
-  } else if (!pass_.state.force.is_ring()) {
-    gather_.ahead_force = &pass_.state.force[ahead.begin];
-    gather_.ahead_end = std::min(ahead.end, slab_end);
-  }
+/// The owners of the next batch but one: nothing has touched them yet, and partners come before their owners. Their lines are asked for.
+void PairSweep::look_ahead(std::int64_t first) {
+  const std::int64_t begin = first + 2 * kBatch, end = std::min(view_.count, begin + kBatch);
+  gather_.ahead = gather_.ahead_end = 0;
+  if (begin >= end) return;
+  gather_.ahead = view_.owner[begin - 1] + 1;
+  gather_.ahead_end = view_.owner[end - 1] + 1;
+  gather_.ahead_force = pass_.force.is_ring() ? nullptr : &pass_.force[gather_.ahead];
 }
 
-std::int64_t PairSweep::pushed_end(std::int64_t first) const {
-  const std::int64_t last = std::min(view_.count, first + kBatch);
-  return first < last ? std::int64_t{*std::max_element(view_.partner + first, view_.partner + last)} + 1 : 0;
-}
-
-void PairSweep::batch(std::int64_t first, BeadRange ahead) {
-  assert(pushed_end(first) - pass_.common.slabs.end(pass_.slab) <= std::ssize(pass_.state.halo));
-  look_ahead(ahead);
+void PairSweep::batch(std::int64_t first) {
+  look_ahead(first);
   const std::int64_t last = std::min(view_.count, first + kBatch);
   const WideTable& wide = pass_.common.wide;
   const std::int64_t count = wide.search(gather_, view_, first, last, batch_);
@@ -78,8 +68,14 @@ void PairSweep::batch(std::int64_t first, BeadRange ahead) {
   wide.gather(gather_, view_, count, batch_);
   book_contacts(pass_.step, count, batch_, ledger_);
   evaluate({&physics_, pass_.common.settings.time_step, count, false}, batch_, ledger_);
-  const ScatterContext scatter{pass_.state.force, pass_.state.halo.data(), pass_.common.slabs.end(pass_.slab), gather_.equal};
-  wide.scatter(scatter, view_, count, physics_.has_post(), batch_);
+  PushLog& log = pass_.state.log;
+  ScatterContext scatter{pass_.force, gather_.equal, nullptr, nullptr, pass_.note_before};
+  if (pass_.note_before > 0) {
+    log.make_room();
+    scatter.noted_bead = log.bead.data() + log.count;
+    scatter.noted_push = log.push.data() + log.count;
+  }
+  log.count += wide.scatter(scatter, view_, count, physics_.has_post(), batch_);
   assert(list_.next.empty() || view_.written <= std::ssize(list_.next[0]));
 }
 

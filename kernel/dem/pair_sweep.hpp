@@ -23,15 +23,12 @@ class PairSweep {
   PairSweep(const SlabPass& pass, int physics_index, PairList& list, const std::optional<Alike>& alike);
 
   std::int64_t count() const { return view_.count; }
-  std::uint32_t owner(std::int64_t slot) const { return view_.owner[slot]; }
-  /// The contacts of the batch at slot `first`. `ahead`: beads that a later batch will be the first to touch; their lines are asked for.
-  void batch(std::int64_t first, BeadRange ahead);
-  /// Behind the last of the beads that the batch at slot `first` may push.
-  std::int64_t pushed_end(std::int64_t first) const;
+  /// The contacts of the batch at slot `first`.
+  void batch(std::int64_t first);
   void end() { list_.end_sweep(); }
 
  private:
-  void look_ahead(BeadRange ahead);
+  void look_ahead(std::int64_t first);
 
   const SlabPass& pass_;
   const PairPhysics& physics_;

@@ -1,8 +1,8 @@
-// What follows what in a step, found from new lists: how far each batch of pairs reaches, and when a bead is done with.
+// What follows what in a step, found from new lists.
 //
-// Pairs are listed by owner, and an owner comes before its partners: once the pairs of a slab have passed a bead, only earlier slabs may
-// still push it. Walls and phase B trail behind the pairs; the beads that carry forces at one moment are the stretch between the last
-// bead that is finished and the farthest that a pair has touched, and their forces fit into a ring of that length.
+// Pairs are listed by owner, and partners come before their owner: when the pairs of a bead are reached, only those of later owners still
+// push it. The walls follow behind the pairs; phase B follows behind the last pair that pushes a bead. The beads that carry forces at one
+// moment are the stretch between the last bead that is finished and the present owner, and their forces fit into a ring of that length.
 #pragma once
 
 #include <vector>
@@ -11,42 +11,41 @@
 
 namespace millscope::dem {
 
+/// A pause behind some batches of the last list of a slab.
+struct Trail {
+  std::uint32_t passed;  ///< no bead before this one is an owner of pairs that are still to come: the walls may follow
+  std::uint32_t done;    ///< no bead before this one is touched by a pair that is still to come, in any slab: phase B may follow
+};
+
 class Schedule {
  public:
   explicit Schedule(Common& common);
 
   /// After each rebuild.
-  void renew(const PairLists& pairs);
+  void renew(const PairLists& pairs, std::int64_t beads);
 
-  /// The pair of materials whose list comes last in a slab: its pairs are the ones that walls and phase B trail behind.
+  /// The pair of materials whose list comes last in a slab: walls and phase B trail behind its pairs.
   int last_list() const { return last_list_; }
-  /// True when walls and phase B follow behind the slots [0, last) of `count`.
-  static bool trails_at(std::int64_t last, std::int64_t count);
-  /// Lines of the ring that serves a slab, a power of two; 0: all its lines side by side are no longer.
-  std::int64_t ring(int slab) const { return slabs_[slab].ring; }
-  std::int64_t longest_ring() const;
-  /// The beads that the batch at slot `first` of the last list will be the first to touch; empty where there is no such batch.
-  BeadRange first_touched(int slab, std::int64_t first) const;
-  /// Beads of later slabs that this one pushes: they begin at its end.
-  std::int64_t halo_size(int slab) const { return slabs_[slab].halo_end - common_.slabs.end(slab); }
-  /// The earliest slab that pushes beads of this one.
-  int first_reference(int slab) const { return slabs_[slab].first_reference; }
-  /// Phase B of a slab may follow phase A at once: the slabs that push it have been through A on the same worker.
-  bool follows_at_once(int slab, int worker) const;
+  /// Slots between two pauses.
+  static constexpr std::int64_t kSlotsPerTrail = 4 * kBatch;  // few enough that the beads between are still in the cache
+  /// Of a slab: behind each `kSlotsPerTrail` slots of the last list, and behind its end.
+  const std::vector<Trail>& trails(int slab) const { return slabs_[slab].trails; }
+  /// The first of the beads that pairs of this or of later slabs touch; of no slab (`slab` is their number) behind all beads.
+  std::int64_t first_touched(int slab) const { return slab < common_.slabs.count ? slabs_[slab].first_touched : beads_; }
+  /// Lines of the ring that serves a step, a power of two.
+  std::int64_t ring() const { return ring_; }
 
  private:
   struct SlabSchedule {
-    /// [batch of the last list]: the frontier behind it, which is the first bead that no pair has touched yet.
-    std::vector<std::uint32_t> frontier;
-    std::int64_t ring = 0;
-    std::int64_t halo_end = 0;
-    int first_reference = 0;  ///< the earliest slab with a pair that reaches into this one
+    std::vector<Trail> trails;
+    std::int64_t first_touched = 0;
   };
-  void measure(int slab, const PairList& list);
+  void measure(int slab, const PairLists& pairs);
 
   Common& common_;
   int last_list_ = 0;
   int list_count_ = 0;  ///< pairs of materials of beads
+  std::int64_t beads_ = 0, ring_ = 1;
   std::vector<SlabSchedule> slabs_;
 };
 

@@ -8,11 +8,11 @@
 namespace millscope::dem {
 
 int partitions_for(std::int64_t beads) {
-  // A slab of fewer than a thousand beads does not fill its batches. One of fewer beads than a layer of cells has, about n^(2/3), pushes
-  // more beads of other slabs than of its own. A power of two, so that 2, 4, 8 … threads have equal shares.
+  // A slab of fewer than a thousand beads does not fill its batches. A power of two, so that 2, 4, 8 … threads have equal shares. Each slab
+  // keeps the work of every triangle: no more than 64.
   constexpr std::int64_t kFewest = 1000;
   int k = 1;
-  while (2 * k * kFewest <= beads && std::int64_t{8} * k * k * k <= beads) k *= 2;
+  while (2 * k * kFewest <= beads && k < 64) k *= 2;
   return k;
 }
 

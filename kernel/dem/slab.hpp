@@ -1,4 +1,4 @@
-// What one slab has of its own in a step, and its way through phase A on one worker.
+// What one slab has of its own in a step, and its way through it on one worker.
 #pragma once
 
 #include <vector>
@@ -10,11 +10,22 @@
 
 namespace millscope::dem {
 
+/// Pushes on beads of other workers, one by one in the order in which they were computed.
+struct PushLog {
+  std::vector<std::uint32_t> bead;
+  AlignedVector<ForceLine> push;
+  std::int64_t count = 0;
+
+  void make_room() {  // for one more batch
+    if (std::ssize(bead) >= count + kBatch) return;
+    bead.resize(count + count / 2 + kBatch);
+    push.resize(bead.size());
+  }
+};
+
 struct alignas(kCacheLine) SlabState {
-  AlignedVector<ForceLine> halo;                   ///< forces on beads of later slabs, from the slab's end on; zero between steps
-  ForceWindow force;                               ///< in use during this step
+  PushLog log;                                     ///< of this step
   IntegrateResult result{false, -1};               ///< of this step
-  std::vector<std::int64_t> stretches;             ///< of this step: where walls and phase B pause behind the pairs; the slab's end is last
   Ledger ledger;                                   ///< since the start
   std::vector<std::vector<double>> impact, shear;  ///< [body][triangle], J since the start
 };
@@ -24,7 +35,9 @@ struct SlabPass {
   const Particles& particles;
   SlabState& state;
   Scratch& scratch;
+  ForceWindow force;
   int slab;
+  std::int64_t note_before;  ///< pushes on beads before this one are another worker's: they go into the log
   std::int64_t step;
 };
 

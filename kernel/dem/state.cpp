@@ -11,11 +11,11 @@
 namespace millscope::dem {
 namespace {
 
-/// Lists of the slab of the beads [begin, end), of `beads` in all.
-void demand_sound(const PairList& list, BeadRange slab, std::int64_t beads) {
+/// Lists of the slab of the beads [begin, end).
+void demand_sound(const PairList& list, BeadRange slab) {
   demand(list.partner.size() == list.owner.size() && list.touching.size() == list.owner.size());
   for (std::size_t s = 0; s < list.owner.size(); ++s) {
-    demand(list.owner[s] >= slab.begin && list.owner[s] < slab.end && list.partner[s] > list.owner[s] && list.partner[s] < beads);
+    demand(list.owner[s] >= slab.begin && list.owner[s] < slab.end && list.partner[s] < list.owner[s]);
     demand(list.touching[s] <= 1 && (s == 0 || list.owner[s] >= list.owner[s - 1]));
   }
   const std::int64_t contacts = list.contact_count();
@@ -151,7 +151,8 @@ void Step::each_book(Self& self, Visit& visit) {
     }
     for (auto& b : slab.ledger.bodies) numbers.push_back(&b.work);
     for (auto& w : slab.ledger.body_force_work) numbers.push_back(&w);
-    visit.idle(slab.halo);
+    visit.idle(slab.log.bead);
+    visit.idle(slab.log.push);
   }
   visit.scalars("ledger/numbers", numbers);
   visit.scalars("ledger/counts", counts);
@@ -216,7 +217,7 @@ void System::restore(const DoubleSource& doubles, const IntegerSource& integers)
   demand_sound(parts.common.slabs, particles.count());
   for (int slab = 0; slab < parts.common.slabs.count; ++slab) {
     const BeadRange beads = parts.common.slabs.range(slab);
-    for (int q = 0; q < parts.common.physics.count(); ++q) demand_sound(parts.pairs.of(slab, q), beads, particles.count());
+    for (int q = 0; q < parts.common.physics.count(); ++q) demand_sound(parts.pairs.of(slab, q), beads);
     for (int body = 0; body < std::ssize(bodies); ++body) demand_sound(parts.walls.of(slab, body), beads);
   }
   parts.step.lists_changed();

@@ -47,11 +47,29 @@ void Step::prepare() {
 }
 
 void Step::lists_changed() {
-  schedule_.renew(pairs_);
-  for (int slab = 0; slab < common_.slabs.count; ++slab) slabs_[slab].halo.assign(schedule_.halo_size(slab), ForceLine{});
+  schedule_.renew(pairs_, particles_.count());
   for (const auto& scratch : scratch_) {
-    if (std::ssize(scratch->ring) < schedule_.longest_ring()) scratch->ring.assign(schedule_.longest_ring(), ForceLine{});
+    if (std::ssize(scratch->ring) < schedule_.ring()) scratch->ring.assign(schedule_.ring(), ForceLine{});
   }
+}
+
+/// A worker's slabs on their way through a step.
+struct Step::Share {
+  Scratch& scratch;
+  int begin, end;  ///< slabs
+  BeadRange beads;
+  ForceWindow force;
+  int finishing;          ///< the slab of the next bead for phase B
+  std::int64_t finished;  ///< that bead
+};
+
+Step::Share Step::share_of(int worker, bool observed) {
+  const int begin = common_.workers.first(worker, common_.slabs.count), end = common_.workers.first(worker + 1, common_.slabs.count);
+  const BeadRange beads{common_.slabs.bounds[begin], common_.slabs.bounds[end]};
+  Scratch& scratch = *scratch_[worker];
+  const bool in_ring = !observed && schedule_.ring() < beads.end - beads.begin;
+  const ForceWindow force = in_ring ? ForceWindow::ring(scratch.ring.data(), schedule_.ring()) : ForceWindow{particles_.force.data()};
+  return {scratch, begin, end, beads, force, begin, beads.begin};
 }
 
 IntegrateResult Step::make(std::int64_t step, const std::function<void()>& observe) {
@@ -64,131 +82,121 @@ IntegrateResult Step::make(std::int64_t step, const std::function<void()>& obser
   }
   poses_.clear();
   for (const Body& body : walls_.bodies()) poses_.push_back(plain(pose_at(body.motion, time())));
-  const Slabs& slabs = common_.slabs;
   if (observe) {
-    common_.each_slab([this](int slab, int worker) { contacts(slab, worker, false); });
-    common_.each_slab([&](int slab, int worker) {
-      add_halos(slab, slabs.range(slab));
-      each_stretch(slab, [&](BeadRange range) { apply_body_forces(slab, worker, range); });
-    });
-    observe();
-    common_.each_slab([&](int slab, int) { slabs_[slab].result = integrate(slab, slabs.range(slab)); });
+    make_observed(observe);
   } else {
-    common_.workers.run(common_.workers.count(), [this](int share, int) { share_of(share); });
+    each_share(false, [this](Share& share) {
+      for (int slab = share.begin; slab < share.end; ++slab) push(share, slab, [&](std::int64_t done) { finish(share, done); });
+      if (take_pushes(share)) finish(share, share.beads.end);
+    });
   }
   IntegrateResult all{false, -1};
   for (const SlabState& slab : slabs_) all = first_of(all, slab.result);
   return all;
 }
 
-/// Both phases of a worker's slabs. Where another worker follows, the last slab goes first through phase A, for that worker waits for what
-/// it pushes. Phase B follows A at once but for that slab and for the first ones, which those of other workers push: these come at the end.
-void Step::share_of(int worker) {
-  const int begin = common_.workers.first(worker, common_.slabs.count), last = common_.workers.first(worker + 1, common_.slabs.count) - 1;
-  const bool another_follows = worker + 1 < common_.workers.count();
-  const auto is_late = [&](int slab) { return (another_follows && slab == last) || !schedule_.follows_at_once(slab, worker); };
-  const auto push = [&](int slab) {
-    contacts(slab, worker, !is_late(slab));
-    pushed_[slab].store(step_, std::memory_order_release);
-  };
-  if (another_follows) push(last);
-  for (int slab = begin; slab < last; ++slab) push(slab);
-  if (!another_follows) push(last);
-  for (int slab = last; slab >= begin; --slab) {
-    if (!is_late(slab)) continue;
-    for (int earlier = schedule_.first_reference(slab); earlier < begin; ++earlier) {
-      if (!common_.workers.wait_for([&] { return pushed_[earlier].load(std::memory_order_acquire) == step_; })) return;
-    }
-    each_stretch(slab, [&](BeadRange range) { slabs_[slab].result = first_of(slabs_[slab].result, finish(slab, worker, range)); });
-  }
+/// The same, with all beads at rest between phase A and the drift.
+void Step::make_observed(const std::function<void()>& observe) {
+  const auto no_drift = [](std::int64_t) {};
+  each_share(true, [&](Share& share) {
+    for (int slab = share.begin; slab < share.end; ++slab) push(share, slab, no_drift);
+  });
+  each_share(true, [this](Share& share) {
+    if (!take_pushes(share)) return;
+    for (int slab = share.begin; slab < share.end; ++slab) apply_body_forces(share, slab, common_.slabs.range(slab));
+  });
+  observe();
+  each_share(true, [this](Share& share) {
+    for (int slab = share.begin; slab < share.end; ++slab) slabs_[slab].result = integrate(share.force, common_.slabs.range(slab));
+  });
 }
 
-/// The beads of a slab in the stretches in which they are finished behind the pairs. Sums that body forces keep come out the same, whenever
-/// that happens.
-template <class Visit>
-void Step::each_stretch(int slab, const Visit& visit) {
-  std::int64_t begin = common_.slabs.begin(slab);
-  for (const std::int64_t end : slabs_[slab].stretches) {
-    visit(BeadRange{begin, end});
-    begin = end;
-  }
+template <class Work>
+void Step::each_share(bool observed, const Work& work) {
+  common_.workers.run(common_.workers.count(), [&](int worker, int) {
+    Share share = share_of(worker, observed);
+    work(share);
+  });
 }
 
-/// Phase A. With `finish_too` phase B trails behind: a bead is done with once the last list has passed it, and it is finished while it is
-/// still in the cache.
-void Step::contacts(int slab, int worker, bool finish_too) {
+/// Phase A of a slab. The walls trail behind the pairs. `done` hears up to which bead no pair still pushes.
+template <class Done>
+void Step::push(Share& share, int slab, const Done& done) {
   SlabState& state = slabs_[slab];
-  Scratch& scratch = *scratch_[worker];
   state.ledger.reset_instant();
   state.result = {false, -1};
-  const bool in_ring = finish_too && schedule_.ring(slab) > 0;
-  state.force = in_ring ? ForceWindow::ring(scratch.ring.data(), schedule_.ring(slab)) : ForceWindow{particles_.force.data()};
-  const SlabPass pass{common_, particles_, state, scratch, slab, step_};
+  state.log.count = 0;
+  const bool reaches_others = schedule_.first_touched(slab) < share.beads.begin;
+  const SlabPass pass{common_, particles_, state, share.scratch, share.force, slab, reaches_others ? share.beads.begin : 0, step_};
   WallSweep walls(pass, walls_, poses_);
-  std::int64_t finished = common_.slabs.begin(slab);
-  [[maybe_unused]] const auto fits_ring = [&](std::int64_t end) { return !in_ring || end - finished <= schedule_.ring(slab); };
-  state.stretches.clear();
-  const auto trail = [&](std::int64_t end) {
-    assert(fits_ring(end));
-    walls.until(end);
-    state.stretches.push_back(end);
-    if (finish_too) state.result = first_of(state.result, finish(slab, worker, {finished, end}));
-    finished = end;
-  };
+  const std::vector<Trail>& trails = schedule_.trails(slab);
   for (int p = 0; p < common_.physics.count(); ++p) {
     if (common_.physics[p].wall) continue;
-    const bool is_last = p == schedule_.last_list();
     PairSweep pairs(pass, p, pairs_.of(slab, p), alike_[p]);
-    for (std::int64_t first = 0; first < pairs.count(); first += kBatch) {
-      pairs.batch(first, is_last ? schedule_.first_touched(slab, first + 2 * kBatch) : BeadRange{0, 0});
-      assert(fits_ring(std::min(pairs.pushed_end(first), common_.slabs.end(slab))));
-      if (is_last && Schedule::trails_at(first + kBatch, pairs.count())) trail(pairs.owner(first + kBatch));
+    for (std::int64_t first = 0, trail = 0; first < pairs.count(); first += kBatch) {
+      pairs.batch(first);
+      if (p != schedule_.last_list() || trail + 1 == std::ssize(trails) || first + kBatch != (trail + 1) * Schedule::kSlotsPerTrail)
+        continue;
+      walls.until(trails[trail].passed);
+      done(trails[trail++].done);
     }
     pairs.end();
   }
-  trail(common_.slabs.end(slab));
+  walls.until(trails.back().passed);
   walls.end();
+  pushed_[slab].store(step_, std::memory_order_release);
+  done(trails.back().done);
 }
 
-/// Phase B.
-IntegrateResult Step::finish(int slab, int worker, BeadRange range) {
-  if (range.begin == range.end) return {false, -1};
-  add_halos(slab, range);
-  apply_body_forces(slab, worker, range);
-  return integrate(slab, range);
-}
-
-/// The forces that earlier slabs computed for beads of this one, added in slab order.
-void Step::add_halos(int slab, BeadRange range) {
-  const ForceWindow force = slabs_[slab].force;
-  for (int earlier = 0; earlier < slab; ++earlier) {
-    AlignedVector<ForceLine>& halo = slabs_[earlier].halo;
-    const std::int64_t halo_begin = common_.slabs.end(earlier), halo_end = halo_begin + std::ssize(halo);
-    for (std::int64_t i = std::max(range.begin, halo_begin); i < std::min(range.end, halo_end); ++i) {
-      ForceLine& from = halo[i - halo_begin];
-      ForceLine& to = force[i];
+/// Waits for the slabs of other workers that push beads of this one, and adds what they push, in their order: one by one, as if this worker
+/// had come by them itself, so that the number of workers does not enter. False: a worker has failed.
+bool Step::take_pushes(const Share& share) {
+  for (int later = share.end; later < common_.slabs.count && schedule_.first_touched(later) < share.beads.end; ++later) {
+    if (!common_.workers.wait_for([&] { return pushed_[later].load(std::memory_order_acquire) == step_; })) return false;
+    const PushLog& log = slabs_[later].log;
+    for (std::int64_t k = 0; k < log.count; ++k) {
+      if (log.bead[k] < share.beads.begin || log.bead[k] >= share.beads.end) continue;
+      ForceLine& line = share.force[log.bead[k]];
       for (int a = 0; a < 3; ++a) {
-        to.f[a] += from.f[a];
-        to.t[a] += from.t[a];
+        line.f[a] += log.push[k].f[a];
+        line.t[a] += log.push[k].t[a];
       }
-      from = ForceLine{};
     }
+  }
+  return true;
+}
+
+/// Phase B of the beads before `end`, but of a slab whole batches only: sums that body forces keep come out the same, whenever that
+/// happens.
+void Step::finish(Share& share, std::int64_t end) {
+  for (; share.finishing < share.end; ++share.finishing) {
+    const BeadRange slab = common_.slabs.range(share.finishing);
+    std::int64_t stop = slab.end;
+    if (end < slab.end) stop = std::max(share.finished, slab.begin + (end - slab.begin) / kBatch * kBatch);
+    if (stop > share.finished) {
+      const BeadRange range{share.finished, stop};
+      IntegrateResult& result = slabs_[share.finishing].result;
+      apply_body_forces(share, share.finishing, range);
+      result = first_of(result, integrate(share.force, range));
+      share.finished = stop;
+    }
+    if (stop < slab.end) return;
   }
 }
 
-void Step::apply_body_forces(int slab, int worker, BeadRange range) {
+void Step::apply_body_forces(Share& share, int slab, BeadRange range) {
   if (!has_general_body_force_) return;
-  const SlabPass pass{common_, particles_, slabs_[slab], *scratch_[worker], slab, step_};
+  const SlabPass pass{common_, particles_, slabs_[slab], share.scratch, share.force, slab, 0, step_};
   BodyForcePass forces(pass, body_forces_, acceleration_, time());
   for (std::int64_t begin = range.begin; begin < range.end; begin += kBatch) forces.run({begin, std::min(range.end, begin + kBatch)});
 }
 
 /// Kick, drift, predict.
-IntegrateResult Step::integrate(int slab, BeadRange range) {
+IntegrateResult Step::integrate(const ForceWindow& force, BeadRange range) {
   const IntegrateContext context{particles_.position.data(),
                                  particles_.motion.data(),
                                  particles_.half.data(),
-                                 slabs_[slab].force,
+                                 force,
                                  particles_.acceleration.data(),
                                  particles_.reference.data(),
                                  range.begin,

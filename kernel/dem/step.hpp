@@ -1,4 +1,4 @@
-// One time step of all slabs: phase A (pairs and walls), phase B (halos, body forces, kick–drift–predict), and the books.
+// One time step of all slabs: phase A (pairs and walls), phase B (body forces, kick–drift–predict), and the books.
 #pragma once
 
 #include <atomic>
@@ -34,14 +34,17 @@ class Step {
   static void each_book(Self& self, Visit& visit);
 
  private:
-  void share_of(int worker);
-  void contacts(int slab, int worker, bool finish_too);
-  IntegrateResult finish(int slab, int worker, BeadRange range);
-  template <class Visit>
-  void each_stretch(int slab, const Visit& visit);
-  void add_halos(int slab, BeadRange range);
-  void apply_body_forces(int slab, int worker, BeadRange range);
-  IntegrateResult integrate(int slab, BeadRange range);
+  struct Share;
+  Share share_of(int worker, bool observed);
+  template <class Work>
+  void each_share(bool observed, const Work& work);
+  void make_observed(const std::function<void()>& observe);
+  template <class Done>
+  void push(Share& share, int slab, const Done& done);
+  bool take_pushes(const Share& share);
+  void finish(Share& share, std::int64_t end);
+  void apply_body_forces(Share& share, int slab, BeadRange range);
+  IntegrateResult integrate(const ForceWindow& force, BeadRange range);
 
   double time() const { return static_cast<double>(step_) * common_.settings.time_step; }
 

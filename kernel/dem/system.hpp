@@ -1,13 +1,12 @@
 // The moving charge: beads, walls, what acts between them, and the step that advances them.
 //
 // One step, all in a fixed number K of slabs (contiguous ranges of beads in cell order), whatever the number of threads (step.hpp):
-//   A  each slab: the pairs owned by its beads (forces on beads of later slabs go to its halo); the walls trail a few batches behind, for
-//      the beads that the pairs have passed;
-//   B  each slab: adds the halos of the earlier slabs in slab order, body forces, kick–drift–predict.
-// A pair's owner comes first in the order of cells, so once a slab has been through A nobody but earlier slabs reads or pushes its beads:
-// where these belong to the same worker, B follows at once, while the slab is still in the cache (schedule.hpp). The arithmetic is the same
-// either way.
-// A rebuild of order and lists (cell_order.hpp, pair_lists.hpp, wall_lists.hpp) happens when a bead has used up its own skin, which grows
+//   A  the pairs owned by its beads; the walls trail a few batches behind, for the beads that the pairs have passed;
+//   B  body forces, kick–drift–predict.
+// A pair's owner comes after its partner in the order of cells, and a bead is done with A when the last owner that pushes it has been
+// reached: B follows right behind, while the bead is still in the cache (schedule.hpp). A worker goes through its slabs as if they were
+// one. What its first slab pushes in the slabs of the worker before goes into a log, which that one adds at its end, push by push. A
+// rebuild of order and lists (cell_order.hpp, pair_lists.hpp, wall_lists.hpp) happens when a bead has used up its own skin, which grows
 // with its speed at the last rebuild: fast beads are few.
 #pragma once
 

@@ -151,7 +151,7 @@ void WallSweep::scatter(const Chunk& chunk, int physics_index, std::int64_t coun
   const PairPhysics& physics = pass_.common.physics[physics_index];
   BodyLedger& book = pass_.state.ledger.bodies[chunk.body];
   WallSums sums;
-  pass_.common.wide.scatter_walls(poses_[chunk.body], pass_.state.force, count, physics.has_post(), b, sums);
+  pass_.common.wide.scatter_walls(poses_[chunk.body], pass_.force, count, physics.has_post(), b, sums);
   for (int a = 0; a < 3; ++a) {
     book.force[a] += sums.force[a];
     book.torque[a] += sums.torque[a];

@@ -176,9 +176,10 @@ void torques(std::int64_t n, bool equal, bool with_moments, PairBatch& arrays) {
   }
 }
 
-template <bool kSame>
-void scatter_lines(const ScatterContext& s, std::int64_t count, const PairBatch& arrays) {
+template <bool kSame, bool kNotes>
+std::int64_t scatter_lines(const ScatterContext& s, std::int64_t count, const PairBatch& arrays) {
   const PairBatch b = arrays;
+  std::int64_t noted = 0;
   for (std::int64_t k = 0; k < count; k += 4) {
     Four f[4] = {load4(b.force[0] + k), load4(b.force[1] + k), load4(b.force[2] + k), four(0.0)};
     Four ti[4] = {load4(b.torque_i[0] + k), load4(b.torque_i[1] + k), load4(b.torque_i[2] + k), four(0.0)};
@@ -195,22 +196,31 @@ void scatter_lines(const ScatterContext& s, std::int64_t count, const PairBatch&
     for (int c = 0; c < lanes; ++c) {
       const std::int64_t i = b.owner[k + c], j = b.partner[k + c];
       ForceLine* to_i = &s.force[i];
-      ForceLine* to_j = j < s.slab_end ? &s.force[j] : s.halo + (j - s.slab_end);
       store4(to_i->f, load4(to_i->f) + f[c]);
       store4(to_i->t, load4(to_i->t) + ti[c]);
+      if (kNotes && j < s.own_begin) {
+        s.noted_bead[noted] = b.partner[k + c];
+        store4(s.noted_push[noted].f, four(0.0) - f[c]);
+        store4(s.noted_push[noted++].t, kSame ? ti[c] : tj[c]);
+        continue;
+      }
+      ForceLine* to_j = &s.force[j];
       store4(to_j->f, load4(to_j->f) - f[c]);
       store4(to_j->t, load4(to_j->t) + (kSame ? ti[c] : tj[c]));
     }
   }
+  return noted;
 }
 
-void scatter(const ScatterContext& s, PairListView& list, std::int64_t count, bool with_moments, PairBatch& b) {
+std::int64_t scatter(const ScatterContext& s, PairListView& list, std::int64_t count, bool with_moments, PairBatch& b) {
   const std::int64_t padded = padded_count(count);
   torques(padded, s.equal, with_moments, b);
-  if (s.equal && !with_moments) {
-    scatter_lines<true>(s, count, b);
+  const bool same = s.equal && !with_moments;
+  std::int64_t noted = 0;
+  if (s.noted_bead) {
+    noted = same ? scatter_lines<true, true>(s, count, b) : scatter_lines<false, true>(s, count, b);
   } else {
-    scatter_lines<false>(s, count, b);
+    same ? scatter_lines<true, false>(s, count, b) : scatter_lines<false, false>(s, count, b);
   }
   for (std::int32_t h = 0; h < list.history_count; ++h) {
     const double* __restrict from = b.history[h];
@@ -218,6 +228,7 @@ void scatter(const ScatterContext& s, PairListView& list, std::int64_t count, bo
     for (std::int64_t k = 0; k < count; ++k) to[k] = from[k];
   }
   list.written += count;
+  return noted;
 }
 
 IntegrateResult integrate(const IntegrateContext& c) {

@@ -22,9 +22,11 @@ struct GatherContext {
 
 struct ScatterContext {
   ForceWindow force;
-  ForceLine* halo;  ///< of beads from `slab_end` on
-  std::int64_t slab_end;
   bool equal;  ///< torque_i serves both
+  /// Pushes on beads before `own_begin`, which another worker has, are noted one by one; nullptr: there are none.
+  std::uint32_t* noted_bead;
+  ForceLine* noted_push;
+  std::int64_t own_begin;
 };
 
 struct IntegrateContext {
@@ -72,8 +74,9 @@ struct WideTable {
   std::int64_t (*search)(const GatherContext&, PairListView&, std::int64_t first, std::int64_t last, PairBatch&);
   /// Fills overlap, normal, velocity, radius, mass (padded), history.
   void (*gather)(const GatherContext&, const PairListView&, std::int64_t count, PairBatch&);
-  /// Adds force × arms (and moments when `with_moments`) to the beads, stores histories; advances `written`.
-  void (*scatter)(const ScatterContext&, PairListView&, std::int64_t count, bool with_moments, PairBatch&);
+  /// Adds force × arms (and moments when `with_moments`) to the beads, stores histories; advances `written`. Returns the number of pushes
+  /// that it noted.
+  std::int64_t (*scatter)(const ScatterContext&, PairListView&, std::int64_t count, bool with_moments, PairBatch&);
   /// Places of the world into the frame of a body.
   void (*to_frame)(const WallPose&, std::int64_t count, double* const (&position)[3]);
   /// From `bead` and `contact` of each place: all that the plugins need but the histories (padded).

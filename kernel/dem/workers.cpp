@@ -22,7 +22,7 @@ void Workers::pause(int& spins) {
 }
 
 Workers::Workers(int count) : count_(count), claimed_(count) {
-  for (int w = 1; w < count_; ++w) threads_.emplace_back([this, w] { loop(w); });
+  for (int w = 0; w + 1 < count_; ++w) threads_.emplace_back([this, w] { loop(w); });
 }
 
 Workers::~Workers() {
@@ -53,7 +53,7 @@ void Workers::run(int slabs, const std::function<void(int, int)>& task) {
   pending_.store(count_, std::memory_order_relaxed);
   const unsigned generation = generation_.fetch_add(1, std::memory_order_acq_rel) + 1;
   if (count_ > 1) generation_.notify_all();
-  for (int worker = 0; worker < count_; ++worker) {
+  for (int worker = count_ - 1; worker >= 0; --worker) {
     if (claim(worker, generation)) share(worker);
   }
   for (int spins = 0; pending_.load(std::memory_order_acquire) != 0;) pause(spins);

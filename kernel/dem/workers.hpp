@@ -11,7 +11,7 @@ namespace millscope::dem {
 
 class Workers {
  public:
-  /// `count` ≥ 1 threads in all; the calling thread is worker 0.
+  /// `count` ≥ 1 threads in all; the calling thread is the last worker.
   explicit Workers(int count);
   ~Workers();
   Workers(const Workers&) = delete;
@@ -24,10 +24,11 @@ class Workers {
   /// Runs task(slab, worker) for each slab in [0, slabs): slab k goes to worker k·count/slabs, so that a slab stays in one cache.
   /// Returns when all are done; what a task throws (the first of them: memory that is not there) is thrown here, the rest of that share is
   /// left out, and the state is of no use any more. The share of a worker whose thread has not begun when the calling thread is done
-  /// with its own is taken over by it, under that worker's number: on a busy machine nobody waits for a thread that is not running.
+  /// with its own is taken over by it, under that worker's number, from the last to the first: on a busy machine nobody waits for a thread
+  /// that is not running.
   void run(int slabs, const std::function<void(int slab, int worker)>& task);
 
-  /// Inside a task: waits until `done`, which a share of a lower number brings about. False: a task has failed, so that it may never come.
+  /// Inside a task: waits until `done`, which a share of a higher number brings about. False: a task has failed, so that it may never come.
   template <class Done>
   bool wait_for(const Done& done) const {
     for (int spins = 0; !done(); pause(spins)) {

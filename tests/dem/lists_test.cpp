@@ -17,7 +17,7 @@ namespace {
 
 using IdPairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// All listed pairs as (smaller id, larger id); fails on a repeat, a self or an owner after its partner.
+/// All listed pairs as (smaller id, larger id); fails on a repeat, a self or an owner before its partner.
 IdPairs listed(const Assembly& a) {
   const dem::PairLists& lists = a.system->pair_lists();
   const std::vector<std::uint32_t>& id = a.system->particles.id;
@@ -26,7 +26,7 @@ IdPairs listed(const Assembly& a) {
     for (int p = 0; p < std::ssize(a.system->physics()); ++p) {
       const dem::PairList& list = lists.of(slab, p);
       for (std::int64_t s = 0; s < list.count(); ++s) {
-        REQUIRE(list.owner[s] < list.partner[s]);
+        REQUIRE(list.owner[s] > list.partner[s]);
         const std::uint32_t i = id[list.owner[s]], j = id[list.partner[s]];
         REQUIRE(found.emplace(std::min(i, j), std::max(i, j)).second);
       }

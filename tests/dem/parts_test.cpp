@@ -260,11 +260,11 @@ TEST_CASE("contacts at a wall go with their bead to its new number and slab, and
   CHECK(*kept.rbegin() == 99);
 }
 
-// A slab is gone through as a step does it: a bead is alive from the first pair that touches it until phase B has passed it.
-TEST_CASE("the ring of a slab holds all beads that carry forces at once, and each bead is asked for once before it is touched") {
+// All slabs are gone through as a step of one worker does it: a bead carries forces from the first pair that touches it until phase B.
+TEST_CASE("phase B follows right behind the last pair that touches a bead, and the ring holds all beads that carry forces at once") {
   Particles beads = strewn(20000, 5);
   for (PositionLine& x : beads.position) x.centre[0] *= 20;  // longer than wide: a slab is much longer than its pairs reach
-  Settings settings = open_box(2);
+  Settings settings = open_box(3);
   settings.high[0] = 3;
   Common common(settings, kOneEvenOneOdd, one_material());
   common.slabs.cut_equally(beads.count());
@@ -274,48 +274,45 @@ TEST_CASE("the ring of a slab holds all beads that carry forces at once, and eac
   pairs.clear();
   order.renew(beads, 0);
   rebuild_lists(common, order, pairs, beads);
-  schedule.renew(pairs);
-  for (int slab = 0; slab < 2; ++slab) {
-    INFO("slab " << slab);
-    const BeadRange range = common.slabs.range(slab);
+  schedule.renew(pairs, beads.count());
+  // The last pair of all, in the order of a step, that touches each bead.
+  std::vector<std::int64_t> last_touch(beads.count(), -1);
+  std::int64_t pair = 0;
+  for (int slab = 0; slab < 3; ++slab) {
     const PairList& list = pairs.of(slab, 0);
-    const std::int64_t ring = schedule.ring(slab);
-    REQUIRE(ring > 0);
-    REQUIRE(ring < range.end - range.begin);
-    REQUIRE(list.count() > 20 * kBatch);
-    std::int64_t finished = range.begin, trails = 0, asked_to = range.begin, longest = 0;
-    bool in_order = true, asked = true;
-    for (std::int64_t first = 0; first < list.count(); first += kBatch) {
-      const BeadRange touched = schedule.first_touched(slab, first);
-      asked = asked && touched.begin == asked_to && touched.end >= touched.begin;
-      asked_to = touched.end;
-      const std::int64_t last = std::min(list.count(), first + kBatch);
-      for (std::int64_t s = first; s < last; ++s) {
-        asked = asked && list.partner[s] < asked_to;
-        if (list.partner[s] < range.end) longest = std::max(longest, list.partner[s] + 1 - finished);
-        in_order = in_order && list.owner[s] >= finished;
-      }
-      if (!Schedule::trails_at(last, list.count())) continue;
-      longest = std::max(longest, list.owner[last] - finished);
-      finished = list.owner[last];
-      ++trails;
-    }
-    longest = std::max(longest, range.end - finished);
-    CHECK(longest <= ring);
-    CHECK(longest > ring / 2);  // the next power of two
-    CHECK(in_order);
-    CHECK(asked);
-    CHECK(trails > 2);
-    const BeadRange behind = schedule.first_touched(slab, (list.count() / kBatch + 2) * kBatch);
-    CHECK(behind.begin == behind.end);
-    CHECK(std::max(asked_to, range.end) == range.end + schedule.halo_size(slab));
+    for (std::int64_t s = 0; s < list.count(); ++s, ++pair) last_touch[list.owner[s]] = last_touch[list.partner[s]] = pair;
   }
-  CHECK(schedule.halo_size(0) > 0);
-  CHECK(schedule.halo_size(1) == 0);
-  CHECK(schedule.follows_at_once(1, 0));
+  std::int64_t before = 0, finished = 0, longest = 0, early = 0, late = 0;
+  for (int slab = 0; slab < 3; ++slab) {
+    INFO("slab " << slab);
+    const PairList& list = pairs.of(slab, 0);
+    const std::vector<Trail>& trails = schedule.trails(slab);
+    REQUIRE(trails.size() > 3);
+    CHECK(std::ssize(trails) == (list.count() + Schedule::kSlotsPerTrail - 1) / Schedule::kSlotsPerTrail);
+    CHECK(trails.back().passed == common.slabs.end(slab));
+    for (std::size_t t = 0; t < trails.size(); ++t) {
+      const std::int64_t slots = std::min<std::int64_t>(list.count(), (t + 1) * Schedule::kSlotsPerTrail);
+      if (slots < list.count()) CHECK(trails[t].passed == list.owner[slots]);
+      longest = std::max<std::int64_t>(longest, trails[t].passed + 1 - finished);
+      for (std::int64_t i = finished; i < trails[t].done; ++i) early += last_touch[i] >= before + slots;
+      if (trails[t].done < beads.count()) late += last_touch[trails[t].done] < before + slots;
+      finished = trails[t].done;
+    }
+    before += list.count();
+  }
+  CHECK(early == 0);
+  CHECK(late == 0);
+  CHECK(finished == beads.count());
+  CHECK(longest <= schedule.ring());
+  CHECK(4 * longest > schedule.ring());  // a batch of beads more, and the next power of two
+  CHECK(schedule.ring() < common.slabs.end(0));
+  CHECK(schedule.first_touched(0) == 0);
+  CHECK(schedule.first_touched(1) < common.slabs.begin(1));
+  CHECK(schedule.first_touched(1) > common.slabs.begin(1) - 2000);
+  CHECK(schedule.first_touched(3) == beads.count());
 }
 
-TEST_CASE("where lists of several pairs of materials follow one another, no bead is done with before the last: no ring") {
+TEST_CASE("where lists of several pairs of materials follow one another, a slab carries its forces at once") {
   PairPhysics same, mixed, other;
   mixed.second = other.first = other.second = 1;
   Common common(open_box(2), kOneEvenOneOdd, PhysicsTable({same, mixed, other}, 2));
@@ -328,9 +325,9 @@ TEST_CASE("where lists of several pairs of materials follow one another, no bead
   pairs.clear();
   order.renew(beads, 0);
   rebuild_lists(common, order, pairs, beads);
-  schedule.renew(pairs);
+  schedule.renew(pairs, beads.count());
   CHECK(schedule.last_list() == 2);
-  CHECK(schedule.ring(0) == 0);
+  CHECK(schedule.ring() > common.slabs.end(0));
   for (int slab = 0; slab < 2; ++slab) {
     for (int p = 0; p < 3; ++p) {
       const PairList& list = pairs.of(slab, p);
