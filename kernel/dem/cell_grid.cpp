@@ -21,6 +21,7 @@ int around(int c, int count, bool periodic, int (&out)[3]) {
 }  // namespace
 
 void Neighbourhood::add(BeadRange range) {
+  beads += range.end - range.begin;
   if (count > 0 && ranges[count - 1].end == range.begin) {
     ranges[count - 1].end = range.end;
   } else {
@@ -88,9 +89,10 @@ Neighbourhood CellGrid::round(std::int64_t cell) const {
   Neighbourhood found;
   for (int a = 0; a < m[0]; ++a) {
     for (int b = 0; b < m[1]; ++b) {
-      for (int c = 0; c < m[2]; ++c) {
-        const std::int64_t k = (std::int64_t{near[0][a]} * n[1] + near[1][b]) * n[2] + near[2][c];
-        const BeadRange range{start_[k], start_[k + 1]};
+      const std::int64_t row = (std::int64_t{near[0][a]} * n[1] + near[1][b]) * n[2];
+      for (int first = 0, last = 0; first < m[2]; first = ++last) {  // neighbours that follow one another in one go
+        while (last + 1 < m[2] && near[2][last + 1] == near[2][last] + 1) ++last;
+        const BeadRange range{start_[row + near[2][first]], start_[row + near[2][last] + 1]};
         if (range.begin < range.end && range.begin < end_of(cell)) found.add(range);
       }
     }

@@ -17,8 +17,9 @@ struct Extent {
 
 /// The beads in a cell and in those round it: ranges in ascending order, joined where they follow one another.
 struct Neighbourhood {
-  std::array<BeadRange, 27> ranges;
+  std::array<BeadRange, 18> ranges;  // nine rows, each of one piece or, at a periodic end, two
   int count = 0;
+  std::int64_t beads = 0;
 
   void add(BeadRange range);
   const BeadRange* begin() const { return ranges.data(); }

@@ -103,15 +103,13 @@ void CellOrder::renew(Particles& p, double time) {
   permute(p.material, p.force);
 }
 
-std::span<const std::uint32_t> CellOrder::near(std::int64_t i, const Neighbourhood& round, std::vector<std::uint32_t>& memory) const {
+std::int64_t CellOrder::near(std::int64_t i, const Neighbourhood& round, std::uint32_t* found) const {
   std::int64_t count = 0;
   for (const BeadRange& range : round) {
-    const std::int64_t end = std::min(range.end, i), more = end - range.begin;
-    if (more <= 0) continue;
-    if (std::ssize(memory) < count + more + 8) memory.resize(2 * (count + more) + 64);
-    count += common_.wide.near(reaches_.data(), common_.settings.periodic, i, range.begin, end, memory.data() + count);
+    const std::int64_t end = std::min(range.end, i);
+    if (range.begin < end) count += common_.wide.near(reaches_.data(), common_.settings.periodic, i, range.begin, end, found + count);
   }
-  return {memory.data(), static_cast<std::size_t>(count)};
+  return count;
 }
 
 }  // namespace millscope::dem

@@ -2,8 +2,6 @@
 // its speed at that moment.
 #pragma once
 
-#include <span>
-
 #include "kernel/dem/cell_grid.hpp"
 #include "kernel/dem/particles.hpp"
 
@@ -21,8 +19,9 @@ class CellOrder {
   /// In the new order. Centre; `radius`: radius + skin + half the largest reach of a law.
   const AlignedVector<PositionLine>& reaches() const { return reaches_; }
   const CellGrid& grid() const { return grid_; }
-  /// The beads j < i of a neighbourhood whose reach overlaps that of bead i. They stand in `memory`.
-  std::span<const std::uint32_t> near(std::int64_t i, const Neighbourhood& round, std::vector<std::uint32_t>& memory) const;
+  /// The beads j < i of a neighbourhood whose reach overlaps that of bead i go to `found`, which has `room` for them. Returns their number.
+  std::int64_t near(std::int64_t i, const Neighbourhood& round, std::uint32_t* found) const;
+  static std::int64_t room(const Neighbourhood& round) { return round.beads + 8; }  // four are written at a time
 
   template <class Visit>
   void each_idle(Visit& visit) const {

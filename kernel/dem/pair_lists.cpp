@@ -103,29 +103,44 @@ class PairLists::Builder {
   }
 
   void run(const CellOrder& order, BeadRange slab, const std::vector<std::uint8_t>& material) {
-    std::vector<std::uint32_t> memory;
     std::int64_t cell = order.grid().cell_at(slab.begin);
     for (std::int64_t i = slab.begin; i < slab.end;) {
       while (order.grid().end_of(cell) <= i) ++cell;
       const Neighbourhood round = order.grid().round(cell);
       for (const std::int64_t end = std::min(slab.end, order.grid().end_of(cell)); i < end; ++i) {
-        const std::span<const std::uint32_t> partners = order.near(i, round, memory);
         const std::uint32_t owner = static_cast<std::uint32_t>(i);
         if (common_.physics.material_count() == 1) {
-          append(lists_[common_.physics.of_beads(0, 0)], owner, partners);
+          append_near(lists_[common_.physics.of_beads(0, 0)], owner, order, round);
         } else {
-          for (const std::uint32_t& j : partners) append(lists_[common_.physics.of_beads(material[i], material[j])], owner, {&j, 1});
+          near_.resize(CellOrder::room(round));
+          const std::int64_t count = order.near(i, round, near_.data());
+          for (std::int64_t k = 0; k < count; ++k)
+            append(lists_[common_.physics.of_beads(material[i], material[near_[k]])], owner, near_[k]);
         }
       }
     }
   }
 
  private:
-  void append(PairList& list, std::uint32_t owner, std::span<const std::uint32_t> partners) {
+  void append_near(PairList& list, std::uint32_t owner, const CellOrder& order, const Neighbourhood& round) {
+    const std::int64_t base = list.count(), room = base + CellOrder::room(round);
+    list.partner.resize(room);
+    list.partner.resize(base + order.near(owner, round, list.partner.data() + base));
+    list.owner.resize(list.partner.size(), owner);
+    carry_over(list, base);
+  }
+  void append(PairList& list, std::uint32_t owner, std::uint32_t partner) {
     const std::int64_t base = list.count();
-    list.partner.insert(list.partner.end(), partners.begin(), partners.end());
-    list.owner.insert(list.owner.end(), partners.size(), owner);
+    list.partner.push_back(partner);
+    list.owner.push_back(owner);
+    carry_over(list, base);
+  }
+
+  /// To the slots from `base` on, which have the same owner.
+  void carry_over(PairList& list, std::int64_t base) {
     list.touching.resize(list.owner.size(), 0);
+    if (base == list.count()) return;
+    const std::uint32_t owner = list.owner[base];
     kept_.clear();
     for (std::uint32_t e = carried_.start[owner]; e < carried_.start[owner + 1]; ++e) {
       const auto at = std::find(list.partner.begin() + base, list.partner.end(), carried_.partner[e]);
@@ -143,6 +158,7 @@ class PairLists::Builder {
   const Common& common_;
   const Carried& carried_;
   std::vector<PairList>& lists_;
+  std::vector<std::uint32_t> near_;
   std::vector<std::pair<std::int64_t, std::uint32_t>> kept_;  ///< of one owner: slot and entry of each carried history
 };
 

@@ -231,40 +231,66 @@ std::int64_t scatter(const ScatterContext& s, PairListView& list, std::int64_t c
   return noted;
 }
 
-IntegrateResult integrate(const IntegrateContext& c) {
-  constexpr std::int64_t kFetchAhead = 24;  // beads: longer than a line takes to come from memory
-  IntegrateResult result{false, -1};
+/// Kick, drift and predict of one bead. Returns its step in x, y, z and in the fourth lane nothing of use; `moved` is the same since the
+/// last rebuild.
+inline Four move_bead(const IntegrateContext& c, std::int64_t i, Four& moved) {
   const Four dt = four(c.time_step), half_dt = four(0.5 * c.time_step);
   const Four g = {c.acceleration[0], c.acceleration[1], c.acceleration[2], 0.0};
   const Four keep = {1.0, 1.0, 1.0, 0.0};
-  for (std::int64_t i = c.begin; i < c.end; ++i) {
-    __builtin_prefetch(c.half + i + kFetchAhead, 1, 2);
-    __builtin_prefetch(c.last + i + kFetchAhead, 1, 2);
-    __builtin_prefetch(c.reference + i + kFetchAhead, 0, 2);
-    MotionLine& motion = c.motion[i];
-    MotionLine& half = c.half[i];
-    ForceLine& force = c.force[i];
-    const Four a = (load4(force.f) * four(motion.inverse_mass) + g) * keep;
-    const Four alpha = load4(force.t) * four(motion.inverse_inertia) * keep;
-    AccelerationLine& last = c.last[i];
-    const Four next_a = a + (a - load4_single(last.linear)), next_alpha = alpha + (alpha - load4_single(last.angular));
-    store4_single(last.linear, a);
-    store4_single(last.angular, alpha);
-    const Four v = load4(half.v) + dt * a;
-    const Four w = load4(half.w) + dt * alpha;
-    const Four step = dt * v * keep;
-    const Four x = load4(&c.position[i]) + step;
-    const Four moved = (x - load4_single(c.reference[i].centre)) * keep;
-    const Four step2 = step * step, moved2 = moved * moved;
-    store4(half.v, v);
-    store4(half.w, w);
-    store4(motion.v, v + half_dt * next_a);
-    store4(motion.w, w + half_dt * next_alpha);
-    store4(&c.position[i], x);
-    store4(force.f, four(0.0));
-    store4(force.t, four(0.0));
-    if (!(moved2[0] + moved2[1] + moved2[2] <= static_cast<double>(c.reference[i].allowed2))) result.rebuild = true;
-    if (result.runaway < 0 && !(step2[0] + step2[1] + step2[2] <= c.largest_step2)) result.runaway = i;
+  MotionLine& motion = c.motion[i];
+  MotionLine& half = c.half[i];
+  ForceLine& force = c.force[i];
+  const Four a = (load4(force.f) * four(motion.inverse_mass) + g) * keep;
+  const Four alpha = load4(force.t) * four(motion.inverse_inertia) * keep;
+  AccelerationLine& last = c.last[i];
+  const Four next_a = a + (a - load4_single(last.linear)), next_alpha = alpha + (alpha - load4_single(last.angular));
+  store4_single(last.linear, a);
+  store4_single(last.angular, alpha);
+  const Four v = load4(half.v) + dt * a;
+  const Four w = load4(half.w) + dt * alpha;
+  const Four step = dt * v * keep;
+  const Four x = load4(&c.position[i]) + step;
+  moved = x - load4_single(c.reference[i].centre);
+  store4(half.v, v);
+  store4(half.w, w);
+  store4(motion.v, v + half_dt * next_a);
+  store4(motion.w, w + half_dt * next_alpha);
+  store4(&c.position[i], x);
+  store4(force.f, four(0.0));
+  store4(force.t, four(0.0));
+  return step;
+}
+
+IntegrateResult integrate(const IntegrateContext& context) {
+  constexpr std::int64_t kFetchAhead = 24;  // beads: longer than a line takes to come from memory
+  const IntegrateContext c = context;       // nobody else has its address, so that no store can change it
+  IntegrateResult result{false, -1};
+  const auto judge = [&](std::int64_t i, double step2, double moved2, double allowed2) {
+    if (!(moved2 <= allowed2)) result.rebuild = true;
+    if (result.runaway < 0 && !(step2 <= c.largest_step2)) result.runaway = i;
+  };
+  std::int64_t i = c.begin;
+  for (; i + 4 <= c.end; i += 4) {
+    Four step[4], moved[4];
+    for (int k = 0; k < 4; ++k) {
+      __builtin_prefetch(c.half + i + k + kFetchAhead, 1, 2);
+      __builtin_prefetch(c.last + i + k + kFetchAhead, 1, 2);
+      __builtin_prefetch(c.reference + i + k + kFetchAhead, 0, 2);
+      step[k] = move_bead(c, i + k, moved[k]);
+    }
+    transpose(step[0], step[1], step[2], step[3]);
+    transpose(moved[0], moved[1], moved[2], moved[3]);
+    const Four step2 = step[0] * step[0] + step[1] * step[1] + step[2] * step[2];
+    const Four moved2 = moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2];
+    const Four allowed2 = {c.reference[i].allowed2, c.reference[i + 1].allowed2, c.reference[i + 2].allowed2, c.reference[i + 3].allowed2};
+    const FourBits sound = (moved2 <= allowed2) & (step2 <= four(c.largest_step2));
+    if (bits_of(sound) == 0xf) continue;
+    for (int k = 0; k < 4; ++k) judge(i + k, step2[k], moved2[k], allowed2[k]);
+  }
+  for (; i < c.end; ++i) {
+    Four moved;
+    const Four step = move_bead(c, i, moved), step2 = step * step, moved2 = moved * moved;
+    judge(i, step2[0] + step2[1] + step2[2], moved2[0] + moved2[1] + moved2[2], static_cast<double>(c.reference[i].allowed2));
   }
   return result;
 }

@@ -5,7 +5,7 @@ import signal
 import time
 import unittest
 
-from campaigns import CampaignTest, tree_of
+from campaigns import PATIENCE, CampaignTest, tree_of
 
 FOUR = {name: [f"seed={seed}"] for seed, name in enumerate(("a", "b", "c", "d"), 1)}
 PROBE = 0.4  # s of simulated time, to see how fast this machine is

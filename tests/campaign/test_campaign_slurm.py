@@ -5,7 +5,7 @@ import signal
 import unittest
 
 import slurm_machine
-from campaigns import CampaignTest
+from campaigns import PATIENCE, CampaignTest
 
 THREE = {name: [f"seed={seed}"] for seed, name in enumerate(("a", "b", "c"), 1)}
 END = 1.0  # s of simulated time: about a second of computing each

@@ -3,7 +3,7 @@ import os
 import subprocess
 import unittest
 
-from support import CliTest, tree_of
+from support import PATIENCE, CliTest, tree_of
 
 UNSTABLE = ("--set", "time.step_fraction=1", "--set", "run.allow_unstable=true")
 

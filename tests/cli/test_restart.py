@@ -6,7 +6,7 @@ import signal
 import time
 import unittest
 
-from support import CliTest, tree_of
+from support import PATIENCE, CliTest, tree_of
 
 LONG = [("settle_s: 0.02", "settle_s: 0.05"), ("end_s: 0.1, analyze_from_s: 0.05", "end_s: 0.5, analyze_from_s: 0.1")]
 INTERVAL = 0.1  # s of wall time between checkpoints
