@@ -90,14 +90,12 @@ void PairLists::begin_rebuild(const CellOrder& order) {
   });
 }
 
-/// Makes the lists of one slab.
+/// Makes the lists of one slab, in the memory of those before.
 class PairLists::Builder {
  public:
-  Builder(const Common& common, const Carried& carried, std::vector<PairList>& lists) : common_(common), carried_(carried), lists_(lists) {
+  Builder(const Common& common, const Carried& carried, std::vector<PairList>& lists)
+      : common_(common), carried_(carried), lists_(lists), count_(lists.size(), 0) {
     for (PairList& list : lists_) {
-      list.owner.clear();
-      list.partner.clear();
-      list.touching.clear();
       for (auto& h : list.history) h.clear();
     }
   }
@@ -110,45 +108,51 @@ class PairLists::Builder {
       for (const std::int64_t end = std::min(slab.end, order.grid().end_of(cell)); i < end; ++i) {
         const std::uint32_t owner = static_cast<std::uint32_t>(i);
         if (common_.physics.material_count() == 1) {
-          append_near(lists_[common_.physics.of_beads(0, 0)], owner, order, round);
+          const int p = common_.physics.of_beads(0, 0);
+          make_room(p, CellOrder::room(round));
+          append(p, owner, order.near(i, round, lists_[p].partner.data() + count_[p]));
         } else {
           near_.resize(CellOrder::room(round));
           const std::int64_t count = order.near(i, round, near_.data());
-          for (std::int64_t k = 0; k < count; ++k)
-            append(lists_[common_.physics.of_beads(material[i], material[near_[k]])], owner, near_[k]);
+          for (std::int64_t k = 0; k < count; ++k) {
+            const int p = common_.physics.of_beads(material[i], material[near_[k]]);
+            make_room(p, 1);
+            lists_[p].partner[count_[p]] = near_[k];
+            append(p, owner, 1);
+          }
         }
       }
     }
+    for (std::size_t p = 0; p < lists_.size(); ++p) resize(lists_[p], count_[p]);
   }
 
  private:
-  void append_near(PairList& list, std::uint32_t owner, const CellOrder& order, const Neighbourhood& round) {
-    const std::int64_t base = list.count(), room = base + CellOrder::room(round);
-    list.partner.resize(room);
-    list.partner.resize(base + order.near(owner, round, list.partner.data() + base));
-    list.owner.resize(list.partner.size(), owner);
-    carry_over(list, base);
+  static void resize(PairList& list, std::int64_t slots) {
+    list.owner.resize(slots);
+    list.partner.resize(slots);
+    list.touching.resize(slots);
   }
-  void append(PairList& list, std::uint32_t owner, std::uint32_t partner) {
-    const std::int64_t base = list.count();
-    list.partner.push_back(partner);
-    list.owner.push_back(owner);
-    carry_over(list, base);
+  void make_room(int p, std::int64_t slots) {
+    const std::int64_t needed = count_[p] + slots;
+    if (lists_[p].count() < needed) resize(lists_[p], needed + needed / 2);
   }
 
-  /// To the slots from `base` on, which have the same owner.
-  void carry_over(PairList& list, std::int64_t base) {
-    list.touching.resize(list.owner.size(), 0);
-    if (base == list.count()) return;
-    const std::uint32_t owner = list.owner[base];
+  /// Makes slots of the partners that stand behind the last slot, all of one owner, with the histories of the pairs that touched.
+  void append(int p, std::uint32_t owner, std::int64_t partners) {
+    PairList& list = lists_[p];
+    const std::int64_t first = count_[p], last = count_[p] += partners;
+    for (std::int64_t s = first; s < last; ++s) {
+      list.owner[s] = owner;
+      list.touching[s] = 0;
+    }
     kept_.clear();
     for (std::uint32_t e = carried_.start[owner]; e < carried_.start[owner + 1]; ++e) {
-      const auto at = std::find(list.partner.begin() + base, list.partner.end(), carried_.partner[e]);
-      if (at == list.partner.end()) continue;
+      const auto end = list.partner.begin() + last, at = std::find(list.partner.begin() + first, end, carried_.partner[e]);
+      if (at == end) continue;
       list.touching[at - list.partner.begin()] = 1;
       kept_.emplace_back(at - list.partner.begin(), e);
     }
-    std::sort(kept_.begin(), kept_.end());
+    if (kept_.size() > 1) std::sort(kept_.begin(), kept_.end());
     const std::int64_t histories = std::ssize(list.history);
     for (const auto& [slot, e] : kept_) {
       for (std::int64_t h = 0; h < histories; ++h) list.history[h].push_back(carried_.history[e * histories + h]);
@@ -158,6 +162,7 @@ class PairLists::Builder {
   const Common& common_;
   const Carried& carried_;
   std::vector<PairList>& lists_;
+  std::vector<std::int64_t> count_;  ///< [list]: slots that are made
   std::vector<std::uint32_t> near_;
   std::vector<std::pair<std::int64_t, std::uint32_t>> kept_;  ///< of one owner: slot and entry of each carried history
 };
