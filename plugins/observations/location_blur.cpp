@@ -49,16 +49,24 @@ class Path {
     return i;
   }
 
-  /// Over [from, to], which begin in the intervals `first` and `last`.
-  double mean(int axis, std::int64_t first, double from, std::int64_t last, double to) const {
-    return view_.position[axis][0] + (integral(axis, last, to) - integral(axis, first, from)) / (to - from);
+  /// Over the time from one end to the other.
+  struct End {
+    std::int64_t interval;  ///< in which it lies
+    double since;           ///< s, since that begins
+    double share;           ///< of the interval
+  };
+  End end_at(std::int64_t i, double t) const {
+    const double since = t - view_.time[i];
+    return {i, since, since / (view_.time[i + 1] - view_.time[i])};
+  }
+  double mean(int axis, const End& from, const End& to, double per_second) const {
+    return view_.position[axis][0] + (integral(axis, to) - integral(axis, from)) * per_second;
   }
 
  private:
-  double integral(int axis, std::int64_t i, double t) const {
-    const double* x = view_.position[axis];
-    const double s = t - view_.time[i], slope = (x[i + 1] - x[i]) / (view_.time[i + 1] - view_.time[i]);
-    return element(integral_[axis], i) + s * (x[i] - x[0] + 0.5 * slope * s);
+  double integral(int axis, const End& end) const {
+    const double* x = view_.position[axis] + end.interval;
+    return element(integral_[axis], end.interval) + end.since * (x[0] - view_.position[axis][0] + 0.5 * end.share * (x[1] - x[0]));
   }
 
   TrackView view_;
@@ -83,7 +91,9 @@ class LocationBlur {
       const double from = s.time - half, to = s.time + half;
       first = path.interval(first, from);
       last = path.interval(last, to);
-      for (int axis = 0; axis < 3; ++axis) s.position[axis] = path.mean(axis, first, from, last, to);
+      const Path::End begin = path.end_at(first, from), end = path.end_at(last, to);
+      const double per_second = 1.0 / (to - from);
+      for (int axis = 0; axis < 3; ++axis) s.position[axis] = path.mean(axis, begin, end, per_second);
     }
     return out;
   }

@@ -40,10 +40,11 @@ class Noise {
     for (std::size_t i = 0; i < track.size(); ++i) {
       TrackSample& s = track[i];
       const double kept = i > 0 && time_ > 0.0 ? std::exp((track[i - 1].time - s.time) / time_) : 0.0;
+      const double fresh = std::sqrt(1.0 - kept * kept);
       const double factor = 1.0 + growth_ * middle_.distance(s.position, context);
       for (int axis = 0; axis < 3; ++axis) {
-        const double a = random.normal();
-        if (i > 0) c[axis] = kept * c[axis] + std::sqrt(1.0 - kept * kept) * random.normal();
+        const auto [a, b] = random.normals();
+        if (i > 0) c[axis] = kept * c[axis] + fresh * b;
         s.position[axis] += factor * (white_[axis] * a + correlated_[axis] * c[axis]);
       }
     }

@@ -34,9 +34,9 @@ double total_duration(const SumTable& table) {
   return sum;
 }
 
-double block_length(const BlockRule& rule, double wished, double total) {
-  return std::max(
-      {rule.least, wished, total / static_cast<double>(kWantedBlocks), std::min(rule.wished, total / static_cast<double>(kSpeedBlocks))});
+double block_length(const BlockLengths& lengths, double wished, double total) {
+  return std::max({lengths.least, wished, total / static_cast<double>(kWantedBlocks),
+                   std::min(lengths.wished, total / static_cast<double>(kSpeedBlocks))});
 }
 
 /// Sums of the blocks and the rule that cut them.
@@ -48,13 +48,15 @@ struct Blocks {
 
 Blocks gather(FrameSource& source, const std::vector<AnalyzerInstance>& instances, const SumLayout& layout, const EngineOptions& options) {
   const bool one_bead = (source.context().has & kHasAllBeads) == 0;
-  if (options.progress) options.progress("surveying", 0);
   Blocks blocks;
-  blocks.series = source.survey();
-  double total = 0;
-  for (const BasicSeries& s : blocks.series) total += s.duration();
-  blocks.rule = block_rule(blocks.series, one_bead);
-  const double length = block_length(blocks.rule, options.block, total);
+  if (options.known) {
+    blocks.rule.lengths = *options.known;
+  } else {
+    if (options.progress) options.progress("surveying", 0);
+    blocks.series = source.survey();
+    blocks.rule = block_rule(blocks.series, one_bead);
+  }
+  const double length = block_length(blocks.rule.lengths, options.block, source.duration());
   source.cut(length, most_chunks(layout));
   const std::size_t workers = base::worker_count(options.threads, source.chunk_count());
   blocks.table = merge_blocks(sum_chunks(source, instances, layout, workers, options.progress), length);
@@ -196,7 +198,7 @@ std::vector<std::string> notes_on(const ResultMeta& meta, const BlockRule& rule,
   std::vector<std::string> notes;
   const std::size_t blocks = meta.blocks.size();
   if (blocks < 10) {
-    const double least = std::max(rule.least, meta.block_duration);
+    const double least = std::max(rule.lengths.least, meta.block_duration);
     notes.push_back(fmt::format(
         "only {} block{} of at least three autocorrelation times in {:.3g} s: {}; about {:.3g} s would give 10 blocks", blocks,
         blocks == 1 ? "" : "s", total, blocks < 2 ? "no uncertainty can be given" : "the intervals cannot be relied on", 10 * least));
@@ -228,6 +230,7 @@ ResultSet run_analyzers(FrameSource& source, const std::vector<AnalyzerInstance>
   results.meta.seed = options.seed;
   results.meta.draws = static_cast<std::uint32_t>(options.draws);
   results.meta.blocks = blocks.table.spans;
+  results.meta.lengths = blocks.rule.lengths;
   results.meta.times = blocks.rule.times;
   const double total = total_duration(blocks.table);
   const std::size_t count = blocks.table.rows.size();
@@ -236,7 +239,7 @@ ResultSet run_analyzers(FrameSource& source, const std::vector<AnalyzerInstance>
   for (std::string& note : notes_on(results.meta, blocks.rule, total)) results.meta.notes.push_back(std::move(note));
 
   const std::vector<std::uint32_t> counts = draw_counts(count, options.draws, options.seed);
-  for (std::size_t k = 0; k < kBasics && !options.uncertain; ++k)
+  for (std::size_t k = 0; k < results.meta.times.size() && !options.uncertain; ++k)
     results.meta.times[k].independent = independent_values(blocks.series, k, results.meta.blocks, counts);
   const Resampling resampling{blocks.table.rows, counts, options.draws};
   const std::vector<std::uint8_t> follows = followers(blocks.table.spans);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct EngineOptions {
   std::uint64_t seed = 1;
   std::size_t draws = 200;
   double block = 0;                                                  ///< s: least length of a block; 0: three autocorrelation times
+  std::optional<BlockLengths> known = std::nullopt;                  ///< of the data that these are compared with; absent: from the data
   int threads = 0;                                                   ///< 0: all cores; no influence on results
   std::function<void(const char* doing, double fraction)> progress;  ///< may be empty; called from one thread at a time
   /// Results whose uncertainty is read: the others get values alone, and there is no joint covariance. Empty: all have one.

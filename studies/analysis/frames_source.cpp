@@ -130,6 +130,8 @@ void FramesSource::want(std::uint64_t fields) {
   if ((fields & kHasSpin) == 0) context_.has &= ~static_cast<std::uint64_t>(kHasSpin);
 }
 
+double FramesSource::duration() const { return std::accumulate(share_.begin(), share_.end(), 0.0); }
+
 void FramesSource::cut(double duration, std::size_t most) {
   const std::size_t frames = end_ - begin_, bytes = 13 * sizeof(double) * reader_.beads().size();
   const double span = share_[begin_] * static_cast<double>(frames);

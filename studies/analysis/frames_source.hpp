@@ -20,6 +20,7 @@ class FramesSource : public FrameSource {
   std::unique_ptr<Scratch> make_scratch() const override;
   const FrameBlock& load(std::size_t chunk, Scratch& scratch) const override;
   std::string description() const override;
+  double duration() const override;
   void cut(double duration, std::size_t most) override;
   std::vector<BasicSeries> survey() const override;
   void want(std::uint64_t fields) override;

@@ -76,6 +76,13 @@ struct ResultBlock {
   std::uint32_t stretch;  ///< run or bead
 };
 
+/// How long a block must be, s, from how fast a charge forgets (times.hpp).
+struct BlockLengths {
+  double least = 0;   ///< three autocorrelation times of x, y and radius, and of one bead two circulations
+  double wished = 0;  ///< three of the speed, which a bead's loop carries on over circulations: as far as enough blocks remain
+  bool operator==(const BlockLengths&) const = default;
+};
+
 struct ResultMeta {
   std::string source;       ///< "simulation", "tracks" or "recording"
   std::string description;  ///< file, beads, seconds
@@ -87,7 +94,8 @@ struct ResultMeta {
   double confidence = 0.9;
   double block_duration = 0;  ///< s, mean
   std::vector<ResultBlock> blocks;
-  std::vector<ObservableTime> times;
+  BlockLengths lengths;
+  std::vector<ObservableTime> times;  ///< empty where the lengths were known beforehand
   std::vector<ResultFile> inputs;
   nlohmann::ordered_json runs;        ///< of a recording: name, file, format, rows and what was set aside by which rule; else null
   nlohmann::ordered_json provenance;  ///< version, command line, plugins, options of every analyzer

@@ -31,10 +31,12 @@ class FrameSource {
   virtual std::unique_ptr<Scratch> make_scratch() const = 0;
   virtual const FrameBlock& load(std::size_t chunk, Scratch& scratch) const = 0;
   virtual std::string description() const = 0;  ///< for reports: file, beads, seconds
+  virtual double duration() const = 0;          ///< s, of all stretches together
   /// What a reader of the results must know, one sentence each.
   virtual std::vector<std::string> notes() const { return {}; }
 
-  /// Cuts each stretch into even chunks of at least `duration` (s) each, at most about `most` chunks in all. Ids of chunks change.
+  /// Before anything is loaded: cuts each stretch into even chunks of at least `duration` (s) each, at most about `most` chunks in all. Ids
+  /// of chunks change.
   virtual void cut(double duration, std::size_t most) = 0;
   /// A first look at the motion, one series per stretch, from which the length of blocks follows. Cheap beside loading everything.
   virtual std::vector<BasicSeries> survey() const = 0;

@@ -156,7 +156,8 @@ BasicSeries basics_of(const FrameBlock& block) {
   BasicSeries series;
   for (std::int64_t f = 0; f < block.frame_count; ++f) {
     const std::int64_t begin = block.first[f], end = block.first[f + 1];
-    double weight = 0, sums[kBasics] = {};
+    double weight = 0;
+    Basics sums{};
     for (std::int64_t s = begin; s < end; ++s) {
       const double w = block.weight[s], x = block.position[0][s], y = block.position[1][s];
       weight += w;
@@ -169,9 +170,8 @@ BasicSeries basics_of(const FrameBlock& block) {
       sums[4] += w * std::sqrt(u * u + v * v + z * z);
     }
     if (!(weight > 0)) continue;
-    series.time.push_back(block.time[f]);
-    series.weight.push_back(weight / static_cast<double>(end - begin));
-    for (std::size_t k = 0; k < kBasics; ++k) series.value[k].push_back(sums[k] / weight);
+    for (double& sum : sums) sum /= weight;
+    series.add(block.time[f], weight / static_cast<double>(end - begin), sums);
   }
   return series;
 }
@@ -259,11 +259,11 @@ BlockRule block_rule(const std::vector<BasicSeries>& stretches, bool one_bead) {
     const double time = autocorrelation_time(even);
     const bool sets = k < 3;  // x, y, radius
     rule.times.push_back({kBasicNames[k], time, span / (2 * time), sets, kNaN});
-    if (sets && !std::isnan(time)) rule.least = std::max(rule.least, 3 * time);
-    if (std::string(kBasicNames[k]) == "speed" && !std::isnan(time)) rule.wished = 3 * time;
+    if (sets && !std::isnan(time)) rule.lengths.least = std::max(rule.lengths.least, 3 * time);
+    if (std::string(kBasicNames[k]) == "speed" && !std::isnan(time)) rule.lengths.wished = 3 * time;
     if (k == 0 && one_bead) rule.circulation = circulation_time(even);
   }
-  rule.least = std::max(rule.least, 2 * rule.circulation);
+  rule.lengths.least = std::max(rule.lengths.least, 2 * rule.circulation);
   return rule;
 }
 

@@ -13,11 +13,18 @@ namespace millscope::analysis {
 inline constexpr std::size_t kBasics = 5;
 inline constexpr std::array<const char*, kBasics> kBasicNames{"x", "y", "radius", "z", "speed"};
 
+using Basics = std::array<double, kBasics>;
+
 /// Means over the samples of each frame (one bead: the bead itself), in time order within a stretch.
 struct BasicSeries {
   std::vector<double> time;    ///< s
   std::vector<double> weight;  ///< s that the frame stands for
   std::array<std::vector<double>, kBasics> value;
+  void add(double time_of_frame, double weight_of_frame, const Basics& means) {
+    time.push_back(time_of_frame);
+    weight.push_back(weight_of_frame);
+    for (std::size_t k = 0; k < kBasics; ++k) value[k].push_back(means[k]);
+  }
   std::size_t size() const { return time.size(); }
   void append(const BasicSeries& other);
   double duration() const;  ///< s, sum of the weights
@@ -54,8 +61,7 @@ double circulation_time(const EvenSeries& series);
 /// What the series say of the blocks.
 struct BlockRule {
   std::vector<ObservableTime> times;
-  double least = 0;        ///< s: three autocorrelation times of x, y and radius, and of one bead two circulations
-  double wished = 0;       ///< s: three of the speed, which a bead's loop carries on over circulations: as far as enough blocks remain
+  BlockLengths lengths;
   double circulation = 0;  ///< s; 0: unknown or many beads
 };
 /// `one_bead`: the series follow a single bead, so that circulations are seen.

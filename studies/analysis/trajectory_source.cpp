@@ -31,6 +31,12 @@ std::size_t parts_of(double own, double total, double duration, std::size_t most
   return static_cast<std::size_t>(std::max(1.0, std::min(fair, fit)));
 }
 
+Basics sample_of(const trajectory::Piece& piece, std::size_t k) {
+  const double x = piece.position[0][k], y = piece.position[1][k], u = piece.velocity[0][k], v = piece.velocity[1][k],
+               w = piece.velocity[2][k];
+  return {x, y, std::sqrt(x * x + y * y), piece.position[2][k], std::sqrt(u * u + v * v + w * w)};
+}
+
 double mass_of(const trajectory::Trajectory& t) { return t.density * std::numbers::pi / 6 * t.diameter * t.diameter * t.diameter; }
 
 }  // namespace
@@ -83,7 +89,6 @@ TrajectorySource::TrajectorySource(std::vector<trajectory::Trajectory> trajector
       context_.end = std::max(context_.end, piece.start + static_cast<double>(piece.size() - 1) * piece.step);
     }
   }
-  cut(0, 1);
 }
 
 TrajectorySource::~TrajectorySource() = default;
@@ -110,11 +115,24 @@ void TrajectorySource::tell_trimmed() {
 }
 
 std::size_t TrajectorySource::stretch(std::size_t chunk) const { return chunks_.at(chunk).stretch; }
+
+double TrajectorySource::duration() const {
+  double sum = 0;
+  for (const trajectory::Trajectory& t : trajectories_) sum += covered(t);
+  return sum;
+}
+
 std::vector<BasicSeries> TrajectorySource::survey() const {
-  std::vector<BasicSeries> series(trajectories_.size());
-  const auto scratch = make_scratch();
-  for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk) series[chunks_[chunk].stretch].append(basics_of(load(chunk, *scratch)));
-  return series;
+  std::vector<BasicSeries> all;
+  for (const trajectory::Trajectory& t : trajectories_) {
+    BasicSeries& series = all.emplace_back();
+    for (const trajectory::Piece& piece : t.pieces) {
+      for (std::size_t k = 0; k < piece.size(); ++k) {
+        if (piece.weight[k] > 0) series.add(piece.start + static_cast<double>(k) * piece.step, piece.weight[k], sample_of(piece, k));
+      }
+    }
+  }
+  return all;
 }
 
 std::unique_ptr<FrameSource::Scratch> TrajectorySource::make_scratch() const { return std::make_unique<TrajectoryScratch>(); }

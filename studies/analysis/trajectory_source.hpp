@@ -28,6 +28,7 @@ class TrajectorySource : public FrameSource {
   const FrameBlock& load(std::size_t chunk, Scratch& scratch) const override;
   std::string description() const override { return description_; }
   std::vector<std::string> notes() const override { return notes_; }
+  double duration() const override;
   void cut(double duration, std::size_t most) override;
   std::vector<BasicSeries> survey() const override;
   void want(std::uint64_t) override {}

@@ -77,8 +77,7 @@ BeadPaths::BeadPaths(const std::filesystem::path& run, int beads, const AxialPla
   if (c.has_tracers()) lever_ratio_ = lever_ratio(reader.beads(), c, sum_x);
 }
 
-output::TrackSamples BeadPaths::path(std::size_t i) const {
-  output::TrackSamples track;
+output::TrackSamples BeadPaths::path(std::size_t i, double step) const {
   const auto at = [&](const std::vector<float>& values, std::size_t frame, std::size_t axis) {
     return static_cast<double>(values[(frame * ids_.size() + i) * 3 + axis]);
   };
@@ -87,18 +86,22 @@ output::TrackSamples BeadPaths::path(std::size_t i) const {
     const double room = place_.high - place_.low - mill_.period;
     shift = place_.low - mill_.context.mill_low + room * (static_cast<double>(i) + 0.5) / static_cast<double>(ids_.size());
   }
+  output::TrackSamples track;
+  const auto points = static_cast<std::size_t>((time_.back() - time_.front()) / step * 1.1) + time_.size();
+  track.time.reserve(points);
+  for (auto& values : track.position) values.reserve(points);
   for (std::size_t f = 0; f + 1 < time_.size(); ++f) {
     const double h = time_[f + 1] - time_[f];
-    const int parts = std::max(1, static_cast<int>(std::lround(h / kPathStep)));
+    const int parts = std::max(1, static_cast<int>(std::ceil(h / step - 0.01)));
     const double jump = mill_.period > 0 ? mill_.period * std::round((at(position_, f + 1, 2) - at(position_, f, 2)) / mill_.period) : 0.0;
-    for (int k = 0; k < parts; ++k) {
-      const double s = static_cast<double>(k) / parts, s2 = s * s, s3 = s2 * s;
-      track.time.push_back(time_[f] + s * h);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double end = at(position_, f + 1, axis) - (axis == 2 ? jump : 0.0);
-        const double place = (2 * s3 - 3 * s2 + 1) * at(position_, f, axis) + (3 * s2 - 2 * s3) * end +
-                             h * ((s3 - 2 * s2 + s) * at(velocity_, f, axis) + (s3 - s2) * at(velocity_, f + 1, axis));
-        track.position[axis].push_back(place + (axis == 2 ? shift : 0.0));
+    for (int k = 0; k < parts; ++k) track.time.push_back(time_[f] + k * h / parts);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double from = at(position_, f, axis) + (axis == 2 ? shift : 0.0),
+                   to = at(position_, f + 1, axis) + (axis == 2 ? shift - jump : 0.0);
+      const double way = to - from, begin = h * at(velocity_, f, axis), end = h * at(velocity_, f + 1, axis);
+      for (int k = 0; k < parts; ++k) {
+        const double s = static_cast<double>(k) / parts;
+        track.position[axis].push_back(from + s * (begin + s * (3 * way - 2 * begin - end + s * (begin + end - 2 * way))));
       }
     }
     shift -= jump;

@@ -16,7 +16,6 @@
 namespace millscope::calibrate {
 
 inline constexpr double kFrameStep = 0.005;  ///< s, between the frames that a calibration asks for
-inline constexpr double kPathStep = 0.0005;  ///< s, between the points of a path
 
 /// Where a recorded bead was along the axis, and the rig's middle, m.
 struct AxialPlace {
@@ -39,7 +38,8 @@ class BeadPaths {
   double power_ratio() const { return lever_ratio_; }
   double seconds() const { return time_.back() - time_.front(); }  ///< of each path
 
-  output::TrackSamples path(std::size_t i) const;
+  /// With points at most about `step` s apart: straight lines between them are off by at most a h²/8.
+  output::TrackSamples path(std::size_t i, double step) const;
   TrackContext context(std::size_t i, std::uint64_t seed) const;
 
  private:

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/base/parallel.hpp"
@@ -53,14 +54,25 @@ std::uint64_t camera_seed(const std::string& key) { return std::stoull(hash_of({
 struct Film {
   camera::Camera camera;
   std::uint64_t seed = 0;
-  double gap_limit = 0;  ///< s, by which it is cleaned
+  const Smoothing& smoothing;  ///< by which it is cleaned
 };
 
-/// What the camera makes of the beads, as it would be read from files and cleaned by the recording's own gap limit.
+/// s between the points of a path: a quarter of what the camera takes for a location, or from one to the next; from 0.5 to 1.25 ms. At the
+/// longest, straight lines between them are off by 2 µm at 10 m/s² and by 80 µm in an impact.
+double path_step(const camera::Camera& camera, double interval) {
+  double shortest = interval;
+  for (const camera::CameraLink& link : camera.links()) {
+    if (link.window > 0) shortest = std::min(shortest, link.window);
+  }
+  return std::clamp(shortest / 4, 0.5e-3, 1.25e-3);
+}
+
+/// What the camera makes of the beads, as it would be read from files and cleaned by the recording's own rules.
 recording::Recording film(const BeadPaths& paths, const Film& how, int threads) {
   std::vector<recording::Run> seen(paths.size());
+  const double step = path_step(how.camera, how.smoothing.interval);
   base::for_each_item(paths.size(), base::worker_count(threads, paths.size()), [&](std::size_t i, std::size_t) {
-    const recording::Run run = camera::observe(paths.path(i), how.camera, paths.context(i, how.seed));
+    const recording::Run run = camera::observe(paths.path(i, step), how.camera, paths.context(i, how.seed));
     if (run.size() >= kLeastPoints) seen[i] = camera::as_written(run);
   });
   recording::Recording recording;
@@ -75,7 +87,8 @@ recording::Recording film(const BeadPaths& paths, const Film& how, int threads) 
     throw UserError(fmt::format("{}: the camera saw none of the beads for long enough; loosen it", paths.case_file().string()));
   recording.condition = condition_of(paths);
   recording.frame = recording::MillFrame{};
-  recording.gap_limit = how.gap_limit;
+  recording.gap_limit = how.smoothing.gap_limit;
+  recording.travel = how.smoothing.travel;
   return recording::clean_recording(std::move(recording));
 }
 
@@ -109,7 +122,7 @@ struct Observer::Impl {
     const std::string name = "camera of condition '" + how.study.conditions[condition].name + "'";
     const camera::Camera first = look.camera.empty() ? camera::Camera() : camera::parse_camera(look.camera, name, how.registry);
     const recording::Recording recording =
-        film(paths, {first.before(camera[condition]), camera_seed(look.run.key), r.smoothing.gap_limit}, how.threads);
+        film(paths, {first.before(camera[condition]), camera_seed(look.run.key), r.smoothing}, how.threads);
     const analysis::ResultSet results =
         process({recording, analysis::stated_mill(recording, paths.mill()), Side::simulated}, r.smoothing, processing);
     std::vector<std::string> done;

@@ -7,6 +7,7 @@
 #include "studies/analysis/engine.hpp"
 #include "studies/analysis/follow.hpp"
 #include "studies/calibrate/summaries.hpp"
+#include "studies/recording/clean.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
 namespace millscope::calibrate {
@@ -29,7 +30,8 @@ std::string used_analyzers(const Study& study) {
 
 Smoothing smoothing_of(const recording::Recording& recording) {
   const trajectory::NoiseEstimate noise = trajectory::estimate_noise_model(recording.runs, recording.gap_limit);
-  return {noise.standard_deviation, noise.correlation, recording.gap_limit};
+  return {
+      noise.standard_deviation, noise.correlation, recording.gap_limit, recording::median_interval(recording.runs), recording.travel, {}};
 }
 
 trajectory::TrajectoryOptions trajectory_options(Side side, const Smoothing& smoothing, const Observing& observing) {
@@ -38,6 +40,7 @@ trajectory::TrajectoryOptions trajectory_options(Side side, const Smoothing& smo
   options.gap_limit = smoothing.gap_limit;
   options.noise = smoothing.noise;
   options.noise_correlation = smoothing.noise_correlation;
+  options.travel = smoothing.travel;
   if (side == Side::simulated && observing.camera == "exact") options.noise = {}, options.noise_correlation.reset();
   if (side == Side::recorded && observing.z_low) options.low = *observing.z_low, options.high = *observing.z_high;
   return options;
@@ -56,6 +59,7 @@ analysis::ResultSet process(const Tracks& tracks, const Smoothing& smoothing, co
   analysis::FrameSource& source = *followed.source;
   analysis::EngineOptions engine;
   engine.draws = how.study.observing.draws;
+  if (tracks.side == Side::simulated) engine.known = smoothing.blocks;
   engine.threads = how.threads;
   if (!how.all_uncertain)
     engine.uncertain = [&](const std::string& analyzer, const std::string& result) {

@@ -15,14 +15,18 @@
 
 namespace millscope::calibrate {
 
-/// What a recording says of its tracks' noise and gaps. It decides how each track of its condition is smoothed, also a simulated bead's.
+/// What a recording says of its tracks. It decides how each track of its condition is cleaned, smoothed and cut into blocks, also a
+/// simulated bead's.
 struct Smoothing {
   std::array<double, 3> noise{};  ///< standard deviation of each component of a point, m
   double noise_correlation = 0;   ///< from one point to the next
   double gap_limit = 0;           ///< s
+  double interval = 0;            ///< s, from one point to the next, median
+  recording::Travel travel;       ///< what a bead can do
+  analysis::BlockLengths blocks;  ///< by what it forgets
   bool operator==(const Smoothing&) const = default;
 };
-Smoothing smoothing_of(const recording::Recording& recording);
+Smoothing smoothing_of(const recording::Recording& recording);  ///< but for the blocks, which come from its results
 
 /// Which side of the comparison a track is on.
 enum class Side { recorded, simulated };

@@ -72,6 +72,7 @@ RecordedCondition look(const Recorded& recorded, std::size_t condition, const Pr
   r.camera = camera.text;
   r.smoothing = smoothing_of(recording);
   const analysis::ResultSet results = results_of_recording(recorded, r, how);
+  r.smoothing.blocks = results.meta.lengths;
   r.place = place_of(recording, observing);
   r.omega = results.meta.context.omega;
   r.measured_power = recording.condition.power.has_value();

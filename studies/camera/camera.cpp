@@ -80,7 +80,8 @@ CameraLink make_link(const Node& node, const std::string& name, const host::Regi
   const Node kind = node.at("kind", "the name of an observation plugin, e.g. noise");
   const host::Loaded& plugin = registry.find(Kind::observation, kind.text(), kind.where());
   const config::ResolvedValues values = config::resolve(*plugin.descriptor, node, Scope::instance);
-  return {name, host::ObservationObject::create(plugin, values.view(), node.where())};
+  const double window = kind.text() == "location_blur" ? Parameters(values.view()).number("window") : 0.0;
+  return {name, host::ObservationObject::create(plugin, values.view(), node.where()), window};
 }
 
 Camera camera_of(const Node& root, const host::Registry& registry) {

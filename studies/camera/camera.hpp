@@ -28,6 +28,7 @@ namespace millscope::camera {
 struct CameraLink {
   std::string name;
   host::ObservationObject plugin;
+  double window = 0;  ///< s, in which the path must have several points; 0: any path will do
 };
 
 /// A chain of observations; copies share the plugins' objects. May be used by many threads at once.

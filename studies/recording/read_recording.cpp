@@ -156,13 +156,13 @@ void refuse_few(const Recording& recording) {
 
 void clean(Recording& recording) {
   const Extent extent = measure_extent(recording.runs);
-  const Travel travel = measure_travel(recording.runs, recording.gap_limit);
+  if (!(recording.travel.speed > 0)) recording.travel = measure_travel(recording.runs, recording.gap_limit);
   std::array<std::array<double, 2>, 3> range{};
   for (std::size_t axis = 0; axis < 3; ++axis) range[axis] = reach_of(axis, extent, recording);
   for (Run& run : recording.runs) {
     if (run.format != kTracks) {  // those of a tracks.h5 are simulated, or were judged when they were read first
       drop_outside(run, range);
-      drop_outliers(run, travel);
+      drop_outliers(run, recording.travel);
     }
     count_gaps(run, recording.gap_limit);
   }

@@ -82,12 +82,23 @@ struct MillFrame {
   double low = 0, high = 0;          ///< inner end faces along z, m; equal: unknown
 };
 
+/// What a bead in these runs can do: one and a half times the speed of a fall across the mill, or of the 95th percentile of the measured
+/// speeds and a half where that is more.
+struct Travel {
+  double speed = 0;  ///< m/s
+  double noise = 0;  ///< m, of a component
+  /// Whether it can get from point i to the later point j. The noise of two points in three components is allowed for sevenfold.
+  bool possible(const Run& run, std::size_t i, std::size_t j) const;  // travel.cpp
+  bool operator==(const Travel&) const = default;
+};
+
 struct Recording {
   std::filesystem::path file;
   std::vector<Run> runs;  ///< at least one, each with at least one point
   Condition condition;
   std::optional<MillFrame> frame;
   double gap_limit = 0;  ///< s: a longer pause between two points is a gap (`gap_limit:` of recording.yaml, else from the data)
+  Travel travel;         ///< by which it was cleaned
 };
 
 /// Reads and cleans (docs/recordings.md says by which rules). Throws base::UserError with file:line, value, reason and remedy; a file
@@ -95,8 +106,8 @@ struct Recording {
 Recording read_recording(const std::filesystem::path& file);
 
 /// Points that no file holds, e.g. of a virtual camera, cleaned by the same rules: `given` has its file's name for messages, runs in the
-/// order of their rows, condition and frame; gap_limit 0: from the data. Units, which no file states, are not doubted. Throws as
-/// read_recording.
+/// order of their rows, condition and frame; gap_limit 0 and travel of no speed: from the data. Units, which no file states, are not
+/// doubted. Throws as read_recording.
 Recording clean_recording(Recording given);
 
 /// Writes the points in the layout of tracks.h5 (docs/format.md), one track per run; whole or not at all. What that layout has no place for

@@ -23,14 +23,6 @@ double speed_quantile(std::span<const Run> runs, double fraction);
 /// √(2 g D): the speed of a fall across the mill, m/s.
 double fall_speed(double diameter);
 
-/// What a bead in these runs can do: one and a half times the speed of a fall across the mill, or of the 95th percentile of the measured
-/// speeds and a half where that is more.
-struct Travel {
-  double speed = 0;  ///< m/s
-  double noise = 0;  ///< m, of a component
-  /// Whether it can get from point i to the later point j. The noise of two points in three components is allowed for sevenfold.
-  bool possible(const Run& run, std::size_t i, std::size_t j) const;
-};
 Travel measure_travel(std::span<const Run> runs, double gap_limit);
 
 }  // namespace millscope::recording

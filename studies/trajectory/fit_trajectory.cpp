@@ -142,7 +142,10 @@ Points points_of(const recording::Run& run, const Span& span) {
 }
 
 std::vector<Span> unbroken(const recording::Run& run, double gap_limit) {
-  recording::Travel travel = recording::measure_travel({&run, 1}, gap_limit);
+  return unbroken(run, gap_limit, recording::measure_travel({&run, 1}, gap_limit));
+}
+
+std::vector<Span> unbroken(const recording::Run& run, double gap_limit, recording::Travel travel) {
   travel.speed *= 2;  // outliers are gone; what is left over this is a jump, e.g. across a periodic boundary
   std::vector<Span> spans;
   for (std::size_t i = 0; i < run.size(); ++i) {
@@ -161,7 +164,8 @@ Trajectory fit_trajectory(const recording::Run& run, const TrajectoryOptions& op
   trajectory.span = run.size() > 0 ? run.time.back() - run.time.front() : 0;
   set_noise(moved, options, trajectory);
   std::vector<Span> spans;
-  for (const Span& span : unbroken(moved, options.gap_limit)) {
+  const std::vector<Span> all = options.travel ? unbroken(moved, options.gap_limit, *options.travel) : unbroken(moved, options.gap_limit);
+  for (const Span& span : all) {
     const bool enough = span.size() >= static_cast<std::size_t>(std::max(options.least_points, 3));
     if (enough) spans.push_back(span);
     if (!enough) trajectory.points_left_out += span.size();

@@ -16,6 +16,8 @@ struct Span {
 };
 
 /// Every point is in exactly one span.
+std::vector<Span> unbroken(const recording::Run& run, double gap_limit, recording::Travel travel);
+/// With the travel of the run itself.
 std::vector<Span> unbroken(const recording::Run& run, double gap_limit);
 
 /// The points of one span: x, y, z at `count` times.

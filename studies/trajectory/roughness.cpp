@@ -6,7 +6,9 @@
 //   m ← (1 + Σ m·found) / (1 + Σ expected)
 // Two rounds do nearly all of it.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "kernel/base/statistics.hpp"
 #include "studies/trajectory/pieces.hpp"
@@ -52,6 +54,52 @@ void spread(const std::vector<double>& decay, std::vector<double>& values) {
   }
 }
 
+/// The least cost over log q, from a bead at rest to one that is thrown about at 10 m/s every millisecond: three values a step apart move
+/// on until the middle one is the least, and the parabola through them has its vertex there; the same once more with a fine step.
+class Search {
+ public:
+  bool done() const { return done_; }
+  /// Where the cost is asked for; of a search that is done, what it found.
+  double next() const { return done_ ? middle_ : middle_ + offset(missing()) * step_; }
+  void take(double cost) {
+    if (done_) return;
+    cost_[missing()] = cost;
+    if (missing() == kPoints) judge();
+  }
+
+ private:
+  static constexpr double kCoarse = 3, kFine = 0.5;
+  static constexpr std::size_t kPoints = 3;
+  static double offset(std::size_t point) { return static_cast<double>(point) - 1; }
+  std::size_t missing() const {
+    std::size_t k = 0;
+    while (k < kPoints && cost_[k]) ++k;
+    return k;
+  }
+
+  void judge() {
+    const double before = *cost_[0], here = *cost_[1], behind = *cost_[2];
+    if (before < here || behind < here) {
+      const bool back = before < behind;
+      middle_ += back ? -step_ : step_;
+      cost_ = back ? Costs{std::nullopt, before, here} : Costs{here, behind, std::nullopt};
+      const double bottom = std::log(1e-8), top = std::log(1e5);
+      done_ = middle_ <= bottom || middle_ >= top;
+      return;
+    }
+    const double bend = before - 2 * here + behind;
+    if (bend > 0) middle_ += 0.5 * step_ * (before - behind) / bend;
+    done_ = step_ == kFine;
+    step_ = kFine;
+    cost_ = {};
+  }
+
+  using Costs = std::array<std::optional<double>, kPoints>;
+  double middle_ = 0, step_ = kCoarse;
+  Costs cost_;
+  bool done_ = false;
+};
+
 }  // namespace
 
 double median_interval(const Points& points) {
@@ -71,31 +119,12 @@ Lanes likely_roughness(const recording::Run& run, const std::vector<Span>& spans
     }
     return sum;
   };
-  // Golden section over log q, from a bead at rest to one that is thrown about at 10 m/s every millisecond.
-  constexpr double kGolden = 0.6180339887498949, kFinest = 0.05;
-  const double bottom = std::log(1e-8), top = std::log(1e5);
-  Lanes low{bottom, bottom, bottom}, high{top, top, top}, a, b;
-  a.fill(top - kGolden * (top - bottom)), b.fill(bottom + kGolden * (top - bottom));
-  Lanes cost_a = cost(a), cost_b = cost(b);
-  const auto searches = [&](std::size_t k) { return high[k] - low[k] > kFinest; };
-  while (searches(0) || searches(1) || searches(2)) {
-    Lanes next{};
-    std::array<bool, 3> below{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      below[k] = cost_a[k] < cost_b[k];
-      if (!searches(k)) next[k] = a[k];
-      if (!searches(k)) continue;
-      if (below[k])
-        high[k] = b[k], b[k] = a[k], cost_b[k] = cost_a[k], next[k] = a[k] = high[k] - kGolden * (high[k] - low[k]);
-      else
-        low[k] = a[k], a[k] = b[k], cost_a[k] = cost_b[k], next[k] = b[k] = low[k] + kGolden * (high[k] - low[k]);
-    }
-    const Lanes found = cost(next);
-    for (std::size_t k = 0; k < 3; ++k) (below[k] ? cost_a : cost_b)[k] = found[k];
+  std::array<Search, 3> search;
+  while (!search[0].done() || !search[1].done() || !search[2].done()) {
+    const Lanes found = cost({search[0].next(), search[1].next(), search[2].next()});
+    for (std::size_t k = 0; k < 3; ++k) search[k].take(found[k]);
   }
-  Lanes roughness;
-  for (std::size_t k = 0; k < 3; ++k) roughness[k] = std::exp((low[k] + high[k]) / 2);
-  return roughness;
+  return {std::exp(search[0].next()), std::exp(search[1].next()), std::exp(search[2].next())};
 }
 
 void smooth_adaptively(const Points& points, const Lanes& noise, const Lanes& roughness, Spline& spline) {

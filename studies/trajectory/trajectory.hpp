@@ -27,7 +27,8 @@ struct TrajectoryOptions {
   std::array<double, 3> noise{0, 0, 0};
   /// Correlation of the noise from one point to the next, 0 … 0.9; absent: estimated, also where `noise` is given.
   std::optional<double> noise_correlation = std::nullopt;
-  std::array<double, 2> axis{0, 0};  ///< subtracted from x and y, m
+  std::optional<recording::Travel> travel = std::nullopt;  ///< what parts two points that no bead joins; absent: measured from the run
+  std::array<double, 2> axis{0, 0};                        ///< subtracted from x and y, m
   double low = 0, high = 0;          ///< only samples with low ≤ z ≤ high are kept (end-face trimming), pieces end there; equal: all
   bool operator==(const TrajectoryOptions&) const = default;
 };

@@ -34,6 +34,7 @@ class MadeUp : public analysis::FrameSource {
   std::size_t stretch(std::size_t chunk) const override { return chunks_[chunk].stretch; }
   std::string description() const override { return "made up"; }
   void want(std::uint64_t) override {}
+  double duration() const override { return 0.01 * static_cast<double>(stretches_[0].x.size() + stretches_[1].x.size()); }
   std::unique_ptr<Scratch> make_scratch() const override { return std::make_unique<Buffers>(); }
 
   void cut(double duration, std::size_t most) override {

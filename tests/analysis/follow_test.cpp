@@ -45,7 +45,8 @@ trajectory::TrajectoryOptions steady() {
 }
 
 /// Every number of a source's blocks that the fits decide.
-std::vector<double> numbers(const analysis::FrameSource& source) {
+std::vector<double> numbers(analysis::FrameSource& source) {
+  source.cut(0, 1);
   std::vector<double> all;
   const auto scratch = source.make_scratch();
   for (std::size_t c = 0; c < source.chunk_count(); ++c) {

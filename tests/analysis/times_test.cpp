@@ -71,13 +71,13 @@ TEST_CASE("blocks are at least three transverse times and two circulations") {
   analysis::BasicSeries s = series_of(autoregressive(20000, 0.9, 8), step);
   s.value[3] = autoregressive(20000, 0.999, 9);  // z is slow and does not set the blocks
   const analysis::BlockRule many = analysis::block_rule({s}, false);
-  CHECK_THAT(many.least, WithinRel(3 * 0.095, 0.3));
+  CHECK_THAT(many.lengths.least, WithinRel(3 * 0.095, 0.3));
   REQUIRE(many.times.size() == 5);
   CHECK(many.times[3].name == "z");
   CHECK_FALSE(many.times[3].sets_the_block);
   CHECK(many.times[3].time > 3);
-  CHECK_THAT(many.wished, WithinRel(3 * 0.095, 0.3));
+  CHECK_THAT(many.lengths.wished, WithinRel(3 * 0.095, 0.3));
   CHECK_THAT(many.times[0].effective, WithinRel(200 / (2 * 0.095), 0.2));
   for (std::size_t i = 0; i < s.size(); ++i) s.value[0][i] = std::sin(s.time[i] * 2 * 3.14159265358979 / 5);
-  CHECK_THAT(analysis::block_rule({s}, true).least, WithinRel(10.0, 0.05));
+  CHECK_THAT(analysis::block_rule({s}, true).lengths.least, WithinRel(10.0, 0.05));
 }
