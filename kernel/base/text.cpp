@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "kernel/base/error.hpp"
@@ -17,7 +16,15 @@ std::optional<std::string> text_if_readable(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) return {};
   try {
-    return std::string{std::istreambuf_iterator<char>(in), {}};
+    std::string text;
+    for (std::size_t more = 1 << 16, size = 0;; more = text.size()) {  // in few calls: a library with symbols has many megabytes
+      text.resize(size + more);
+      const auto read = static_cast<std::size_t>(in.rdbuf()->sgetn(text.data() + size, static_cast<std::streamsize>(more)));
+      size += read;
+      if (read == more) continue;
+      text.resize(size);
+      return text;
+    }
   } catch (const std::ios_base::failure&) {  // a directory opens, and cannot be read
     return {};
   }
