@@ -8,6 +8,7 @@
 // The path between samples is straight, and its integral exact. Near the ends of the track the window shrinks
 // evenly on both sides. T = 0 leaves the track as it is. On a turning circle the radius shrinks by the factor sin(ωT/2)/(ωT/2).
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "camera_view.hpp"
@@ -27,18 +28,18 @@ constexpr Hypothesis kHypotheses[] = {
     {"location_blur", "The camera's location window smears the path.", "x'(t) = (1/T) int x(t+s) ds", kCitation, "window", 0.0, 0.0, 0.02},
 };
 
-/// The path and its integral from the first sample on, by straight lines.
+using Point = std::array<double, 3>;
+
+/// The path and its integral from the first sample on, by straight lines, relative to the first point: a long track must not lose digits.
 class Path {
  public:
-  explicit Path(const TrackView& view) : view_(view) {
-    for (int axis = 0; axis < 3; ++axis) {
-      std::vector<double>& sum = integral_[axis];
-      sum.assign(as_size(view.count), 0.0);
-      const double* x = view.position[axis];
-      for (std::int64_t i = 1; i < view.count; ++i) {
-        const auto at = as_size(i);
-        // Relative to the first point: a long track must not lose digits.
-        sum[at] = sum[at - 1] + (view.time[i] - view.time[i - 1]) * (0.5 * (x[i] + x[i - 1]) - x[0]);
+  explicit Path(const TrackView& view) : view_(view), integral_(as_size(view.count)), per_second_(as_size(view.count)) {
+    for (std::int64_t i = 1; i < view.count; ++i) {
+      const double h = view.time[i] - view.time[i - 1];
+      element(per_second_, i - 1) = 1.0 / h;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double* x = view.position[a];
+        element(integral_, i)[a] = element(integral_, i - 1)[a] + h * (0.5 * (x[i] + x[i - 1]) - x[0]);
       }
     }
   }
@@ -49,28 +50,21 @@ class Path {
     return i;
   }
 
-  /// Over the time from one end to the other.
-  struct End {
-    std::int64_t interval;  ///< in which it lies
-    double since;           ///< s, since that begins
-    double share;           ///< of the interval
-  };
-  End end_at(std::int64_t i, double t) const {
-    const double since = t - view_.time[i];
-    return {i, since, since / (view_.time[i + 1] - view_.time[i])};
-  }
-  double mean(int axis, const End& from, const End& to, double per_second) const {
-    return view_.position[axis][0] + (integral(axis, to) - integral(axis, from)) * per_second;
+  /// Up to `t`, which lies in interval `i`.
+  Point integral(std::int64_t i, double t) const {
+    const double s = t - view_.time[i], half_share = 0.5 * s * element(per_second_, i);
+    Point sum = element(integral_, i);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double* x = view_.position[a];
+      sum[a] += s * (x[i] - x[0] + half_share * (x[i + 1] - x[i]));
+    }
+    return sum;
   }
 
  private:
-  double integral(int axis, const End& end) const {
-    const double* x = view_.position[axis] + end.interval;
-    return element(integral_[axis], end.interval) + end.since * (x[0] - view_.position[axis][0] + 0.5 * end.share * (x[1] - x[0]));
-  }
-
-  TrackView view_;
-  std::vector<double> integral_[3];
+  const TrackView& view_;
+  std::vector<Point> integral_;
+  std::vector<double> per_second_;
 };
 
 class LocationBlur {
@@ -91,9 +85,9 @@ class LocationBlur {
       const double from = s.time - half, to = s.time + half;
       first = path.interval(first, from);
       last = path.interval(last, to);
-      const Path::End begin = path.end_at(first, from), end = path.end_at(last, to);
+      const Point before = path.integral(first, from), behind = path.integral(last, to);
       const double per_second = 1.0 / (to - from);
-      for (int axis = 0; axis < 3; ++axis) s.position[axis] = path.mean(axis, begin, end, per_second);
+      for (std::size_t a = 0; a < 3; ++a) s.position[a] = view.position[a][0] + per_second * (behind[a] - before[a]);
     }
     return out;
   }

@@ -94,14 +94,16 @@ output::TrackSamples BeadPaths::path(std::size_t i, double step) const {
     const double h = time_[f + 1] - time_[f];
     const int parts = std::max(1, static_cast<int>(std::ceil(h / step - 0.01)));
     const double jump = mill_.period > 0 ? mill_.period * std::round((at(position_, f + 1, 2) - at(position_, f, 2)) / mill_.period) : 0.0;
-    for (int k = 0; k < parts; ++k) track.time.push_back(time_[f] + k * h / parts);
+    const double part = 1.0 / parts;
+    for (int k = 0; k < parts; ++k) track.time.push_back(time_[f] + k * part * h);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double from = at(position_, f, axis) + (axis == 2 ? shift : 0.0),
                    to = at(position_, f + 1, axis) + (axis == 2 ? shift - jump : 0.0);
       const double way = to - from, begin = h * at(velocity_, f, axis), end = h * at(velocity_, f + 1, axis);
+      const double square = 3 * way - 2 * begin - end, cube = begin + end - 2 * way;
       for (int k = 0; k < parts; ++k) {
-        const double s = static_cast<double>(k) / parts;
-        track.position[axis].push_back(from + s * (begin + s * (3 * way - 2 * begin - end + s * (begin + end - 2 * way))));
+        const double s = k * part;
+        track.position[axis].push_back(from + s * (begin + s * (square + s * cube)));
       }
     }
     shift -= jump;

@@ -8,6 +8,7 @@
 #include "studies/analysis/follow.hpp"
 #include "studies/calibrate/summaries.hpp"
 #include "studies/recording/clean.hpp"
+#include "studies/recording/travel.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
 namespace millscope::calibrate {
@@ -30,8 +31,9 @@ std::string used_analyzers(const Study& study) {
 
 Smoothing smoothing_of(const recording::Recording& recording) {
   const trajectory::NoiseEstimate noise = trajectory::estimate_noise_model(recording.runs, recording.gap_limit);
-  return {
-      noise.standard_deviation, noise.correlation, recording.gap_limit, recording::median_interval(recording.runs), recording.travel, {}};
+  const bool cleaned = recording.travel.speed > 0;
+  const recording::Travel travel = cleaned ? recording.travel : recording::measure_travel(recording.runs, recording.gap_limit);
+  return {noise.standard_deviation, noise.correlation, recording.gap_limit, recording::median_interval(recording.runs), travel, {}};
 }
 
 trajectory::TrajectoryOptions trajectory_options(Side side, const Smoothing& smoothing, const Observing& observing) {

@@ -34,16 +34,20 @@ constexpr std::size_t kSeries = 5;  ///< the data and the powers 0 to 3 of time
 /// Sums over the innovations of the data (series 0) and of the functions that are removed from them.
 class Removal {
  public:
-  void add(const std::array<double, kSeries>& e, double variance) {
-    log_variance_ += std::log(variance);
+  void add(const std::array<double, kSeries>& e, double variance, double weight) {
+    product_ *= variance * kUsual;
+    if (!(product_ > 1e-100 && product_ < 1e100)) log_variance_ += std::log(product_), product_ = 1;  // one logarithm for many points
+    ++count_;
     for (std::size_t j = 0; j < kSeries; ++j) {
-      for (std::size_t k = 0; k <= j; ++k) sums_[j][k] += e[j] * e[k] / variance;
+      const double weighted = weight * e[j];
+      for (std::size_t k = 0; k <= j; ++k) sums_[j][k] += weighted * e[k];
     }
   }
 
   /// Restricted likelihood. Cholesky from the last function down to the data: the last pivot is what the functions leave of the data.
-  double log_likelihood(std::size_t count) {
-    double log_determinant = 0;
+  double log_likelihood() {
+    const double count = static_cast<double>(count_);
+    double log_determinant = std::log(product_) - count * std::log(kUsual);
     for (std::size_t pivot = kSeries - 1; pivot > 0; --pivot) {
       log_determinant += std::log(sums_[pivot][pivot]);
       for (std::size_t j = 0; j < pivot; ++j) {
@@ -51,13 +55,15 @@ class Removal {
         for (std::size_t k = 0; k <= j; ++k) sums_[j][k] -= share * sums_[pivot][k];
       }
     }
-    const double free = static_cast<double>(count) - static_cast<double>(kSeries - 1);
+    const double free = count - static_cast<double>(kSeries - 1);
     return -0.5 * (log_variance_ + log_determinant + sums_[0][0] + free * std::log(2 * std::numbers::pi));
   }
 
  private:
   std::array<std::array<double, kSeries>, kSeries> sums_{};  ///< lower triangle
-  double log_variance_ = 0;
+  static constexpr double kUsual = 1e6;                      // 1/m², of a location: keeps the product near 1
+  double log_variance_ = 0, product_ = 1;
+  std::size_t count_ = 0;
 };
 
 double averaged(const Rungs& relative, const Rungs& weight) {
@@ -111,17 +117,16 @@ double stretch_likelihood(const Stretch& s, std::size_t axis, const Steps& steps
     const double ux = p.xx + f * p.xc, uv = p.xv + f * p.vc, uc = p.xc + f * p.cc;
     const double variance = ux + f * uc + f * f * noise.white * noise.white, t = s.time[i] / half - 1;
     const std::array<double, kSeries> data{s.value[axis][i] - s.value[axis][0], 1.0, t, t * t, t * t * t};
+    const double weight = 1 / variance, gain_x = ux * weight, gain_v = uv * weight, gain_c = uc * weight;
     std::array<double, kSeries> e;
     for (std::size_t k = 0; k < kSeries; ++k) {
       e[k] = data[k] - state[k][0] - f * state[k][2];
-      const double gain = e[k] / variance;
-      state[k] = {state[k][0] + ux * gain, state[k][1] + uv * gain, state[k][2] + uc * gain};
+      state[k] = {state[k][0] + gain_x * e[k], state[k][1] + gain_v * e[k], state[k][2] + gain_c * e[k]};
     }
-    p = {p.xx - ux * ux / variance, p.xv - ux * uv / variance, p.xc - ux * uc / variance,
-         p.vv - uv * uv / variance, p.vc - uv * uc / variance, p.cc - uc * uc / variance};
-    removal.add(e, variance);
+    p = {p.xx - gain_x * ux, p.xv - gain_x * uv, p.xc - gain_x * uc, p.vv - gain_v * uv, p.vc - gain_v * uc, p.cc - gain_c * uc};
+    removal.add(e, variance, weight);
   }
-  return removal.log_likelihood(s.time.size());
+  return removal.log_likelihood();
 }
 
 Rungs rung_likelihoods(const Stretch& s, std::size_t axis, const Steps& steps, const NoiseStrength& noise) {

@@ -36,11 +36,9 @@ Piece part_of(const Piece& whole, std::size_t first, std::size_t last) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     part.position[axis] = cut(whole.position[axis]);
     part.velocity[axis] = cut(whole.velocity[axis]);
-    part.acceleration[axis] = cut(whole.acceleration[axis]);
   }
   part.position_variance = cut(whole.position_variance);
   part.velocity_variance = cut(whole.velocity_variance);
-  part.acceleration_variance = cut(whole.acceleration_variance);
   part.weight = cut(whole.weight);
   return part;
 }

@@ -70,10 +70,16 @@ struct Evidence {
   double found = 0, expected = 0;
 };
 
-/// Cubic smoothing splines: the mean of an integrated random walk of velocity seen with white noise, of strength `roughness` (m²/s³) times
-/// the factor of the interval. (Wahba 1978: the smoothing spline with penalty noise²/roughness.) Variances are those of the posterior.
-void smooth(const Points& points, const Lanes& noise, const Lanes& roughness, const std::vector<double>& factor, Spline& spline,
-            std::vector<Evidence>& evidence);
+/// Cubic smoothing splines (`smooth`): the mean of an integrated random walk of velocity seen with white noise, of strength `roughness`
+/// (m²/s³) times the factor of the interval. (Wahba 1978: the smoothing spline with penalty noise²/roughness.) Variances are those of the
+/// posterior.
+struct SmoothingBy {
+  const Lanes &noise, &roughness;
+  const std::vector<double>& factor;
+};
+void smooth(const Points& points, const SmoothingBy& by, Spline& spline);
+/// What that spline says of the factors.
+void weigh_evidence(const Points& points, const SmoothingBy& by, std::vector<Evidence>& evidence);
 
 /// −2 log likelihood of each coordinate of a span under a roughness that is the same everywhere, without constants.
 Lanes misfit(const Points& points, const Lanes& noise, const Lanes& roughness);

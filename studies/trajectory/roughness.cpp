@@ -133,14 +133,14 @@ void smooth_adaptively(const Points& points, const Lanes& noise, const Lanes& ro
   std::vector<double> decay(n), factor(n, 1.0), found(n), expected(n);
   for (std::size_t i = 1; i < n; ++i) decay[i] = std::exp(-(points.time[i + 1] - points.time[i - 1]) / (2 * window));
   std::vector<Evidence> evidence;
-  for (int round = 0;; ++round) {
-    smooth(points, noise, roughness, factor, spline, evidence);
-    if (round == kRounds) return;
+  for (int round = 0; round < kRounds; ++round) {
+    weigh_evidence(points, {noise, roughness, factor}, evidence);
     for (std::size_t i = 0; i < n; ++i) found[i] = factor[i] * evidence[i].found, expected[i] = evidence[i].expected;
     spread(decay, found);
     spread(decay, expected);
     for (std::size_t i = 0; i < n; ++i) factor[i] = std::max(kLeastFactor, (kPrior + found[i]) / (kPrior + expected[i]));
   }
+  smooth(points, {noise, roughness, factor}, spline);
 }
 
 }  // namespace millscope::trajectory

@@ -54,15 +54,12 @@ void fill(const Interval& in, double t, std::size_t k, Piece& piece) {
     const Cubic& c = in.cubic[axis];
     piece.position[axis][k] = c.c0 + u * (c.c1 + u * (c.c2 + u * c.c3));
     piece.velocity[axis][k] = c.c1 + u * (2 * c.c2 + 3 * u * c.c3);
-    piece.acceleration[axis][k] = 2 * c.c2 + 6 * u * c.c3;
   }
   const Weights value{(1 + 2 * s) * r * r, u * r * r, s * s * (3 - 2 * s), -s * u * r};
   const Weights slope{-6 * s * r / h, r * (1 - 3 * s), 6 * s * r / h, s * (3 * s - 2)};
-  const Weights bend{(12 * s - 6) / (h * h), (6 * s - 4) / h, (6 - 12 * s) / (h * h), (6 * s - 2) / h};
   const double q = in.ends.between.roughness, uw = u * w / h;
   piece.position_variance[k] = (in.ends.of(value) + q * uw * uw * uw / 3) / 3;
   piece.velocity_variance[k] = (in.ends.of(slope) + q * uw * (u * u - u * w + w * w) / (h * h)) / 3;
-  piece.acceleration_variance[k] = in.ends.of(bend) / 3;
 }
 
 }  // namespace
@@ -74,12 +71,11 @@ Piece empty_piece(double first, double last, double step) {
   const auto count = end >= begin ? static_cast<std::size_t>(end - begin) + 1 : 0;
   piece.start = begin * step;
   piece.step = step;
-  for (auto* vectors : {&piece.position, &piece.velocity, &piece.acceleration}) {
+  for (auto* vectors : {&piece.position, &piece.velocity}) {
     for (auto& component : *vectors) component.resize(count);
   }
   piece.position_variance.resize(count);
   piece.velocity_variance.resize(count);
-  piece.acceleration_variance.resize(count);
   piece.weight.assign(count, step);
   return piece;
 }

@@ -18,6 +18,16 @@ bool is_v3() {
 
 PointView view(const Points& p) { return {p.time, p.position[0], p.position[1], p.position[2], p.count}; }
 
+void run(const Points& points, const SmoothingBy& by, const SplineView& out) {
+  struct alignas(32) Filtered {
+    char bytes[kFilteredBytes];
+  };
+  thread_local std::vector<Filtered> scratch;
+  scratch.resize(points.count);
+  const Noise noise{by.noise.data(), by.roughness.data(), by.factor.data()};
+  (is_v3() ? wide_v3::smooth : wide_v2::smooth)(view(points), noise, scratch.data(), out);
+}
+
 }  // namespace
 
 Lanes misfit(const Points& points, const Lanes& noise, const Lanes& roughness) {
@@ -26,18 +36,15 @@ Lanes misfit(const Points& points, const Lanes& noise, const Lanes& roughness) {
   return found;
 }
 
-void smooth(const Points& points, const Lanes& noise, const Lanes& roughness, const std::vector<double>& factor, Spline& spline,
-            std::vector<Evidence>& evidence) {
-  struct alignas(32) Filtered {
-    char bytes[kFilteredBytes];
-  };
-  thread_local std::vector<Filtered> scratch;
-  scratch.resize(points.count);
+void smooth(const Points& points, const SmoothingBy& by, Spline& spline) {
   spline.knots.resize(points.count);
   spline.between.resize(points.count - 1);
+  run(points, by, {spline.knots[0].x.data(), &spline.between[0].xx, nullptr});
+}
+
+void weigh_evidence(const Points& points, const SmoothingBy& by, std::vector<Evidence>& evidence) {
   evidence.resize(points.count - 1);
-  const SplineView out{spline.knots[0].x.data(), &spline.between[0].xx, &evidence[0].found};
-  (is_v3() ? wide_v3::smooth : wide_v2::smooth)(view(points), {noise.data(), roughness.data(), factor.data()}, scratch.data(), out);
+  run(points, by, {nullptr, nullptr, &evidence[0].found});
 }
 
 }  // namespace millscope::trajectory

@@ -63,15 +63,19 @@ State step_back(const Filtered& from, const State& after, double h, const Four& 
   const Four r00 = i00 * g00 + i01 * g01, r01 = i00 * g01 + i01 * g11, r10 = i01 * g00 + i11 * g01, r11 = i01 * g01 + i11 * g11;
   const Four l00 = r00 * i00 + r01 * i01, l01 = r00 * i01 + r01 * i11, l11 = r10 * i01 + r11 * i11;  // Λ
   const double m00 = h * h * h / 3, m01 = h * h / 2;
-  evidence[0] = sum(q * (m00 * lx * lx + 2 * m01 * lx * lv + h * lv * lv));
-  evidence[1] = sum(q * (m00 * l00 + 2 * m01 * l01 + h * l11));
+  if (evidence) {
+    evidence[0] = sum(q * (m00 * lx * lx + 2 * m01 * lx * lv + h * lv * lv));
+    evidence[1] = sum(q * (m00 * l00 + 2 * m01 * l01 + h * l11));
+  }
   const Four a = here.xx + h * here.xv, b = here.xv, c = here.xv + h * here.vv, d = here.vv;  // P Fᵀ
-  const Four gain00 = a * i00 + b * i01, gain01 = a * i01 + b * i11, gain10 = c * i00 + d * i01, gain11 = c * i01 + d * i11;
-  between[0] = sum(gain00 * after.xx + gain01 * after.xv);
-  between[1] = sum(gain00 * after.xv + gain01 * after.vv);
-  between[2] = sum(gain10 * after.xx + gain11 * after.xv);
-  between[3] = sum(gain10 * after.xv + gain11 * after.vv);
-  between[4] = sum(q);
+  if (between) {
+    const Four gain00 = a * i00 + b * i01, gain01 = a * i01 + b * i11, gain10 = c * i00 + d * i01, gain11 = c * i01 + d * i11;
+    between[0] = sum(gain00 * after.xx + gain01 * after.xv);
+    between[1] = sum(gain00 * after.xv + gain01 * after.vv);
+    between[2] = sum(gain10 * after.xx + gain11 * after.xv);
+    between[3] = sum(gain10 * after.xv + gain11 * after.vv);
+    between[4] = sum(q);
+  }
   return {here.x + a * lx + b * lv, here.v + c * lx + d * lv, here.xx - (a * a * l00 + 2.0 * a * b * l01 + b * b * l11),
           here.xv - (a * c * l00 + (a * d + b * c) * l01 + b * d * l11), here.vv - (c * c * l00 + 2.0 * c * d * l01 + d * d * l11)};
 }
@@ -109,10 +113,16 @@ void smooth(const PointView& points, const Noise& by, void* scratch, SplineView 
     const State ahead = filtered[i - 1].ahead = predict(state, points.time[i] - points.time[i - 1], by.factor[i - 1] * q);
     state = filtered[i].here = update(ahead, at(points, i) - ahead.x, ahead.xx + variance);
   }
+  const auto back = [&](std::size_t i, double* between, double* evidence) {
+    return step_back(filtered[i], state, points.time[i + 1] - points.time[i], by.factor[i] * q, between, evidence);
+  };
+  if (!spline.knots) {
+    for (std::size_t i = count - 1; i-- > 0;) state = back(i, nullptr, spline.evidence + kEvidence * i);
+    return;
+  }
   set_knot(state, spline.knots + kKnot * (count - 1));
   for (std::size_t i = count - 1; i-- > 0;) {
-    state = step_back(filtered[i], state, points.time[i + 1] - points.time[i], by.factor[i] * q, spline.between + kBetween * i,
-                      spline.evidence + kEvidence * i);
+    state = back(i, spline.between + kBetween * i, nullptr);
     set_knot(state, spline.knots + kKnot * i);
   }
 }

@@ -16,6 +16,7 @@ struct Noise {
 };
 
 inline constexpr std::size_t kKnot = 15, kBetween = 5, kEvidence = 2;  ///< doubles in each (pieces.hpp)
+/// Either knots and between or evidence; the others are null.
 struct SplineView {
   double *knots, *between, *evidence;
 };

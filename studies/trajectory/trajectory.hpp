@@ -29,21 +29,19 @@ struct TrajectoryOptions {
   std::optional<double> noise_correlation = std::nullopt;
   std::optional<recording::Travel> travel = std::nullopt;  ///< what parts two points that no bead joins; absent: measured from the run
   std::array<double, 2> axis{0, 0};                        ///< subtracted from x and y, m
-  double low = 0, high = 0;          ///< only samples with low ≤ z ≤ high are kept (end-face trimming), pieces end there; equal: all
+  double low = 0, high = 0;  ///< only samples with low ≤ z ≤ high are kept (end-face trimming), pieces end there; equal: all
   bool operator==(const TrajectoryOptions&) const = default;
 };
 
 /// One unbroken stretch at even times.
 struct Piece {
-  double start = 0;                                 ///< s, of the first sample
-  double step = 0;                                  ///< s
-  std::array<std::vector<double>, 3> position;      ///< m, in the mill's frame
-  std::array<std::vector<double>, 3> velocity;      ///< m/s
-  std::array<std::vector<double>, 3> acceleration;  ///< m/s²
-  std::vector<double> position_variance;            ///< per sample, mean of the components, m²
-  std::vector<double> velocity_variance;            ///< (m/s)²
-  std::vector<double> acceleration_variance;        ///< (m/s²)²
-  std::vector<double> weight;                       ///< s: dwell time of each sample
+  double start = 0;                             ///< s, of the first sample
+  double step = 0;                              ///< s
+  std::array<std::vector<double>, 3> position;  ///< m, in the mill's frame
+  std::array<std::vector<double>, 3> velocity;  ///< m/s
+  std::vector<double> position_variance;        ///< per sample, mean of the components, m²
+  std::vector<double> velocity_variance;        ///< (m/s)²
+  std::vector<double> weight;                   ///< s: dwell time of each sample
   std::size_t size() const { return position[0].size(); }
 };
 

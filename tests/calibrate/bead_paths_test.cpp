@@ -61,8 +61,8 @@ TEST_CASE("where a class is set apart, its beads are followed and the power is t
   write_run(folder, kTracers);
   const BeadPaths paths(folder.path, 100, {}, registry());
   REQUIRE(paths.size() == 2);
-  CHECK_THAT(paths.path(0).position[0].front(), WithinRel(0.06, 1e-6));
-  CHECK_THAT(paths.path(1).position[0].front(), WithinRel(0.06, 1e-6));
+  CHECK_THAT(paths.path(0, 1e-3).position[0].front(), WithinRel(0.06, 1e-6));
+  CHECK_THAT(paths.path(1, 1e-3).position[0].front(), WithinRel(0.06, 1e-6));
   // Four beads like the first two, 4 m 0.03, over the beads as they are, m (0.02 + 0.04) + 2 m (0.06 + 0.06).
   CHECK_THAT(paths.power_ratio(), WithinRel(0.12 / 0.30, 1e-6));
   CHECK_THAT(paths.mill().context.bead_density, WithinRel(2500.0, 1e-9));

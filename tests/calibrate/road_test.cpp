@@ -63,7 +63,7 @@ Study study_in(const testing::Folder& folder, const std::string& more) {
 }  // namespace
 
 TEST_CASE("recorded and simulated tracks are followed by the same options") {
-  const Smoothing smoothing{{3e-4, 4e-4, 5e-4}, 0.3, 0.04};
+  const Smoothing smoothing{{3e-4, 4e-4, 5e-4}, 0.3, 0.04, 0.005, {4, 5e-4}, {1, 2}};
   Observing observing;
   CHECK(trajectory_options(Side::recorded, smoothing, observing) == trajectory_options(Side::simulated, smoothing, observing));
   observing.camera = "eye.yaml";
@@ -72,6 +72,7 @@ TEST_CASE("recorded and simulated tracks are followed by the same options") {
   CHECK(plain.noise == smoothing.noise);
   CHECK(plain.noise_correlation == smoothing.noise_correlation);
   CHECK(plain.gap_limit == smoothing.gap_limit);
+  CHECK(plain.travel == smoothing.travel);
 
   // The two differences that are meant: places along the recorded mill, and beads without a camera's noise.
   observing.z_low = 0.1, observing.z_high = 0.2;
@@ -91,10 +92,11 @@ TEST_CASE("the same tracks give the same bits, be they recorded or simulated") {
   const testing::Folder folder;
   const Study study = study_in(folder, "observe: {draws: 100}\n");
   const Processing how{study, registry(), 1, analyzers_of(study, registry())};
-  const Smoothing smoothing = smoothing_of(made_recording());
+  Smoothing smoothing = smoothing_of(made_recording());
   const analysis::RecordedMill mill = analysis::know_mill(made_recording(), {});
-  const analysis::ResultSet a = process({made_recording(), mill, Side::recorded}, smoothing, how),
-                            b = process({made_recording(), mill, Side::simulated}, smoothing, how);
+  const analysis::ResultSet a = process({made_recording(), mill, Side::recorded}, smoothing, how);
+  smoothing.blocks = a.meta.lengths;  // as a look at a recording leaves them
+  const analysis::ResultSet b = process({made_recording(), mill, Side::simulated}, smoothing, how);
   REQUIRE(a.arrays.size() == b.arrays.size());
   std::size_t numbers = 0;
   for (std::size_t i = 0; i < a.arrays.size(); ++i) {
@@ -111,8 +113,8 @@ TEST_CASE("the same tracks give the same bits, be they recorded or simulated") {
 
 TEST_CASE("summaries do not feel that nothing else is resampled") {
   const testing::Folder folder;
-  const Study study =
-      study_in(folder, "observe: {draws: 100}\nobjective: {kind: likelihood, terms: [power.specific_power_bbosa, pept_grid.outside_fraction]}\n");
+  const Study study = study_in(
+      folder, "observe: {draws: 100}\nobjective: {kind: likelihood, terms: [power.specific_power_bbosa, pept_grid.outside_fraction]}\n");
   Processing how{study, registry(), 1, analyzers_of(study, registry())};
   const Tracks tracks{made_recording(), analysis::know_mill(made_recording(), {}), Side::recorded};
   const analysis::ResultSet all = process(tracks, smoothing_of(made_recording()), how);
@@ -192,8 +194,12 @@ TEST_CASE("nothing of what is cached of a recording is lost") {
   RecordedCondition r;
   auto& [observation, summaries, analyzers, camera, smoothing, place, mass, omega, measured_power, identity] = r;
   observation = o, summaries = {s}, analyzers = "analyzers: {}", camera = "observations: {}";
-  auto& [noise, noise_correlation, gap_limit] = smoothing;
-  noise = {1e-4, 2e-4, 3e-4}, noise_correlation = 0.2, gap_limit = 0.04;
+  auto& [noise, noise_correlation, gap_limit, interval, travel, lengths] = smoothing;
+  noise = {1e-4, 2e-4, 3e-4}, noise_correlation = 0.2, gap_limit = 0.04, interval = 0.005;
+  auto& [greatest_speed, greatest_noise] = travel;
+  greatest_speed = 4, greatest_noise = 5e-4;
+  auto& [least, wished] = lengths;
+  least = 1.5, wished = 2.5;
   auto& [low, high, middle] = place;
   low = 0.01, high = 0.09, middle = 0.05;
   mass = 11, omega = -6, measured_power = true, identity = "0123";

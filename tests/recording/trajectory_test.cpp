@@ -44,7 +44,7 @@ TEST_CASE("no spline crosses a gap, and the weights add up to the covered time")
       const double end = piece.start + static_cast<double>(piece.size() - 1) * piece.step;
       CHECK_FALSE((piece.start < 4.9 && end > 5.1));
       REQUIRE(piece.position_variance.size() == piece.size());
-      REQUIRE(piece.acceleration[2].size() == piece.size());
+      REQUIRE(piece.velocity[2].size() == piece.size());
     }
   }
 }
