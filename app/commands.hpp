@@ -44,6 +44,7 @@ std::span<const Command> all_commands();
 int run(const Arguments& arguments);
 int resume(const Arguments& arguments);
 int check(const Arguments& arguments);
+int export_case(const Arguments& arguments);
 int analyze(const Arguments& arguments);
 int compare(const Arguments& arguments);
 int report_page(const Arguments& arguments);

@@ -7,6 +7,7 @@
 #include "app/commands.hpp"
 #include "app/tables.hpp"
 #include "kernel/config/document.hpp"
+#include "kernel/output/new_folder.hpp"
 #include "studies/new/folder.hpp"
 #include "studies/new/liner.hpp"
 #include "studies/new/materials.hpp"
@@ -108,7 +109,7 @@ int new_mill(const Arguments& arguments) {
   if (!folder.has_filename()) folder = folder.parent_path();  // "my_mill/"
   if (folder.empty() || folder.filename() == "." || folder.filename() == "..")
     throw UserError(fmt::format("'{}' names no new folder; give a name, e.g. my_mill", options.text("FOLDER")));
-  new_mill::refuse_folder(folder);
+  output::refuse_folder(folder);
   refuse_needless(options);
   const host::Registry registry = options.registry();
   const bool asking = !options.has("yes") && isatty(STDIN_FILENO) != 0;

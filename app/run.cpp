@@ -1,15 +1,17 @@
 // run, resume, check.
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
 
 #include "app/commands.hpp"
+#include "app/engines.hpp"
 #include "app/watching.hpp"
 #include "kernel/output/summary.hpp"
 #include "kernel/run/doubts.hpp"
 #include "kernel/run/simulation.hpp"
+#include "studies/engine/liggghts/obstacles.hpp"
 
 namespace millscope::app {
 namespace {
@@ -54,6 +56,18 @@ int report(run::Outcome outcome, const run::RunOptions& options) {
   const std::filesystem::path summary = options.output / "summary.json";
   fmt::print("done; see {}\n", summary.string());
   for (const run::Doubt& doubt : run::doubts_in(output::read_json(summary))) fmt::print("doubt: {}\n", run::sentence_of(doubt));
+  return kDone;
+}
+
+/// Whether another engine can play the case, and what it will do differently.
+int check_for_engine(const Options& options) {
+  check_engine(options.text("engine"));
+  const host::Registry registry = options.registry();
+  const run::Assembly a = run::assemble(config::read_case(options.text("CASE.yaml"), options.list("set")), registry);
+  const std::vector<std::string> obstacles = engine::liggghts::obstacles_of(a, registry);
+  if (!obstacles.empty()) throw base::UserError(fmt::format("{}", fmt::join(obstacles, "\n")));
+  fmt::print("LIGGGHTS can play this case: {} beads, {} steps of {:.4g} s\n", a.bead_count, a.end_step - a.first_step, a.time_step);
+  for (const std::string& difference : engine::liggghts::differences_of(a)) fmt::print("differs: {}\n", difference);
   return kDone;
 }
 
@@ -107,7 +121,9 @@ int check(const Arguments& arguments) {
       "millscope check configs/demo.yaml");
   options.positional("CASE.yaml", "the case");
   add_run_options(options);
+  add_engine(options);
   if (!options.parse(arguments)) return kDone;
+  if (options.has("engine")) return check_for_engine(options);
   const run::Estimate e = run::estimate(options.text("CASE.yaml"), options.registry(), run_options(options));
   fmt::print("beads          {}  (spheres)\n", e.beads);
   fmt::print("time step      {:.4g} s, {:.0f} % of the Rayleigh time", e.time_step, 100 * e.rayleigh_fraction);

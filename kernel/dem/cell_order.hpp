@@ -21,7 +21,7 @@ class CellOrder {
   const CellGrid& grid() const { return grid_; }
   /// The beads j < i of a neighbourhood whose reach overlaps that of bead i go to `found`, which has `room` for them. Returns their number.
   std::int64_t near(std::int64_t i, const Neighbourhood& round, std::uint32_t* found) const;
-  static std::int64_t room(const Neighbourhood& round) { return round.beads + 8; }  // four are written at a time
+  static std::int64_t room(const Neighbourhood& round) { return round.beads + 1; }  // one is written behind the last
 
   template <class Visit>
   void each_idle(Visit& visit) const {

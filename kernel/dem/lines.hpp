@@ -36,7 +36,7 @@ struct alignas(16) ReferenceLine {
   float centre[3], allowed2;
 };
 
-/// Where the forces of a slab's beads stand while its step is made: those of all beads side by side, or, where beads are finished behind
+/// Where the forces of a worker's beads stand while a step is made: those of all beads side by side, or, where beads are finished behind
 /// the pair loop, a ring that is just long enough and stays in the cache. Lines are zero before the first force and after the last.
 struct ForceWindow {
   ForceLine* lines = nullptr;

@@ -133,8 +133,8 @@ class PairLists::Builder {
     list.touching.resize(slots);
   }
   void make_room(int p, std::int64_t slots) {
-    const std::int64_t needed = count_[p] + slots;
-    if (lists_[p].count() < needed) resize(lists_[p], needed + needed / 2);
+    const std::int64_t needed = count_[p] + slots, held = static_cast<std::int64_t>(lists_[p].partner.capacity());
+    if (lists_[p].count() < needed) resize(lists_[p], needed <= held ? std::min(held, needed + needed / 8) : needed + needed / 2);
   }
 
   /// Makes slots of the partners that stand behind the last slot, all of one owner, with the histories of the pairs that touched.

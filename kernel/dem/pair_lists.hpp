@@ -1,7 +1,6 @@
 // The lists of pairs: which beads are near one another, made anew at each rebuild, with the histories of the pairs that touch.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "kernel/dem/batch.hpp"

@@ -48,8 +48,7 @@ void Schedule::renew(const PairLists& pairs, std::int64_t beads) {
   std::int64_t longest = 1, finished = 0;
   for (int slab = 0; slab < common_.slabs.count; ++slab) {
     for (const Trail& trail : slabs_[slab].trails) {
-      const std::int64_t touched = list_count_ == 1 ? std::min<std::int64_t>(trail.passed + 1, beads) : common_.slabs.end(slab);
-      longest = std::max(longest, touched - finished);
+      longest = std::max(longest, touched(slab, trail) - finished);
       finished = std::max(finished, trail.done - kBatch);
     }
   }

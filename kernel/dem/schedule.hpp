@@ -5,6 +5,7 @@
 // moment are the stretch between the last bead that is finished and the present owner, and their forces fit into a ring of that length.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "kernel/dem/pair_lists.hpp"
@@ -32,6 +33,10 @@ class Schedule {
   const std::vector<Trail>& trails(int slab) const { return slabs_[slab].trails; }
   /// The first of the beads that pairs of this or of later slabs touch; of no slab (`slab` is their number) behind all beads.
   std::int64_t first_touched(int slab) const { return slab < common_.slabs.count ? slabs_[slab].first_touched : beads_; }
+  /// Behind the last bead that carries forces at a pause.
+  std::int64_t touched(int slab, const Trail& trail) const {
+    return list_count_ == 1 ? std::min<std::int64_t>(trail.passed + std::int64_t{1}, beads_) : common_.slabs.end(slab);
+  }
   /// Lines of the ring that serves a step, a power of two.
   std::int64_t ring() const { return ring_; }
 

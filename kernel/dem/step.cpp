@@ -48,10 +48,19 @@ void Step::prepare() {
 
 void Step::lists_changed() {
   schedule_.renew(pairs_, particles_.count());
-  for (const auto& scratch : scratch_) {
-    if (std::ssize(scratch->ring) < schedule_.ring()) scratch->ring.assign(schedule_.ring(), ForceLine{});
+  for (int worker = 0; worker < common_.workers.count(); ++worker) {
+    AlignedVector<ForceLine>& ring = scratch_[worker]->ring;
+    if (takes_ring(beads_of(worker)) && std::ssize(ring) < schedule_.ring()) ring.assign(schedule_.ring(), ForceLine{});
   }
 }
+
+BeadRange Step::beads_of(int worker) const {
+  const auto bound = [&](int w) { return common_.slabs.bounds[common_.workers.first(w, common_.slabs.count)]; };
+  return {bound(worker), bound(worker + 1)};
+}
+
+/// Where a ring is no shorter than the beads themselves, their own lines do as well.
+bool Step::takes_ring(BeadRange beads) const { return schedule_.ring() < beads.end - beads.begin; }
 
 /// A worker's slabs on their way through a step.
 struct Step::Share {
@@ -65,9 +74,9 @@ struct Step::Share {
 
 Step::Share Step::share_of(int worker, bool observed) {
   const int begin = common_.workers.first(worker, common_.slabs.count), end = common_.workers.first(worker + 1, common_.slabs.count);
-  const BeadRange beads{common_.slabs.bounds[begin], common_.slabs.bounds[end]};
+  const BeadRange beads = beads_of(worker);
   Scratch& scratch = *scratch_[worker];
-  const bool in_ring = !observed && schedule_.ring() < beads.end - beads.begin;
+  const bool in_ring = !observed && takes_ring(beads);
   const ForceWindow force = in_ring ? ForceWindow::ring(scratch.ring.data(), schedule_.ring()) : ForceWindow{particles_.force.data()};
   return {scratch, begin, end, beads, force, begin, beads.begin};
 }
@@ -130,6 +139,9 @@ void Step::push(Share& share, int slab, const Done& done) {
   const SlabPass pass{common_, particles_, state, share.scratch, share.force, slab, reaches_others ? share.beads.begin : 0, step_};
   WallSweep walls(pass, walls_, poses_);
   const std::vector<Trail>& trails = schedule_.trails(slab);
+  [[maybe_unused]] const auto fits_ring = [&](std::int64_t touched) {
+    return !share.force.is_ring() || touched - share.finished <= share.force.mask + 1;
+  };
   for (int p = 0; p < common_.physics.count(); ++p) {
     if (common_.physics[p].wall) continue;
     PairSweep pairs(pass, p, pairs_.of(slab, p), alike_[p]);
@@ -137,11 +149,13 @@ void Step::push(Share& share, int slab, const Done& done) {
       pairs.batch(first);
       if (p != schedule_.last_list() || trail + 1 == std::ssize(trails) || first + kBatch != (trail + 1) * Schedule::kSlotsPerTrail)
         continue;
+      assert(fits_ring(schedule_.touched(slab, trails[trail])));
       walls.until(trails[trail].passed);
       done(trails[trail++].done);
     }
     pairs.end();
   }
+  assert(fits_ring(schedule_.touched(slab, trails.back())));
   walls.until(trails.back().passed);
   walls.end();
   pushed_[slab].store(step_, std::memory_order_release);
@@ -156,6 +170,7 @@ bool Step::take_pushes(const Share& share) {
     const PushLog& log = slabs_[later].log;
     for (std::int64_t k = 0; k < log.count; ++k) {
       if (log.bead[k] < share.beads.begin || log.bead[k] >= share.beads.end) continue;
+      assert(log.bead[k] >= share.finished);
       ForceLine& line = share.force[log.bead[k]];
       for (int a = 0; a < 3; ++a) {
         line.f[a] += log.push[k].f[a];

@@ -35,6 +35,8 @@ class Step {
 
  private:
   struct Share;
+  BeadRange beads_of(int worker) const;
+  bool takes_ring(BeadRange beads) const;
   Share share_of(int worker, bool observed);
   template <class Work>
   void each_share(bool observed, const Work& work);

@@ -5,7 +5,7 @@
 //   B  body forces, kick–drift–predict.
 // A pair's owner comes after its partner in the order of cells, and a bead is done with A when the last owner that pushes it has been
 // reached: B follows right behind, while the bead is still in the cache (schedule.hpp). A worker goes through its slabs as if they were
-// one. What its first slab pushes in the slabs of the worker before goes into a log, which that one adds at its end, push by push. A
+// one. What it pushes on beads of earlier workers goes into a log, which these add at their end, push by push. A
 // rebuild of order and lists (cell_order.hpp, pair_lists.hpp, wall_lists.hpp) happens when a bead has used up its own skin, which grows
 // with its speed at the last rebuild: fast beads are few.
 #pragma once

@@ -75,7 +75,6 @@ FramesSource::FramesSource(output::FrameReader reader, AnalyzerContext context, 
   // The mean over the time, whatever the wall did between the frames: one at the moment of the start still tells of rest.
   const double span = context_.end - context_.start;
   context_.omega = span > 0 ? (s.wall_angle[end_ - 1] - s.wall_angle[begin_]) / span : s.angular_velocity[begin_];
-  cut(0, 128);
 }
 
 void FramesSource::select(std::optional<double> from, std::optional<double> to) {

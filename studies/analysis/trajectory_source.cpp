@@ -143,13 +143,11 @@ void TrajectorySource::cut(double duration, std::size_t most) {
   const double total = std::accumulate(own.begin(), own.end(), 0.0);
   std::vector<std::size_t> parts;
   for (const double seconds : own) parts.push_back(parts_of(seconds, total, duration, most));
-  if (parts == parts_) return;  // many short trajectories stay whole, however they are cut
-  parts_ = std::move(parts);
   arrays_.clear();
   chunks_.clear();
   std::size_t longest = 0;
   for (std::size_t k = 0; k < trajectories_.size(); ++k) {
-    lay_out(k, parts_[k]);
+    lay_out(k, parts[k]);
     longest = std::max(longest, arrays_.back()->size());
   }
   first_.resize(longest + 1);

@@ -50,7 +50,6 @@ class TrajectorySource : public FrameSource {
   bool exact_;
   std::string description_;
   std::vector<std::string> notes_;
-  std::vector<std::size_t> parts_;  ///< of each trajectory, as it is cut now
   std::vector<std::unique_ptr<Arrays>> arrays_;
   std::vector<Chunk> chunks_;
   std::vector<std::int64_t> first_;  ///< 0, 1, 2, …: one sample per frame

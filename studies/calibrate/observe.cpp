@@ -57,20 +57,24 @@ struct Film {
   const Smoothing& smoothing;  ///< by which it is cleaned
 };
 
-/// s between the points of a path: a quarter of what the camera takes for a location, or from one to the next; from 0.5 to 1.25 ms. At the
-/// longest, straight lines between them are off by 2 µm at 10 m/s² and by 80 µm in an impact.
-double path_step(const camera::Camera& camera, double interval) {
-  double shortest = interval;
+/// s between the points of a path: where a camera samples it, and does nothing before but blur it, a quarter of the shortest span of
+/// either, from 0.5 to 1.25 ms; straight lines are then off by 2 µm at 10 m/s² and by 80 µm in an impact. Else 0.5 ms.
+double path_step(const camera::Camera& camera) {
+  constexpr double kShortest = 0.5e-3, kLongest = 1.25e-3;
+  double shortest = 4 * kLongest;
   for (const camera::CameraLink& link : camera.links()) {
-    if (link.window > 0) shortest = std::min(shortest, link.window);
+    const bool samples = link.plugin.name() == "sampling";
+    if (!samples && link.plugin.name() != "location_blur") return kShortest;
+    if (link.span > 0) shortest = std::min(shortest, link.span);
+    if (samples && link.span > 0) return std::clamp(shortest / 4, kShortest, kLongest);
   }
-  return std::clamp(shortest / 4, 0.5e-3, 1.25e-3);
+  return kShortest;
 }
 
 /// What the camera makes of the beads, as it would be read from files and cleaned by the recording's own rules.
 recording::Recording film(const BeadPaths& paths, const Film& how, int threads) {
   std::vector<recording::Run> seen(paths.size());
-  const double step = path_step(how.camera, how.smoothing.interval);
+  const double step = path_step(how.camera);
   base::for_each_item(paths.size(), base::worker_count(threads, paths.size()), [&](std::size_t i, std::size_t) {
     const recording::Run run = camera::observe(paths.path(i, step), how.camera, paths.context(i, how.seed));
     if (run.size() >= kLeastPoints) seen[i] = camera::as_written(run);

@@ -7,7 +7,6 @@
 #include "studies/analysis/engine.hpp"
 #include "studies/analysis/follow.hpp"
 #include "studies/calibrate/summaries.hpp"
-#include "studies/recording/clean.hpp"
 #include "studies/recording/travel.hpp"
 #include "studies/trajectory/trajectory.hpp"
 
@@ -33,7 +32,7 @@ Smoothing smoothing_of(const recording::Recording& recording) {
   const trajectory::NoiseEstimate noise = trajectory::estimate_noise_model(recording.runs, recording.gap_limit);
   const bool cleaned = recording.travel.speed > 0;
   const recording::Travel travel = cleaned ? recording.travel : recording::measure_travel(recording.runs, recording.gap_limit);
-  return {noise.standard_deviation, noise.correlation, recording.gap_limit, recording::median_interval(recording.runs), travel, {}};
+  return {noise.standard_deviation, noise.correlation, recording.gap_limit, travel, {}};
 }
 
 trajectory::TrajectoryOptions trajectory_options(Side side, const Smoothing& smoothing, const Observing& observing) {

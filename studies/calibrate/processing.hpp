@@ -21,7 +21,6 @@ struct Smoothing {
   std::array<double, 3> noise{};  ///< standard deviation of each component of a point, m
   double noise_correlation = 0;   ///< from one point to the next
   double gap_limit = 0;           ///< s
-  double interval = 0;            ///< s, from one point to the next, median
   recording::Travel travel;       ///< what a bead can do
   analysis::BlockLengths blocks;  ///< by what it forgets
   bool operator==(const Smoothing&) const = default;

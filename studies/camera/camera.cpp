@@ -80,8 +80,10 @@ CameraLink make_link(const Node& node, const std::string& name, const host::Regi
   const Node kind = node.at("kind", "the name of an observation plugin, e.g. noise");
   const host::Loaded& plugin = registry.find(Kind::observation, kind.text(), kind.where());
   const config::ResolvedValues values = config::resolve(*plugin.descriptor, node, Scope::instance);
-  const double window = kind.text() == "location_blur" ? Parameters(values.view()).number("window") : 0.0;
-  return {name, host::ObservationObject::create(plugin, values.view(), node.where()), window};
+  double span = 0;
+  if (kind.text() == "location_blur") span = Parameters(values.view()).number("window");
+  if (kind.text() == "sampling" && Parameters(values.view()).number("rate") > 0) span = 1 / Parameters(values.view()).number("rate");
+  return {name, host::ObservationObject::create(plugin, values.view(), node.where()), span};
 }
 
 Camera camera_of(const Node& root, const host::Registry& registry) {

@@ -28,7 +28,7 @@ namespace millscope::camera {
 struct CameraLink {
   std::string name;
   host::ObservationObject plugin;
-  double window = 0;  ///< s, in which the path must have several points; 0: any path will do
+  double span = 0;  ///< s, of one location: the window of location_blur, the mean interval of sampling; 0: of neither
 };
 
 /// A chain of observations; copies share the plugins' objects. May be used by many threads at once.

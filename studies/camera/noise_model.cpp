@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -35,7 +36,7 @@ constexpr std::size_t kSeries = 5;  ///< the data and the powers 0 to 3 of time
 class Removal {
  public:
   void add(const std::array<double, kSeries>& e, double variance, double weight) {
-    product_ *= variance * kUsual;
+    product_ *= variance > 0 ? variance * kUsual : std::numeric_limits<double>::quiet_NaN();
     if (!(product_ > 1e-100 && product_ < 1e100)) log_variance_ += std::log(product_), product_ = 1;  // one logarithm for many points
     ++count_;
     for (std::size_t j = 0; j < kSeries; ++j) {
@@ -47,7 +48,8 @@ class Removal {
   /// Restricted likelihood. Cholesky from the last function down to the data: the last pivot is what the functions leave of the data.
   double log_likelihood() {
     const double count = static_cast<double>(count_);
-    double log_determinant = std::log(product_) - count * std::log(kUsual);
+    log_variance_ += std::log(product_) - count * std::log(kUsual);
+    double log_determinant = 0;
     for (std::size_t pivot = kSeries - 1; pivot > 0; --pivot) {
       log_determinant += std::log(sums_[pivot][pivot]);
       for (std::size_t j = 0; j < pivot; ++j) {

@@ -1,16 +1,13 @@
 #include "studies/new/folder.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
 #include <system_error>
 
 #include "kernel/config/document.hpp"
 #include "kernel/output/file.hpp"
+#include "kernel/output/new_folder.hpp"
 #include "kernel/run/assembly.hpp"
 #include "kernel/run/simulation.hpp"
 
@@ -21,42 +18,6 @@ namespace fs = std::filesystem;
 using base::UserError;
 
 constexpr std::uint64_t kQuickBeads = 200000;  // more take long to place, and are placed by 'millscope check'
-
-/// A folder beside `target` that is removed unless it was published.
-class Aside {
- public:
-  explicit Aside(const fs::path& target) : target_(target) {
-    std::error_code trouble;
-    for (int n = 0;; ++n) {
-      path_ = fmt::format("{}.{}.tmp", target.string(), n);
-      if (fs::create_directory(path_, trouble)) return;
-      if (trouble) output::throw_write_error(target, trouble.value());
-    }
-  }
-  ~Aside() {
-    std::error_code ignored;
-    if (!published_) fs::remove_all(path_, ignored);
-  }
-  Aside(const Aside&) = delete;
-  Aside& operator=(const Aside&) = delete;
-
-  const fs::path& path() const { return path_; }
-  void publish() {
-    if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) != 0) {
-      const bool taken = errno == EEXIST || errno == ENOTEMPTY;
-      // File systems without the flag: the check at the beginning has to do.
-      if (taken || errno != EINVAL || ::rename(path_.c_str(), target_.c_str()) != 0) {
-        if (taken) refuse_folder(target_);
-        output::throw_write_error(target_, errno);
-      }
-    }
-    published_ = true;
-  }
-
- private:
-  fs::path target_, path_;
-  bool published_ = false;
-};
 
 void copy_into(const fs::path& from, const fs::path& to) {
   std::error_code trouble;
@@ -95,18 +56,8 @@ std::string liner_name(const Liner& liner) {
   return plain ? own : "liner" + liner.file.extension().string();
 }
 
-void refuse_folder(const fs::path& folder) {
-  std::error_code trouble;
-  if (fs::exists(fs::symlink_status(folder, trouble)))
-    throw UserError(fmt::format("{} exists already; choose another name, or remove it", folder.string()));
-  const fs::path parent = folder.parent_path();
-  if (!parent.empty() && !fs::is_directory(parent, trouble))
-    throw UserError(fmt::format("{}: there is no folder {}; make it first, or choose another place", folder.string(), parent.string()));
-}
-
 Found write_folder(const fs::path& folder, const Mill& mill, const Choices& choices, const host::Registry& registry) {
-  refuse_folder(folder);
-  Aside aside(folder);
+  output::NewFolder aside(folder);
   const std::string title = folder.filename().string();
   fs::create_directory(aside.path() / "materials");
   for (const Material* m : {&mill.bead_material, &mill.liner_material}) {

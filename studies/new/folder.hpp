@@ -13,9 +13,6 @@ std::string readme_text(const Mill& mill, const Choices& choices, const std::str
 /// Name of the liner's copy in the folder.
 std::string liner_name(const Liner& liner);
 
-/// Throws UserError when the folder cannot be made: it exists, or the one that it shall stand in does not.
-void refuse_folder(const std::filesystem::path& folder);
-
 /// What the finished case was found to be.
 struct Found {
   std::uint64_t beads = 0, steps = 0;

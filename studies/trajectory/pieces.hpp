@@ -70,13 +70,13 @@ struct Evidence {
   double found = 0, expected = 0;
 };
 
-/// Cubic smoothing splines (`smooth`): the mean of an integrated random walk of velocity seen with white noise, of strength `roughness`
-/// (m²/s³) times the factor of the interval. (Wahba 1978: the smoothing spline with penalty noise²/roughness.) Variances are those of the
-/// posterior.
+/// Strength of the noise (m), of the random walk (m²/s³), and the factor of the latter in each interval.
 struct SmoothingBy {
   const Lanes &noise, &roughness;
   const std::vector<double>& factor;
 };
+/// Cubic smoothing splines: the mean of an integrated random walk of velocity seen with white noise. (Wahba 1978: the smoothing spline with
+/// penalty noise²/roughness.) Variances are those of the posterior.
 void smooth(const Points& points, const SmoothingBy& by, Spline& spline);
 /// What that spline says of the factors.
 void weigh_evidence(const Points& points, const SmoothingBy& by, std::vector<Evidence>& evidence);

@@ -85,10 +85,11 @@ class Search {
       cost_ = back ? Costs{std::nullopt, before, here} : Costs{here, behind, std::nullopt};
       const double bottom = std::log(1e-8), top = std::log(1e5);
       done_ = middle_ <= bottom || middle_ >= top;
+      middle_ = std::clamp(middle_, bottom, top);
       return;
     }
     const double bend = before - 2 * here + behind;
-    if (bend > 0) middle_ += 0.5 * step_ * (before - behind) / bend;
+    if (bend > 0 && std::isfinite(bend)) middle_ += 0.5 * step_ * (before - behind) / bend;
     done_ = step_ == kFine;
     step_ = kFine;
     cost_ = {};

@@ -10,7 +10,7 @@ namespace millscope::trajectory {
 /// nothing else is filled in. Size 0 where there is none.
 Piece empty_piece(double first, double last, double step);
 
-/// Fills positions, velocities, accelerations and their variances. `time`: of the knots.
+/// Fills positions, velocities and their variances. `time`: of the knots.
 void sample(const double* time, const Spline& spline, Piece& piece);
 
 }  // namespace millscope::trajectory

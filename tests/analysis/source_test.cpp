@@ -106,6 +106,7 @@ TEST_CASE("a part of the frames can be asked for, spins only where they are want
   CHECK_THAT(opened.source->context().start, WithinAbs(1.5, 1e-12));
   CHECK_THAT(opened.source->context().end, WithinAbs(2.0, 1e-12));
   CHECK(opened.source->survey()[0].size() == 51);
+  opened.source->cut(0, 128);
   const auto block_scratch = opened.source->make_scratch();
   CHECK(opened.source->load(0, *block_scratch).spin[2][0] == -2);
   opened.source->want(kHasVelocity);

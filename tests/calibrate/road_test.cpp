@@ -63,7 +63,7 @@ Study study_in(const testing::Folder& folder, const std::string& more) {
 }  // namespace
 
 TEST_CASE("recorded and simulated tracks are followed by the same options") {
-  const Smoothing smoothing{{3e-4, 4e-4, 5e-4}, 0.3, 0.04, 0.005, {4, 5e-4}, {1, 2}};
+  const Smoothing smoothing{{3e-4, 4e-4, 5e-4}, 0.3, 0.04, {4, 5e-4}, {1, 2}};
   Observing observing;
   CHECK(trajectory_options(Side::recorded, smoothing, observing) == trajectory_options(Side::simulated, smoothing, observing));
   observing.camera = "eye.yaml";
@@ -194,8 +194,8 @@ TEST_CASE("nothing of what is cached of a recording is lost") {
   RecordedCondition r;
   auto& [observation, summaries, analyzers, camera, smoothing, place, mass, omega, measured_power, identity] = r;
   observation = o, summaries = {s}, analyzers = "analyzers: {}", camera = "observations: {}";
-  auto& [noise, noise_correlation, gap_limit, interval, travel, lengths] = smoothing;
-  noise = {1e-4, 2e-4, 3e-4}, noise_correlation = 0.2, gap_limit = 0.04, interval = 0.005;
+  auto& [noise, noise_correlation, gap_limit, travel, lengths] = smoothing;
+  noise = {1e-4, 2e-4, 3e-4}, noise_correlation = 0.2, gap_limit = 0.04;
   auto& [greatest_speed, greatest_noise] = travel;
   greatest_speed = 4, greatest_noise = 5e-4;
   auto& [least, wished] = lengths;

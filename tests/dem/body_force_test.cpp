@@ -104,8 +104,8 @@ TEST_CASE("added mass slows contact forces too") {
 }
 
 TEST_CASE("forces stay with their beads where a long row without neighbours follows a batch of pairs") {
-  // The ring of force lines is as long as the beads that carry forces at once. 2048 pairs fill whole batches, so the step finishes
-  // everything up to the next owner of a pair: here thousands of beads further on.
+  // The ring of force lines is as long as the beads that carry forces at once. 2048 pairs fill whole batches, so the step pauses and
+  // finishes everything up to the first bead that a pair still touches: here thousands of beads further on.
   const Push pusher{3e-3};
   Setup s;
   s.domain = "{low: [-1, -1, -1], high: [1, 1, 1000]}";

@@ -45,19 +45,34 @@ Setup mesh_drum() {
 }
 
 /// 4800 beads of one kind in a long trough, pressed together and moving: few enough carry forces at once for a ring (schedule.hpp).
-Assembly long_bed(int partitions) {
+Assembly long_bed(int partitions, int threads = 2) {
   Setup s;
   s.body_forces = "{gravity: {kind: gravity}, air: {kind: air_drag}}";
   s.geometry = kFloor;
   s.domain = "{low: [-1, -0.1, -0.1], high: [5, 0.2, 0.2]}";
   s.run = fmt::format("{{partitions: {}}}", partitions);
-  Assembly a = assembled(s, {std::min(partitions, 2), ""});
+  Assembly a = assembled(s, {std::min(partitions, threads), ""});
   std::vector<Bead> beads;
   for (int i = 0; i < 300; ++i) {
     for (int j = 0; j < 16; ++j) {
       const double x = 1.98 * kRadius * i, y = 0.99 * kRadius * (1 + 2 * (j / 4)), z = 1.98 * kRadius * (j % 4);
       beads.push_back({{x, y, z}, {0.3 * std::sin(1.7 * i + j), 0.2 * std::cos(0.9 * i - j), 0.1 * std::sin(i + 2.3 * j)}, {}});
     }
+  }
+  start(a, beads);
+  return a;
+}
+
+/// 1000 beads of one kind in a box that repeats along all axes: pairs of the last slabs push beads of the first.
+Assembly periodic_box(int threads) {
+  Setup s;
+  s.domain = "{periodic: {x: [0, 0.1], y: [0, 0.1], z: [0, 0.1]}}";
+  s.run = "{partitions: 8}";
+  Assembly a = assembled(s, {threads, ""});
+  std::vector<Bead> beads;
+  for (int i = 0; i < 1000; ++i) {
+    const double x = 0.01 * (i / 100) + 0.005, y = 0.01 * (i / 10 % 10) + 0.005, z = 0.01 * (i % 10) + 0.005;
+    beads.push_back({{x, y, z}, {0.5 * std::sin(1.7 * i), 0.4 * std::cos(0.9 * i), 0.3 * std::sin(2.3 * i)}, {}});
   }
   start(a, beads);
   return a;
@@ -123,6 +138,26 @@ TEST_CASE("beads that are finished behind the pairs, with their forces in a ring
     CHECK(dissipated(trailing) == dissipated(observed));
     CHECK(trailing.system->ledger().body_force_work == observed.system->ledger().body_force_work);
   }
+}
+
+TEST_CASE("what slabs of other workers push is added as if one worker had come by it") {
+  const auto same = [](const auto& with, int steps) {
+    Assembly one = with(1);
+    advance(one, steps);
+    CHECK(one.system->ledger().pairs[0].collisions > 300);
+    for (const int threads : {2, 3, 8}) {
+      INFO(threads << " threads");
+      Assembly many = with(threads);
+      advance(many, steps);
+      CHECK(many.system->threads() == threads);
+      CHECK(many.system->state_hash() == one.system->state_hash());
+      CHECK(dissipated(many) == dissipated(one));
+      CHECK(many.system->ledger().body_force_work == one.system->ledger().body_force_work);
+    }
+  };
+  same([](int threads) { return long_bed(8, threads); }, 60);
+  same([](int threads) { return long_bed(300, threads); }, 60);
+  same([](int threads) { return periodic_box(threads); }, 1500);
 }
 
 TEST_CASE("the hash sees the state: another time, another seed, another speed") {

@@ -1,0 +1,36 @@
+// export: a case for another engine.
+#include <fmt/core.h>
+
+#include "app/commands.hpp"
+#include "app/engines.hpp"
+#include "kernel/config/case.hpp"
+#include "kernel/run/assembly.hpp"
+#include "studies/engine/liggghts/folder.hpp"
+
+namespace millscope::app {
+
+namespace po = boost::program_options;
+
+int export_case(const Arguments& arguments) {
+  Options options(
+      "export CASE.yaml -o FOLDER --engine liggghts",
+      "Writes a case as another engine reads it: script, beads where millscope puts them, walls as STL, and a README. What that "
+      "engine cannot play is refused, all of it at once.",
+      "millscope export configs/demo.yaml -o demo-liggghts --engine liggghts");
+  options.positional("CASE.yaml", "the case");
+  options.add()("output,o", po::value<std::string>()->value_name("FOLDER"), "folder to make");
+  add_engine(options);
+  options.with_overrides();
+  options.with_plugins();
+  if (!options.parse(arguments)) return kDone;
+  check_engine(options.text("engine"));
+  const host::Registry registry = options.registry();
+  run::Assembly a = run::assemble(config::read_case(options.text("CASE.yaml"), options.list("set")), registry);
+  const std::string folder = options.text("output");
+  const engine::liggghts::Exported done = engine::liggghts::export_case(a, registry, folder);
+  fmt::print("wrote {}: {} beads, {} meshes of {} triangles, {} steps; {}/README.md says how to run it\n", folder, done.beads, done.meshes,
+             done.triangles, done.steps, folder);
+  return kDone;
+}
+
+}  // namespace millscope::app

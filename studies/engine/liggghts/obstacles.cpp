@@ -1,0 +1,107 @@
+#include "studies/engine/liggghts/obstacles.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "studies/engine/liggghts/physics.hpp"
+
+namespace millscope::engine::liggghts {
+namespace {
+
+/// Collects one line for each obstacle.
+class Obstacles {
+ public:
+  void add(const config::Location& where, const std::string& what) {
+    all_.push_back(where.file.empty() ? what : fmt::format("{}:{}: {}", where.file, where.line, what));
+  }
+  std::vector<std::string> take() { return std::move(all_); }
+
+ private:
+  std::vector<std::string> all_;
+};
+
+void check_law(const run::Assembly& a, const host::Registry& registry, Obstacles& found) {
+  const config::PluginInstance& law = a.c.contact.law;
+  if (law.kind != "hertz_mindlin") {
+    found.add(law.where, fmt::format("contact.law '{}': LIGGGHTS has no such law; the nearest is hertz_mindlin", law.kind));
+    return;
+  }
+  if (instance_text(law, Kind::contact_law, "cap", registry) != "spring") {
+    found.add(law.where, "contact.law: cap is 'sum', but LIGGGHTS limits the spring alone; set cap: spring");
+  }
+}
+
+void check_interactions(const run::Assembly& a, const host::Registry& registry, Obstacles& found) {
+  int rolling = 0;
+  for (const config::PluginInstance& use : a.c.contact.interactions) {
+    const std::string name = fmt::format("contact.interactions '{}'", use.name);
+    const auto needs = [&](const char* parameter, std::string_view wanted) {
+      const std::string value = instance_text(use, Kind::interaction, parameter, registry);
+      if (value != wanted) found.add(use.where, fmt::format("{}: {} is '{}'; LIGGGHTS knows '{}' alone", name, parameter, value, wanted));
+    };
+    if (use.kind == "cohesion_sjkr") {
+      needs("friction", "contact");
+    } else if (use.kind == "rolling_epsd" || use.kind == "rolling_constant_torque") {
+      needs("length", "effective");
+      if (use.kind == "rolling_constant_torque") needs("spin", "relative");
+      if (++rolling == 2) found.add(use.where, fmt::format("{}: LIGGGHTS takes one kind of rolling friction; leave one out", name));
+    } else {
+      found.add(use.where, fmt::format("{}: LIGGGHTS has no '{}'; what it has are rolling_epsd, rolling_constant_torque and cohesion_sjkr",
+                                       name, use.kind));
+    }
+  }
+  for (const config::PluginInstance& use : a.c.contact.pair_parameters) {
+    found.add(use.where, fmt::format("contact.pair_parameters '{}': in LIGGGHTS restitution and friction are constants; give those of the "
+                                     "usual speed under pairs",
+                                     use.name));
+  }
+}
+
+void check_forces(const run::Assembly& a, Obstacles& found) {
+  for (const config::PluginInstance& use : a.c.body_forces) {
+    if (use.kind == "gravity") continue;
+    found.add(use.where, fmt::format("body_forces '{}': of these only gravity is handed to LIGGGHTS; leave '{}' out", use.name, use.kind));
+  }
+}
+
+void check_geometry(const run::Assembly& a, Obstacles& found) {
+  for (std::size_t g = 0; g < a.geometries.size(); ++g) {
+    const config::GeometryCase& geometry = a.c.geometry[g];
+    const config::Location& where = geometry.plugin.where;
+    if (a.geometries[g].surface.triangle_count == 0)
+      found.add(where, fmt::format("geometry '{}': '{}' has no surface to export; make it a box or a mesh", geometry.plugin.name,
+                                   geometry.plugin.kind));
+    if (geometry.motion.translation)
+      found.add(where, fmt::format("geometry '{}': its translation is not handed to LIGGGHTS; rotation alone is", geometry.plugin.name));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> obstacles_of(const run::Assembly& a, const host::Registry& registry) {
+  Obstacles found;
+  check_law(a, registry, found);
+  check_interactions(a, registry, found);
+  check_forces(a, found);
+  check_geometry(a, found);
+  if (a.c.start) found.add(a.c.fill.where, "start: LIGGGHTS cannot take over the contacts of another run; fill the mill anew");
+  return found.take();
+}
+
+std::vector<std::string> differences_of(const run::Assembly& a) {
+  std::vector<std::string> all{"LIGGGHTS books no energy by kind: neither dissipation nor a balance"};
+  bool turns = false;
+  for (const config::GeometryCase& geometry : a.c.geometry) turns = turns || geometry.motion.rotation.has_value();
+  for (const config::PluginInstance& use : a.c.contact.interactions) {
+    const bool constant = use.kind == "rolling_constant_torque";
+    if (constant)
+      all.push_back("the constant rolling torque of LIGGGHTS goes with the elastic part of the normal force, here with all of it");
+    if ((constant || use.kind == "rolling_epsd") && turns)
+      all.push_back("at a turning wall LIGGGHTS resists the bead's own spin, here its spin against the wall");
+  }
+  return all;
+}
+
+}  // namespace millscope::engine::liggghts

@@ -1,0 +1,207 @@
+#include "studies/engine/liggghts/script.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kernel/base/program.hpp"
+
+namespace millscope::engine::liggghts {
+namespace {
+
+/// Lines of a script: a command, blanks up to a column, its words.
+class Lines {
+ public:
+  void add(std::string_view command, const std::string& words) { text_ += fmt::format("{:<15} {}\n", command, words); }
+  void say(const std::string& comment) { text_ += "\n# " + comment + "\n"; }
+  std::string take() { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+std::string joined(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += fmt::format(" {}", value);
+  return text;
+}
+
+std::string triple(const base::Vector3& v) { return fmt::format("{} {} {}", v[0], v[1], v[2]); }
+
+/// What holds all beads on their way: the domain, and on axes that are not periodic a bead's diameter more.
+struct Bounds {
+  double low, high;
+};
+Bounds bounds_of(const run::Assembly& a, std::size_t axis) {
+  const dem::Settings& s = a.system->settings();
+  if (s.periodic.length[axis] > 0) return {s.periodic_low[axis], s.periodic_low[axis] + s.periodic.length[axis]};
+  return {s.low[axis], s.high[axis]};
+}
+
+void add_physics(const run::Assembly& a, const Physics& physics, Lines& lines) {
+  lines.say("materials, each an atom type: " + fmt::format("{}", fmt::join(a.materials, ", ")));
+  lines.add("fix", "young all property/global youngsModulus peratomtype" + joined(physics.young));
+  lines.add("fix", "poisson all property/global poissonsRatio peratomtype" + joined(physics.poisson));
+  lines.say(fmt::format("of each pair of types; {:g} where two never meet", kNeverUsed));
+  for (const PairProperty& p : physics.pairs)
+    lines.add("fix", fmt::format("{0} all property/global {0} peratomtypepair {1}{2}", p.name, a.materials.size(), joined(p.values)));
+  lines.add("pair_style", "gran model " + physics.model);
+  lines.add("pair_coeff", "* *");
+  const double g = std::hypot(a.gravity[0], a.gravity[1], a.gravity[2]);
+  if (g > 0) lines.add("fix", fmt::format("gravity all gravity {} vector {} {} {}", g, a.gravity[0], a.gravity[1], a.gravity[2]));
+}
+
+void add_walls(const run::Assembly& a, const Physics& physics, const std::vector<MeshFile>& meshes, Lines& lines) {
+  if (meshes.empty()) return;
+  lines.say("walls; the torque is about the axis of each");
+  std::string names;
+  for (const MeshFile& mesh : meshes) {
+    const dem::Motion& motion = a.system->bodies[mesh.body].motion;
+    lines.add("fix", fmt::format("{} all mesh/surface/stress file {} type {} stress on reference_point {}", mesh.id, mesh.file, mesh.type,
+                                 triple(motion.point)));
+    names += " " + mesh.id;
+  }
+  lines.add("fix", fmt::format("walls all wall/gran model {} mesh n_meshes {} meshes{}", physics.model, meshes.size(), names));
+}
+
+/// Ω(t) as a formula of the step, or "" where it is the same from t = 0 on.
+std::string speed_formula(const run::Assembly& a, const dem::Motion& m) {
+  if (m.start == 0 && m.ramp == 0 && m.ripple_amplitude == 0) return "";
+  // Of the step that is being made: positions are those at its end.
+  const std::string time = fmt::format("((step-{})*{})", -a.first_step, a.time_step);
+  std::string formula = fmt::format("{}", m.speed);
+  if (m.ramp > 0)
+    formula += fmt::format("*(({0}>={1})+({0}<{1})*({0}>{2})*({0}-{2})/{3})", time, m.start + m.ramp, m.start, m.ramp);
+  else
+    formula += fmt::format("*({}>={})", time, m.start);
+  if (m.ripple_amplitude > 0)
+    formula += fmt::format("*(1+{}*sin({}*{}+{}))", m.ripple_amplitude, 2 * std::numbers::pi * m.ripple_frequency, time, m.ripple_phase);
+  return formula;
+}
+
+void add_motion(const run::Assembly& a, const std::vector<MeshFile>& meshes, Lines& lines) {
+  lines.say("the walls turn");
+  for (const MeshFile& mesh : meshes) {
+    const dem::Motion& m = a.system->bodies[mesh.body].motion;
+    if (m.speed == 0) continue;
+    const std::string formula = speed_formula(a, m);
+    const std::string place = fmt::format("origin {} axis", triple(m.point));
+    if (formula.empty()) {
+      const double sense = m.speed < 0 ? -1 : 1;
+      const base::Vector3 axis{sense * m.axis[0], sense * m.axis[1], sense * m.axis[2]};
+      lines.add("fix", fmt::format("turn_{0} all move/mesh mesh {0} rotate {1} {2} period {3}", mesh.id, place, triple(axis),
+                                   2 * std::numbers::pi / std::fabs(m.speed)));
+    } else {
+      lines.add("variable", fmt::format("omega_{} equal {}", mesh.id, formula));
+      lines.add("fix",
+                fmt::format("turn_{0} all move/mesh mesh {0} rotate/variable {1} {2} omega v_omega_{0}", mesh.id, place, triple(m.axis)));
+    }
+  }
+}
+
+std::int64_t steps_of(const run::Assembly& a, double seconds) { return std::max<std::int64_t>(1, std::llround(seconds / a.time_step)); }
+
+void add_output(const run::Assembly& a, const std::vector<MeshFile>& meshes, Lines& lines) {
+  lines.say("what is kept: energies, J; torque on each wall, N m; restart files");
+  lines.add("compute", "translation all ke");
+  lines.add("compute", "rotation all erotate/sphere");
+  std::string torques;
+  for (const MeshFile& mesh : meshes) torques += fmt::format(" f_{0}[4] f_{0}[5] f_{0}[6]", mesh.id);
+  const std::int64_t often = std::max<std::int64_t>(1, steps_of(a, 0.01) / 20);
+  lines.add("fix", fmt::format("series all ave/time {} 20 {} c_translation c_rotation{} file post/series.txt", often, 20 * often, torques));
+  lines.add("thermo_style", "custom step time atoms ke");
+  lines.add("thermo", fmt::format("{}", std::max<std::int64_t>(1, (a.end_step - a.first_step) / 200)));
+  lines.add("thermo_modify", "lost error norm no");
+  lines.add("restart", fmt::format("{} post/restart.1 post/restart.2", std::max<std::int64_t>(1000, (a.end_step - a.first_step) / 20)));
+}
+
+/// The case's own time, with frames from where the case wants them.
+void add_runs(const run::Assembly& a, Lines& lines) {
+  std::int64_t from = 0;
+  if (a.c.output.frames) {
+    from = std::min(a.end_step, steps_of(a, a.c.output.frames->from));
+    lines.add("run", fmt::format("{}", from));
+    lines.add("dump", fmt::format("frames all custom {} post/frame_*.txt id type x y z vx vy vz omegax omegay omegaz radius density",
+                                  steps_of(a, a.c.output.frames->every)));
+    lines.add("dump_modify", "frames sort id format \"%d %d %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g\"");
+  }
+  lines.add("run", fmt::format("{}", a.end_step - from));
+}
+
+}  // namespace
+
+std::vector<MeshFile> meshes_of(const run::Assembly& a) {
+  std::vector<MeshFile> all;
+  for (std::size_t g = 0; g < a.geometries.size(); ++g) {
+    const run::GeometryUse& use = a.geometries[g];
+    const std::size_t first = all.size();
+    for (std::size_t slot = 0; slot < use.slots.size(); ++slot) {
+      const int type = a.index_of_material(a.c.geometry[g].material_of(use.slots[slot])) + 1;
+      const auto same =
+          std::find_if(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(), [&](const MeshFile& m) { return m.type == type; });
+      if (same == all.end())
+        all.push_back(
+            {fmt::format("wall{}", all.size()), fmt::format("meshes/wall{}.stl", all.size()), g, type, {static_cast<std::uint32_t>(slot)}});
+      else
+        same->slots.push_back(static_cast<std::uint32_t>(slot));
+    }
+  }
+  return all;
+}
+
+std::string data_of(const run::Assembly& a) {
+  const dem::Particles& p = a.system->particles;
+  const auto n = static_cast<std::size_t>(p.count());
+  std::string text = fmt::format("{}: beads before they settle\n\n{} atoms\n{} atom types\n\n", a.c.name, n, a.materials.size());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Bounds b = bounds_of(a, axis);
+    text += fmt::format("{1} {2} {0}lo {0}hi\n", "xyz"[axis], b.low, b.high);
+  }
+  std::vector<std::size_t> order(n);
+  for (std::size_t i = 0; i < n; ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return p.id[i] < p.id[j]; });
+  std::string velocities = "\nVelocities\n\n";
+  text += "\nAtoms\n\n";
+  for (const std::size_t i : order) {
+    const dem::PositionLine& x = p.position[i];
+    const dem::MotionLine& m = p.motion[i];
+    const double volume = config::sphere_volume(2 * x.radius);
+    base::Vector3 centre;
+    for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = dem::wrapped(a.system->settings(), static_cast<int>(axis), x.centre[axis]);
+    text += fmt::format("{} {} {} {} {}\n", p.id[i] + 1, p.material[i] + 1, 2 * x.radius, 1 / (m.inverse_mass * volume), triple(centre));
+    velocities += fmt::format("{} {} {}\n", p.id[i] + 1, triple({m.v[0], m.v[1], m.v[2]}), triple({m.w[0], m.w[1], m.w[2]}));
+  }
+  return text + velocities;
+}
+
+std::string script_of(const run::Assembly& a, const Physics& physics, const std::vector<MeshFile>& meshes) {
+  Lines lines;
+  lines.say(fmt::format("{}: made by millscope {} for LIGGGHTS 3.8", a.c.name, base::version()));
+  lines.add("units", "si");
+  lines.add("atom_style", "granular");
+  lines.add("atom_modify", "map array sort 1000 0");
+  lines.add("communicate", "single vel yes");
+  lines.add("soft_particles", "yes");  // Young's moduli below 5 MPa and above 1 GPa are refused without
+  lines.add("hard_particles", "yes");
+  std::string boundary;
+  for (std::size_t axis = 0; axis < 3; ++axis) boundary += a.system->settings().periodic.length[axis] > 0 ? " p" : " f";
+  lines.add("boundary", boundary.substr(1));
+  lines.add("newton", "off");
+  lines.add("read_data", "beads.data");
+  lines.add("neighbor", fmt::format("{:.6g} bin", 0.3 * a.c.smallest_diameter()));
+  lines.add("neigh_modify", "delay 0");
+  add_physics(a, physics, lines);
+  add_walls(a, physics, meshes, lines);
+  lines.add("timestep", fmt::format("{}", a.time_step));
+  lines.add("fix", "move all nve/sphere");
+  add_output(a, meshes, lines);
+  lines.say("the charge falls with the walls at rest, up to t = 0");
+  lines.add("run", fmt::format("{}", -a.first_step));
+  add_motion(a, meshes, lines);
+  add_runs(a, lines);
+  return lines.take().substr(1);
+}
+
+}  // namespace millscope::engine::liggghts

@@ -1,0 +1,27 @@
+// A case as an input script of LIGGGHTS and what it reads.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/engine/liggghts/physics.hpp"
+
+namespace millscope::engine::liggghts {
+
+/// What a geometry has of one material, an STL file.
+struct MeshFile {
+  std::string id;  ///< of the fix
+  std::string file;
+  std::size_t body = 0;
+  int type = 0;  ///< of LIGGGHTS
+  std::vector<std::uint32_t> slots;
+};
+std::vector<MeshFile> meshes_of(const run::Assembly& a);
+
+/// The beads where they are now, at rest or not: file of `read_data`.
+std::string data_of(const run::Assembly& a);
+
+/// The script: settling with the walls at rest, then the case's own time. `meshes` lie in `meshes/`, results go to `post/`.
+std::string script_of(const run::Assembly& a, const Physics& physics, const std::vector<MeshFile>& meshes);
+
+}  // namespace millscope::engine::liggghts
