@@ -45,12 +45,12 @@ Made by millscope {}: {} beads, {} steps of {:.4g} s, {} triangles of walls.
 | `meshes/` | the walls, in metres, one file for each geometry and material |
 | `post/` | what comes out: `series.txt` (energies in J, torque on each wall in N m), `frame_*.txt` (beads), restart files |
 
-Steps before {} let the charge fall with the walls at rest; the case's own time begins there.
+Up to step {} the charge falls with the walls at rest; the case's own time begins there.
 
 ## What LIGGGHTS defines in its own way
 
 )",
-                                 a.c.name, base::version(), exported.beads, exported.steps, a.time_step, exported.triangles, -a.first_step);
+                                 a.c.name, base::version(), exported.beads, exported.steps, a.time_step, exported.triangles, zero_step(a));
   for (const std::string& difference : differences_of(a)) text += "- " + difference + ".\n";
   return text;
 }

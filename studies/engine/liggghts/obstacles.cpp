@@ -91,9 +91,17 @@ std::vector<std::string> obstacles_of(const run::Assembly& a, const host::Regist
 }
 
 std::vector<std::string> differences_of(const run::Assembly& a) {
-  std::vector<std::string> all{"LIGGGHTS books no energy by kind: neither dissipation nor a balance"};
+  std::vector<std::string> all{"LIGGGHTS books no energy by kind: neither dissipation nor a balance",
+                               "in LIGGGHTS a bead that sinks deep into a soft wall of small triangles touches several of them, each of "
+                               "which pushes; here it touches "
+                               "the wall once. Stiffer walls or a larger facet bring both together"};
   bool turns = false;
-  for (const config::GeometryCase& geometry : a.c.geometry) turns = turns || geometry.motion.rotation.has_value();
+  for (const config::GeometryCase& geometry : a.c.geometry) {
+    turns = turns || geometry.motion.rotation.has_value();
+    if (geometry.plugin.kind == "mill" || geometry.plugin.kind == "cylinder")
+      all.push_back(
+          fmt::format("'{}' is round here and flat triangles there, which stand nearer to the axis in their middle", geometry.plugin.name));
+  }
   for (const config::PluginInstance& use : a.c.contact.interactions) {
     const bool constant = use.kind == "rolling_constant_torque";
     if (constant)

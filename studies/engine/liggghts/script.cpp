@@ -30,6 +30,8 @@ std::string joined(const std::vector<double>& values) {
 
 std::string triple(const base::Vector3& v) { return fmt::format("{} {} {}", v[0], v[1], v[2]); }
 
+std::int64_t steps_of(const run::Assembly& a, double seconds) { return std::max<std::int64_t>(1, std::llround(seconds / a.time_step)); }
+
 /// What holds all beads on their way: the domain, and on axes that are not periodic a bead's diameter more.
 struct Bounds {
   double low, high;
@@ -70,7 +72,7 @@ void add_walls(const run::Assembly& a, const Physics& physics, const std::vector
 std::string speed_formula(const run::Assembly& a, const dem::Motion& m) {
   if (m.start == 0 && m.ramp == 0 && m.ripple_amplitude == 0) return "";
   // Of the step that is being made: positions are those at its end.
-  const std::string time = fmt::format("((step-{})*{})", -a.first_step, a.time_step);
+  const std::string time = fmt::format("((step-{})*{})", zero_step(a), a.time_step);
   std::string formula = fmt::format("{}", m.speed);
   if (m.ramp > 0)
     formula += fmt::format("*(({0}>={1})+({0}<{1})*({0}>{2})*({0}-{2})/{3})", time, m.start + m.ramp, m.start, m.ramp);
@@ -101,8 +103,6 @@ void add_motion(const run::Assembly& a, const std::vector<MeshFile>& meshes, Lin
   }
 }
 
-std::int64_t steps_of(const run::Assembly& a, double seconds) { return std::max<std::int64_t>(1, std::llround(seconds / a.time_step)); }
-
 void add_output(const run::Assembly& a, const std::vector<MeshFile>& meshes, Lines& lines) {
   lines.say("what is kept: energies, J; torque on each wall, N m; restart files");
   lines.add("compute", "translation all ke");
@@ -121,8 +121,8 @@ void add_output(const run::Assembly& a, const std::vector<MeshFile>& meshes, Lin
 void add_runs(const run::Assembly& a, Lines& lines) {
   std::int64_t from = 0;
   if (a.c.output.frames) {
-    from = std::min(a.end_step, steps_of(a, a.c.output.frames->from));
-    lines.add("run", fmt::format("{}", from));
+    from = std::min<std::int64_t>(a.end_step, std::llround(a.c.output.frames->from / a.time_step));
+    if (from > 0) lines.add("run", fmt::format("{}", from));
     lines.add("dump", fmt::format("frames all custom {} post/frame_*.txt id type x y z vx vy vz omegax omegay omegaz radius density",
                                   steps_of(a, a.c.output.frames->every)));
     lines.add("dump_modify", "frames sort id format \"%d %d %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g\"");
@@ -131,6 +131,11 @@ void add_runs(const run::Assembly& a, Lines& lines) {
 }
 
 }  // namespace
+
+std::int64_t zero_step(const run::Assembly& a) {
+  const std::int64_t often = a.c.output.frames ? steps_of(a, a.c.output.frames->every) : 1;
+  return (-a.first_step + often - 1) / often * often;
+}
 
 std::vector<MeshFile> meshes_of(const run::Assembly& a) {
   std::vector<MeshFile> all;
@@ -190,6 +195,7 @@ std::string script_of(const run::Assembly& a, const Physics& physics, const std:
   lines.add("boundary", boundary.substr(1));
   lines.add("newton", "off");
   lines.add("read_data", "beads.data");
+  lines.add("reset_timestep", fmt::format("{}", zero_step(a) + a.first_step));
   lines.add("neighbor", fmt::format("{:.6g} bin", 0.3 * a.c.smallest_diameter()));
   lines.add("neigh_modify", "delay 0");
   add_physics(a, physics, lines);
@@ -197,7 +203,7 @@ std::string script_of(const run::Assembly& a, const Physics& physics, const std:
   lines.add("timestep", fmt::format("{}", a.time_step));
   lines.add("fix", "move all nve/sphere");
   add_output(a, meshes, lines);
-  lines.say("the charge falls with the walls at rest, up to t = 0");
+  lines.say(fmt::format("the charge falls with the walls at rest, up to t = 0, which is step {}", zero_step(a)));
   lines.add("run", fmt::format("{}", -a.first_step));
   add_motion(a, meshes, lines);
   add_runs(a, lines);

@@ -18,6 +18,9 @@ struct MeshFile {
 };
 std::vector<MeshFile> meshes_of(const run::Assembly& a);
 
+/// The step at which the case's own time begins: frames come at whole multiples of their steps.
+std::int64_t zero_step(const run::Assembly& a);
+
 /// The beads where they are now, at rest or not: file of `read_data`.
 std::string data_of(const run::Assembly& a);
 
