@@ -1,4 +1,4 @@
-// export: a case for another engine.
+// export, import: a case for another engine, and what comes back.
 #include <fmt/core.h>
 
 #include "app/commands.hpp"
@@ -6,6 +6,7 @@
 #include "kernel/config/case.hpp"
 #include "kernel/run/assembly.hpp"
 #include "studies/engine/liggghts/folder.hpp"
+#include "studies/engine/liggghts/results.hpp"
 
 namespace millscope::app {
 
@@ -30,6 +31,22 @@ int export_case(const Arguments& arguments) {
   const engine::liggghts::Exported done = engine::liggghts::export_case(a, registry, folder);
   fmt::print("wrote {}: {} beads, {} meshes of {} triangles, {} steps; {}/README.md says how to run it\n", folder, done.beads, done.meshes,
              done.triangles, done.steps, folder);
+  return kDone;
+}
+
+int import_case(const Arguments& arguments) {
+  Options options(
+      "import FOLDER -o OUT",
+      "Reads what another engine left in the folder of an exported case, and writes it as a run: frames.h5, series.csv, summary.json. "
+      "analyze, compare and report take it. What that engine does not give is absent.",
+      "millscope import demo-liggghts -o demo-theirs");
+  options.positional("FOLDER", "folder that 'millscope export' has made, after the other engine has run in it");
+  options.add()("output,o", po::value<std::string>()->value_name("OUT"), "folder to make");
+  options.with_plugins();
+  if (!options.parse(arguments)) return kDone;
+  const std::string out = options.text("output");
+  const engine::liggghts::Imported done = engine::liggghts::import_case(options.text("FOLDER"), out, options.registry(), command_line);
+  fmt::print("wrote {}: {} beads, {} frames, up to {:.4g} s; see {}/summary.json\n", out, done.beads, done.frames, done.until, out);
   return kDone;
 }
 

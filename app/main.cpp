@@ -23,6 +23,7 @@ constexpr Command kCommands[] = {
     {"resume", "continue a run from its newest checkpoint", resume},
     {"check", "check a case and predict its cost", check},
     {"export", "a case for another engine", export_case},
+    {"import", "what another engine made of it", import_case},
     {"calibrate", "contact parameters from recordings", calibrate_study},
     {"validate", "whether what was calibrated holds elsewhere", validate},
     {"diagnose", "which physics a base case has left out", diagnose_study},

@@ -12,17 +12,18 @@ using Json = nlohmann::ordered_json;
 // Halves of a window may differ by this much even when the noise is smaller: what a mill engineer would call steady.
 constexpr double kSteadyTolerance = 0.01;
 
-/// P = M g ⟨x⟩ Ω, for any direction of gravity and any axis: Ω a · (M g × (r − p)) with the turning body's axis a through p.
-double power_of_centre(const Assembly& a, const Sample& s) {
+double power_of_centre(const Assembly& a, const Sample& s) { return power_of_centre(a, a.system->total_mass(), s.time, s.centre); }
+
+}  // namespace
+
+double power_of_centre(const Assembly& a, double mass, double time, const std::array<double, 3>& centre) {
   const std::optional<int> body = a.wall_body_of_mill();
   if (!body) return 0.0;
   const dem::Motion& m = a.system->bodies[*body].motion;
-  const base::Vector3 r{s.centre[0] - m.point[0], s.centre[1] - m.point[1], s.centre[2] - m.point[2]};
+  const base::Vector3 r{centre[0] - m.point[0], centre[1] - m.point[1], centre[2] - m.point[2]};
   const double moment = base::dot(m.axis, base::cross(a.gravity, r));
-  return a.system->total_mass() * dem::angular_speed(m, s.time) * moment;
+  return mass * dem::angular_speed(m, time) * moment;
 }
-
-}  // namespace
 
 Sample take_sample(const dem::System& system, const Assembly& a) {
   Sample s;

@@ -26,6 +26,10 @@ Sample take_sample(const dem::System& system, const Assembly& a);
 /// Samples every `kSampleInterval` of simulated time from the start of the analysis window to the end.
 inline constexpr double kSampleInterval = 1e-3;  // s
 
+/// P = M g ⟨x⟩ Ω, W, for any direction of gravity and any axis: Ω a · (M g × (r − p)) with the turning body's axis a through p. 0: none
+/// turns.
+double power_of_centre(const Assembly& a, double mass, double time, const std::array<double, 3>& centre);
+
 /// Means, standard errors, steadiness and energy balance over the samples of the window.
 nlohmann::ordered_json window_summary(const Assembly& a, const std::vector<Sample>& samples);
 

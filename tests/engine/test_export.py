@@ -1,4 +1,4 @@
-"""`millscope export` and `check --engine`: what LIGGGHTS gets, what it is refused, and that it moves the beads as this program does."""
+"""`millscope export`, `import` and `check --engine`: what LIGGGHTS gets, what it is refused, that it moves the beads as this program does."""
 import shutil
 import subprocess
 import unittest
@@ -18,7 +18,7 @@ class Export(CliTest):
 
     def test_what_is_written(self):
         script = self.script()
-        self.assertEqual(sorted(tree_of(self.folder / "out")), ["README.md", "beads.data", "in.liggghts", "meshes", "meshes/wall0.stl", "post"])
+        self.assertEqual(sorted(tree_of(self.folder / "out")), ["README.md", "beads.data", "case.resolved.yaml", "in.liggghts", "meshes", "meshes/wall0.stl", "post"])
         data = (self.folder / "out/beads.data").read_text(encoding="utf-8")
         beads = data.split("Atoms")[1].split("Velocities")[0].split("\n")[2:-2]
         self.assertIn("%d atoms" % len(beads), data)
@@ -63,6 +63,72 @@ class Export(CliTest):
         self.assert_one_line(self.millscope("export", "case.yaml", "-o", "out", "--engine", "liggghts"), "exists already")
 
 
+class Import(CliTest):
+    """Results as LIGGGHTS writes them, made up: a tenth of a second in which nothing moves and the torque is 0.2 N m."""
+
+    def setUp(self):
+        super().setUp()
+        self.succeed("export", "case.yaml", "-o", "theirs", "--engine", "liggghts", "--set", "mill.direction=clockwise")
+        script = (self.folder / "theirs/in.liggghts").read_text(encoding="utf-8")
+        self.step = float(words_of(script, "timestep")[0][0])
+        self.beads = [line.split() for line in (self.folder / "theirs/beads.data").read_text().split("Atoms")[1].split("Velocities")[0].splitlines() if line]
+        self.often = int(words_of(script, "dump")[0][3])
+        self.zero = -(-sum(int(w[0]) for w in words_of(script, "run")[:1]) // self.often) * self.often
+        self.post = self.folder / "theirs/post"
+        self.write_series(200)
+        self.write_frame(2 * self.often)
+
+    def write_series(self, rows):
+        every = 0.1 / 200 / self.step
+        lines = ["%d 1e-3 2e-3 0.01 -0.03 0.013 0 0 0.2" % (self.zero + every * (k + 1)) for k in range(rows)]
+        (self.post / "series.txt").write_text("# head\n# more\n" + "\n".join(lines) + "\n")
+
+    def write_frame(self, step, beads=None):
+        head = "ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%d\nITEM: BOX BOUNDS ff ff pp\n0 1\n0 1\n0 1\nITEM: ATOMS id\n"
+        rows = ["%s 1 %s %s %s 0 0 0 0 0 1 0.004 2500" % (b[0], *b[4:7]) for b in (beads or self.beads)]
+        (self.post / ("frame_%d.txt" % (self.zero + step))).write_text(head % (self.zero + step, len(rows)) + "\n".join(rows) + "\n")
+
+    def test_files_as_of_a_run(self):
+        self.succeed("import", "theirs", "-o", "out")
+        self.assertEqual(sorted(tree_of(self.folder / "out")), ["case.resolved.yaml", "frames.h5", "series.csv", "summary.json"])
+        summary = self.summary("out")
+        speed = summary["mill_speed_rad_per_s"]
+        self.assertLess(speed, 0)
+        self.assertAlmostEqual(summary["power_W"]["torque"], -0.2 * speed, places=9)
+        mass = len(self.beads) * 2500 * 4 / 3 * 3.141592653589793 * 0.004**3
+        self.assertAlmostEqual(summary["power_W"]["com"], mass * 9.81 * 0.01 * speed, places=6)
+        self.assertNotIn("dissipation", summary["power_W"])
+        self.assertEqual(summary["engine"]["name"], "liggghts")
+        self.assertIsNone(summary["com_m"][2])  # along a periodic axis there is none
+        with Hdf5(self.folder / "out/frames.h5") as f:
+            self.assertAlmostEqual(f.read("time")[0], 2 * self.often * self.step)
+            self.assertAlmostEqual(f.read("position")[1], float(self.beads[0][5]), places=6)
+            self.assertAlmostEqual(f.read("wall_angle")[0], speed * 2 * self.often * self.step)
+            self.assertEqual(f.read("spin")[:3], [0, 0, 1])
+
+    def refused(self, *parts):
+        self.assert_one_line(self.millscope("import", "theirs", "-o", "out"), *parts)
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_a_run_that_did_not_end(self):
+        self.write_series(100)
+        self.refused("series.txt: ends at 0.0(5|4998) s of 0.1 s", "let LIGGGHTS run to its end")
+
+    def test_a_lost_bead(self):
+        self.write_frame(3 * self.often, self.beads[1:])
+        self.refused("lost the others")
+
+    def test_results_of_another_case(self):
+        text = (self.post / "series.txt").read_text()
+        (self.post / "series.txt").write_text(text.replace(" 0 0 0.2", " 0 0 0.2 0 0 0.1"))
+        self.refused("series.txt:3: holds 12 numbers, 9 are expected")
+
+    def test_nothing_there(self):
+        (self.post / "series.txt").unlink()
+        self.refused("series.txt: cannot be read", "liggghts -in in.liggghts")
+        self.assert_one_line(self.millscope("import", "materials", "-o", "out"), "case.resolved.yaml: there is none", "millscope export")
+
+
 @unittest.skipUnless(shutil.which("liggghts"), "liggghts is not installed")
 class Alike(CliTest):
     def test_both_engines_move_the_beads_alike(self):
@@ -76,10 +142,14 @@ class Alike(CliTest):
         self.succeed("export", "case.yaml", "-o", "theirs", "--engine", "liggghts", *words)
         done = subprocess.run(["liggghts", "-in", "in.liggghts"], cwd=self.folder / "theirs", capture_output=True, text=True, timeout=PATIENCE)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.succeed("import", "theirs", "-o", "imported")
         frames = sorted((self.folder / "theirs/post").glob("frame_*.txt"), key=lambda p: int(p.stem.split("_")[1]))
         self.assertEqual(len(frames), 3)  # at 0, 10 and 20 ms
         theirs = [[float(w) for w in line.split()[2:5]] for line in frames[-1].read_text().splitlines()[9:]]
         self.run_case("ours", *words)
+        with Hdf5(self.folder / "imported/frames.h5") as f, Hdf5(self.folder / "ours/frames.h5") as g:
+            for one, other in zip(f.read("time"), g.read("time")):
+                self.assertAlmostEqual(one, other, places=9)
         with Hdf5(self.folder / "ours/frames.h5") as f:
             self.assertEqual(len(f.read("time")), 3)
             last = f.read("position")[-3 * len(theirs):]

@@ -6,6 +6,7 @@
 
 #include "kernel/base/error.hpp"
 #include "kernel/base/program.hpp"
+#include "kernel/config/writer.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/new_folder.hpp"
 #include "kernel/output/stl.hpp"
@@ -35,6 +36,7 @@ std::string readme(const run::Assembly& a, const Exported& exported) {
 
     liggghts -in in.liggghts                      # LIGGGHTS-PUBLIC 3.8; Debian: apt install liggghts
     mpirun -np 4 liggghts -in in.liggghts         # on four cores
+    millscope import . -o ../out                  # afterwards: files as of a run of millscope
 
 Made by millscope {}: {} beads, {} steps of {:.4g} s, {} triangles of walls.
 
@@ -43,7 +45,8 @@ Made by millscope {}: {} beads, {} steps of {:.4g} s, {} triangles of walls.
 | `in.liggghts` | the case: materials, contact model, walls, motion, output |
 | `beads.data` | the beads where millscope puts them, before they settle |
 | `meshes/` | the walls, in metres, one file for each geometry and material |
-| `post/` | what comes out: `series.txt` (energies in J, torque on each wall in N m), `frame_*.txt` (beads), restart files |
+| `case.resolved.yaml` | the case with all its values, for `millscope import` |
+| `post/` | what comes out: `series.txt` (energies in J, centre of mass in m, torque on each wall in N m), `frame_*.txt` (beads), restart files |
 
 Up to step {} the charge falls with the walls at rest; the case's own time begins there.
 
@@ -71,6 +74,7 @@ Exported export_case(run::Assembly& a, const host::Registry& registry, const fs:
   for (const MeshFile& mesh : meshes) exported.triangles += write_mesh(a, mesh, aside.path());
   output::write_file(aside.path() / "beads.data", data_of(a));
   output::write_file(aside.path() / "in.liggghts", script_of(a, physics_of(a, registry), meshes));
+  output::write_file(aside.path() / kResolvedCase, config::resolved_yaml(a.c, registry.descriptors()));
   output::write_file(aside.path() / "README.md", readme(a, exported));
   aside.publish();
   return exported;

@@ -8,14 +8,16 @@
 
 namespace millscope::engine::liggghts {
 
+inline constexpr const char* kResolvedCase = "case.resolved.yaml";
+
 /// What was written.
 struct Exported {
   std::size_t beads = 0, meshes = 0, triangles = 0;
   std::int64_t steps = 0;  ///< settling among them
 };
 
-/// Puts the beads in as a run of millscope does and writes in.liggghts, beads.data, meshes/ and README.md; whole or not at all. Throws
-/// base::UserError with one line for each obstacle (obstacles.hpp).
+/// Puts the beads in as a run of millscope does and writes in.liggghts, beads.data, meshes/, the resolved case and README.md; whole or not
+/// at all. Throws base::UserError with one line for each obstacle (obstacles.hpp).
 Exported export_case(run::Assembly& a, const host::Registry& registry, const std::filesystem::path& folder);
 
 }  // namespace millscope::engine::liggghts

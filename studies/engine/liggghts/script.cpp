@@ -104,13 +104,16 @@ void add_motion(const run::Assembly& a, const std::vector<MeshFile>& meshes, Lin
 }
 
 void add_output(const run::Assembly& a, const std::vector<MeshFile>& meshes, Lines& lines) {
-  lines.say("what is kept: energies, J; torque on each wall, N m; restart files");
+  lines.say("what is kept: energies, J; centre of mass, m; torque on each wall, N m; restart files");
   lines.add("compute", "translation all ke");
   lines.add("compute", "rotation all erotate/sphere");
+  for (const char* axis : {"x", "y", "z"}) lines.add("variable", fmt::format("centre_{0} equal xcm(all,{0})", axis));
   std::string torques;
   for (const MeshFile& mesh : meshes) torques += fmt::format(" f_{0}[4] f_{0}[5] f_{0}[6]", mesh.id);
   const std::int64_t often = std::max<std::int64_t>(1, steps_of(a, 0.01) / 20);
-  lines.add("fix", fmt::format("series all ave/time {} 20 {} c_translation c_rotation{} file post/series.txt", often, 20 * often, torques));
+  lines.add("fix",
+            fmt::format("series all ave/time {} 20 {} c_translation c_rotation v_centre_x v_centre_y v_centre_z{} file post/series.txt",
+                        often, 20 * often, torques));
   lines.add("thermo_style", "custom step time atoms ke");
   lines.add("thermo", fmt::format("{}", std::max<std::int64_t>(1, (a.end_step - a.first_step) / 200)));
   lines.add("thermo_modify", "lost error norm no");
