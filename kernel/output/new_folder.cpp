@@ -16,7 +16,15 @@ namespace millscope::output {
 namespace fs = std::filesystem;
 using base::UserError;
 
-void refuse_folder(const fs::path& folder) {
+namespace {
+
+/// Without a slash at its end.
+fs::path named(const fs::path& folder) { return folder.has_filename() ? folder : folder.parent_path(); }
+
+}  // namespace
+
+void refuse_folder(const fs::path& given) {
+  const fs::path folder = named(given);
   std::error_code trouble;
   if (fs::exists(fs::symlink_status(folder, trouble)))
     throw UserError(fmt::format("{} exists already; choose another name, or remove it", folder.string()));
@@ -25,13 +33,13 @@ void refuse_folder(const fs::path& folder) {
     throw UserError(fmt::format("{}: there is no folder {}; make it first, or choose another place", folder.string(), parent.string()));
 }
 
-NewFolder::NewFolder(const fs::path& target) : target_(target) {
-  refuse_folder(target);
+NewFolder::NewFolder(const fs::path& target) : target_(named(target)) {
+  refuse_folder(target_);
   std::error_code trouble;
   for (int n = 0;; ++n) {
-    path_ = fmt::format("{}.{}.tmp", target.string(), n);
+    path_ = fmt::format("{}.{}.tmp", target_.string(), n);
     if (fs::create_directory(path_, trouble)) return;
-    if (trouble) throw_write_error(target, trouble.value());
+    if (trouble) throw_write_error(target_, trouble.value());
   }
 }
 

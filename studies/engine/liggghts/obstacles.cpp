@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include "studies/engine/liggghts/physics.hpp"
+#include "studies/engine/liggghts/script.hpp"
 
 namespace millscope::engine::liggghts {
 namespace {
@@ -34,7 +35,7 @@ void check_law(const run::Assembly& a, const host::Registry& registry, Obstacles
 }
 
 void check_interactions(const run::Assembly& a, const host::Registry& registry, Obstacles& found) {
-  int rolling = 0;
+  int rolling = 0, cohesion = 0;
   for (const config::PluginInstance& use : a.c.contact.interactions) {
     const std::string name = fmt::format("contact.interactions '{}'", use.name);
     const auto needs = [&](const char* parameter, std::string_view wanted) {
@@ -43,6 +44,7 @@ void check_interactions(const run::Assembly& a, const host::Registry& registry, 
     };
     if (use.kind == "cohesion_sjkr") {
       needs("friction", "contact");
+      if (++cohesion == 2) found.add(use.where, fmt::format("{}: LIGGGHTS takes one kind of cohesion; leave one out", name));
     } else if (use.kind == "rolling_epsd" || use.kind == "rolling_constant_torque") {
       needs("length", "effective");
       if (use.kind == "rolling_constant_torque") needs("spin", "relative");
@@ -66,15 +68,48 @@ void check_forces(const run::Assembly& a, Obstacles& found) {
   }
 }
 
+/// LIGGGHTS loses a triangle whose middle lies outside the box of the beads.
+bool reaches_out(const run::Assembly& a, const Surface& surface) {
+  for (std::uint64_t t = 0; t < surface.triangle_count; ++t) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Bounds bounds = bounds_of(a, axis);
+      double middle = 0;
+      for (std::size_t corner = 0; corner < 3; ++corner) middle += surface.vertices[3 * surface.triangles[3 * t + corner] + axis] / 3;
+      if (middle < bounds.low || middle > bounds.high) return true;
+    }
+  }
+  return false;
+}
+
 void check_geometry(const run::Assembly& a, Obstacles& found) {
   for (std::size_t g = 0; g < a.geometries.size(); ++g) {
     const config::GeometryCase& geometry = a.c.geometry[g];
     const config::Location& where = geometry.plugin.where;
-    if (a.geometries[g].surface.triangle_count == 0)
-      found.add(where, fmt::format("geometry '{}': '{}' has no surface to export; make it a box or a mesh", geometry.plugin.name,
-                                   geometry.plugin.kind));
+    const std::string name = fmt::format("geometry '{}'", geometry.plugin.name);
+    const run::GeometryUse& use = a.geometries[g];
+    if (use.surface.triangle_count == 0 || !use.interior.is_bounded)
+      found.add(where, fmt::format("{}: '{}' has no end and no surface to export; make it a box or a mesh", name, geometry.plugin.kind));
+    else if (reaches_out(a, use.surface))
+      found.add(where, fmt::format(
+                           "{}: reaches beyond the domain, where LIGGGHTS loses it; make it as long as the domain repeats, or widen domain",
+                           name));
     if (geometry.motion.translation)
-      found.add(where, fmt::format("geometry '{}': its translation is not handed to LIGGGHTS; rotation alone is", geometry.plugin.name));
+      found.add(where, fmt::format("{}: its translation is not handed to LIGGGHTS; rotation alone is", name));
+  }
+}
+
+/// Numbers that LIGGGHTS itself refuses.
+void check_numbers(const run::Assembly& a, const host::Registry& registry, Obstacles& found) {
+  for (const std::string& name : a.materials) {
+    const config::MaterialCase& material = a.c.material(name);
+    if (material.poisson < 0)
+      found.add(material.where, fmt::format("materials.{}: Poisson's ratio is {}; LIGGGHTS wants 0 to 0.5", name, material.poisson));
+  }
+  if (a.c.contact.law.kind != "hertz_mindlin") return;
+  for (const dem::PairPhysics& pair : a.system->physics()) {
+    const double restitution = pair_number(a, registry, a.c.contact.law, pair, "restitution");
+    if (restitution <= 0.05)
+      found.add(a.c.contact.law.where, fmt::format("pairs.{}: restitution is {}; LIGGGHTS wants more than 0.05", pair.name, restitution));
   }
 }
 
@@ -86,16 +121,19 @@ std::vector<std::string> obstacles_of(const run::Assembly& a, const host::Regist
   check_interactions(a, registry, found);
   check_forces(a, found);
   check_geometry(a, found);
-  if (a.c.start) found.add(a.c.fill.where, "start: LIGGGHTS cannot take over the contacts of another run; fill the mill anew");
+  check_numbers(a, registry, found);
+  if (a.c.start) found.add(a.c.start->node.where(), "start: LIGGGHTS cannot take over the contacts of another run; fill the mill anew");
   return found.take();
 }
 
 std::vector<std::string> differences_of(const run::Assembly& a) {
-  std::vector<std::string> all{"LIGGGHTS books no energy by kind: neither dissipation nor a balance",
-                               "in LIGGGHTS a bead that sinks deep into a soft wall of small triangles touches several of them, each of "
-                               "which pushes; here it touches "
-                               "the wall once. Stiffer walls or a larger facet bring both together"};
-  bool turns = false;
+  std::vector<std::string> all{
+      "LIGGGHTS books no energy by kind: neither dissipation nor a balance",
+      "in LIGGGHTS a bead that sinks deep into a soft wall of small triangles touches several of them, each of which pushes; here it "
+      "touches "
+      "the wall once. Stiffer walls or a larger facet bring both together",
+      "where damping pulls parting bodies, friction in LIGGGHTS is limited by the size of that force; here there is none"};
+  bool turns = false, rolling = false;
   for (const config::GeometryCase& geometry : a.c.geometry) {
     turns = turns || geometry.motion.rotation.has_value();
     if (geometry.plugin.kind == "mill" || geometry.plugin.kind == "cylinder")
@@ -103,12 +141,21 @@ std::vector<std::string> differences_of(const run::Assembly& a) {
           fmt::format("'{}' is round here and flat triangles there, which stand nearer to the axis in their middle", geometry.plugin.name));
   }
   for (const config::PluginInstance& use : a.c.contact.interactions) {
-    const bool constant = use.kind == "rolling_constant_torque";
-    if (constant)
+    if (use.kind == "rolling_constant_torque") {
+      rolling = true;
       all.push_back("the constant rolling torque of LIGGGHTS goes with the elastic part of the normal force, here with all of it");
-    if ((constant || use.kind == "rolling_epsd") && turns)
-      all.push_back("at a turning wall LIGGGHTS resists the bead's own spin, here its spin against the wall");
+    }
+    if (use.kind == "rolling_epsd") {
+      rolling = true;
+      all.push_back(
+          "the rolling spring of LIGGGHTS takes the secant stiffness 4/3 E* a, here the tangent 2 E* a: it is softer there by 1.5");
+    }
   }
+  if (rolling && turns) {
+    all.push_back("at a turning wall LIGGGHTS resists the bead's own spin, here its spin against the wall");
+    all.push_back("the torque that LIGGGHTS gives for a wall lacks the rolling moments; the power by centre of mass has them");
+  }
+  if (a.c.output.tracks || a.c.output.vtk) all.push_back("of the output, frames are kept; tracks and VTK are not");
   return all;
 }
 

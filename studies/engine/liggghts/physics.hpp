@@ -19,11 +19,16 @@ inline constexpr double kNeverUsed = 0.5;
 struct Physics {
   std::vector<double> young, poisson;  ///< Pa (softened) and 1, of each type
   std::vector<PairProperty> pairs;
-  std::string model;  ///< the words behind `gran model`, for beads and walls
+  std::string model;     ///< the words behind `gran model`, for beads and walls, in the order that LIGGGHTS wants
+  std::string settings;  ///< behind all other words
 };
 
 /// Throws base::UserError where a coefficient is missing. The case has no obstacles (obstacles.hpp).
 Physics physics_of(const run::Assembly& a, const host::Registry& registry);
+
+/// A coefficient of `pairs` that a contact law takes.
+double pair_number(const run::Assembly& a, const host::Registry& registry, const config::PluginInstance& law, const dem::PairPhysics& pair,
+                   const char* parameter);
 
 /// A number of an interaction or a law, by its instance alone.
 double instance_number(const config::PluginInstance& use, Kind kind, const char* parameter, const host::Registry& registry);

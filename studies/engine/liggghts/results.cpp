@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <optional>
-#include <sstream>
 
 #include "kernel/base/error.hpp"
 #include "kernel/config/case.hpp"
@@ -30,22 +28,49 @@ namespace {
 namespace fs = std::filesystem;
 using base::UserError;
 
-std::vector<double> numbers_of(const std::string& line) {
-  std::istringstream in(line);
-  std::vector<double> numbers;
-  for (double number; in >> number;) numbers.push_back(number);
-  return numbers;
-}
+/// A text file, line by line, with its place for messages.
+class TextFile {
+ public:
+  explicit TextFile(const fs::path& file) : file_(file), in_(file) {
+    if (!in_) throw UserError(fmt::format("{}: cannot be read; run 'liggghts -in in.liggghts' in that folder first", file.string()));
+  }
+  /// The next line that is whole; false at the end.
+  bool next() {
+    ++line_;
+    return static_cast<bool>(std::getline(in_, text_)) && !in_.eof();
+  }
+  const std::string& text() const { return text_; }
+  [[noreturn]] void fail(const std::string& what) const { throw UserError(fmt::format("{}:{}: {}", file_.string(), line_, what)); }
 
-std::ifstream opened(const fs::path& file) {
-  std::ifstream in(file);
-  if (!in) throw UserError(fmt::format("{}: cannot be read; run 'liggghts -in in.liggghts' in that folder first", file.string()));
-  return in;
-}
+  /// The numbers of the line, exactly so many, all finite.
+  std::vector<double> numbers(std::size_t count) const {
+    std::vector<double> all;
+    const char *at = text_.data(), *const end = at + text_.size();
+    for (;;) {
+      while (at < end && (*at == ' ' || *at == '\t' || *at == '\r')) ++at;
+      if (at == end) break;
+      double value = 0;
+      const auto [behind, error] = std::from_chars(at, end, value);
+      if (error != std::errc{} || !std::isfinite(value))
+        fail(fmt::format("'{}' holds what is no finite number; the run has blown up, or the file is damaged", text_.substr(0, 60)));
+      all.push_back(value);
+      at = behind;
+    }
+    if (all.size() != count)
+      fail(fmt::format("holds {} numbers, {} are expected; it belongs to another case, or is damaged", all.size(), count));
+    return all;
+  }
 
-/// A row of series.txt: means over its steps.
-struct Instant {
-  double time = 0;                       ///< s, of the case
+ private:
+  fs::path file_;
+  std::ifstream in_;
+  std::string text_;
+  int line_ = 0;
+};
+
+/// A row of series.txt: means over about 10 ms.
+struct Span {
+  double begin = 0, time = 0, end = 0;   ///< s, of the case; `time`: the middle
   double translation = 0, rotation = 0;  ///< J
   std::array<double, 3> centre{};        ///< m
   double torque = 0;                     ///< on the turning walls about their axes, N m
@@ -54,8 +79,13 @@ struct Instant {
 
 constexpr std::size_t kBeforeTorques = 6;  // step, two energies, three coordinates
 
-Instant instant_of(const std::vector<double>& row, const run::Assembly& a, const std::vector<MeshFile>& meshes) {
-  Instant s{(row[0] - static_cast<double>(zero_step(a))) * a.time_step, row[1], row[2], {row[3], row[4], row[5]}};
+Span span_of(const std::vector<double>& row, const run::Assembly& a, const std::vector<MeshFile>& meshes) {
+  Span s;
+  const auto every = static_cast<double>(series_every(a)), values = static_cast<double>(kSeriesValues);
+  s.end = (row[0] - static_cast<double>(zero_step(a))) * a.time_step;
+  s.begin = s.end - values * every * a.time_step;
+  s.time = s.end - 0.5 * (values - 1) * every * a.time_step;
+  s.translation = row[1], s.rotation = row[2], s.centre = {row[3], row[4], row[5]};
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     const dem::Motion& motion = a.system->bodies[meshes[m].body].motion;
     if (motion.speed == 0) continue;
@@ -67,79 +97,90 @@ Instant instant_of(const std::vector<double>& row, const run::Assembly& a, const
   return s;
 }
 
-std::vector<Instant> series_of(const fs::path& file, const run::Assembly& a, const std::vector<MeshFile>& meshes) {
-  std::ifstream in = opened(file);
-  std::vector<Instant> all;
-  const std::size_t columns = kBeforeTorques + 3 * meshes.size();
-  int line = 0;
-  for (std::string text; std::getline(in, text);) {
-    ++line;
-    if (text.empty() || text[0] == '#') continue;
-    const std::vector<double> row = numbers_of(text);
-    if (in.eof() && row.size() < columns) break;  // cut short by a kill
-    if (row.size() != columns)
-      throw UserError(
-          fmt::format("{}:{}: holds {} numbers, {} are expected; it belongs to another case", file.string(), line, row.size(), columns));
-    all.push_back(instant_of(row, a, meshes));
+/// Those of the case's own time, without a gap, up to its end.
+std::vector<Span> series_of(const fs::path& file, const run::Assembly& a, const std::vector<MeshFile>& meshes) {
+  TextFile in(file);
+  std::vector<Span> all;
+  const double row = static_cast<double>(kSeriesValues * series_every(a)) * a.time_step;
+  while (in.next()) {
+    if (in.text().empty() || in.text()[0] == '#') continue;
+    const Span s = span_of(in.numbers(kBeforeTorques + 3 * meshes.size()), a, meshes);
+    if (s.begin < -1e-9) continue;
+    if (s.begin - (all.empty() ? 0.0 : all.back().end) > row + 1e-9)
+      in.fail(
+          fmt::format("nothing stands from {:.4g} s to {:.4g} s; let LIGGGHTS run in one go", all.empty() ? 0.0 : all.back().end, s.begin));
+    all.push_back(s);
   }
+  const double last = all.empty() ? 0 : all.back().end;
+  if (last + row < a.c.time.end)
+    throw UserError(
+        fmt::format("{}: ends at {:.4g} s of {:.4g} s; let LIGGGHTS run to its end (README.md), or export the case again with --set "
+                    "time.end_s",
+                    file.string(), last, a.c.time.end));
   return all;
 }
 
 /// The beads of one frame, by number.
 struct Frame {
   std::int64_t step = 0;
-  std::vector<double> position, velocity, spin, radius, density;
+  std::vector<double> position, velocity, spin, radius, mass;
   std::vector<std::uint32_t> id, material;
 };
 
-Frame read_frame(const fs::path& file, std::size_t beads) {
-  std::ifstream in = opened(file);
+constexpr const char* kFrameColumns = "ITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz radius density";
+
+void add_bead(const TextFile& in, const run::Assembly& a, Frame& frame) {
+  const std::vector<double> row = in.numbers(13);
+  if (row[0] != static_cast<double>(frame.id.size() + 1))
+    in.fail(fmt::format("bead {} stands where {} is expected; beads must stand in the order of their numbers, without a gap", row[0],
+                        frame.id.size() + 1));
+  if (!(row[1] >= 1 && row[1] <= static_cast<double>(a.materials.size()) && row[1] == std::floor(row[1])))
+    in.fail(fmt::format("type {} is none of the {} of the case", row[1], a.materials.size()));
+  frame.id.push_back(static_cast<std::uint32_t>(frame.id.size()));
+  frame.material.push_back(static_cast<std::uint32_t>(row[1]) - 1);
+  frame.position.insert(frame.position.end(), row.begin() + 2, row.begin() + 5);
+  frame.velocity.insert(frame.velocity.end(), row.begin() + 5, row.begin() + 8);
+  frame.spin.insert(frame.spin.end(), row.begin() + 8, row.begin() + 11);
+  frame.radius.push_back(row[11]);
+  frame.mass.push_back(row[12] * config::sphere_volume(2 * row[11]));
+}
+
+Frame read_frame(const fs::path& file, const run::Assembly& a) {
+  TextFile in(file);
   Frame frame;
-  std::string text;
   for (int line = 1; line <= 9; ++line) {
-    if (!std::getline(in, text)) throw UserError(fmt::format("{}:{}: the frame is cut short; delete the file", file.string(), line));
-    if (line == 2) frame.step = std::stoll(text);
+    if (!in.next()) in.fail("the frame is cut short; let LIGGGHTS run again");
+    if (line == 2) frame.step = std::llround(in.numbers(1)[0]);
+    if (line == 4 && in.numbers(1)[0] != static_cast<double>(a.bead_count))
+      in.fail(fmt::format("holds {} beads of {}: LIGGGHTS has lost the others; take a smaller time step", in.text(), a.bead_count));
+    if (line == 9 && in.text().substr(0, in.text().find_last_not_of(" \r") + 1) != kFrameColumns)
+      in.fail("the columns are others than in.liggghts asks for");
   }
-  while (std::getline(in, text)) {
-    const std::vector<double> row = numbers_of(text);
-    if (row.size() != 13)
-      throw UserError(fmt::format("{}: a bead has {} numbers, 13 are expected; the frame is cut short", file.string(), row.size()));
-    frame.id.push_back(static_cast<std::uint32_t>(row[0]) - 1);
-    frame.material.push_back(static_cast<std::uint32_t>(row[1]) - 1);
-    frame.position.insert(frame.position.end(), row.begin() + 2, row.begin() + 5);
-    frame.velocity.insert(frame.velocity.end(), row.begin() + 5, row.begin() + 8);
-    frame.spin.insert(frame.spin.end(), row.begin() + 8, row.begin() + 11);
-    frame.radius.push_back(row[11]);
-    frame.density.push_back(row[12]);
-  }
-  if (frame.id.size() != beads)
-    throw UserError(fmt::format("{}: holds {} beads of {}: LIGGGHTS lost the others, or the frame is cut short; take a smaller time step",
-                                file.string(), frame.id.size(), beads));
+  while (in.next()) add_bead(in, a, frame);
+  if (frame.id.size() != a.bead_count)
+    in.fail(fmt::format("the frame is cut short after {} beads of {}; let LIGGGHTS run again", frame.id.size(), a.bead_count));
   return frame;
 }
 
-std::vector<fs::path> frames_in(const fs::path& folder) {
-  std::vector<std::pair<std::int64_t, fs::path>> found;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("frame_") && name.ends_with(".txt")) found.emplace_back(std::atoll(name.c_str() + 6), entry.path());
-  }
-  std::sort(found.begin(), found.end());
-  std::vector<fs::path> files;
-  for (const auto& [step, file] : found) files.push_back(file);
-  return files;
+/// The steps of the frames that the case asks for.
+std::vector<std::int64_t> steps_of_frames(const run::Assembly& a) {
+  std::vector<std::int64_t> steps;
+  if (!a.c.output.frames) return steps;
+  const std::int64_t zero = zero_step(a), every = frame_every(a);
+  for (std::int64_t step = (zero + frames_from(a) + every - 1) / every * every; step <= zero + a.end_step; step += every)
+    steps.push_back(step);
+  return steps;
 }
 
 /// frames.h5. Returns how many.
-std::size_t write_frames(const std::vector<fs::path>& files, const run::Assembly& a, const fs::path& to) {
+std::size_t write_frames(const fs::path& folder, const run::Assembly& a, const fs::path& to) {
   std::optional<output::FrameWriter> writer;
-  for (const fs::path& file : files) {
-    const Frame frame = read_frame(file, a.bead_count);
-    if (!writer) {
-      std::vector<double> mass;
-      for (std::size_t i = 0; i < frame.id.size(); ++i) mass.push_back(frame.density[i] * config::sphere_volume(2 * frame.radius[i]));
-      writer = output::FrameWriter::create(to, {frame.id, frame.radius, mass, frame.material, a.materials, {}, {}});
-    }
+  const std::vector<std::int64_t> steps = steps_of_frames(a);
+  for (const std::int64_t step : steps) {
+    const fs::path file = folder / fmt::format("frame_{}.txt", step);
+    const Frame frame = read_frame(file, a);
+    if (frame.step != step) throw UserError(fmt::format("{}:2: is of step {}; let LIGGGHTS run again", file.string(), frame.step));
+    if (!writer) writer = output::FrameWriter::create(to, {frame.id, frame.radius, frame.mass, frame.material, a.materials, {}, {}});
     output::FrameView view;
     view.time = static_cast<double>(frame.step - zero_step(a)) * a.time_step;
     if (const auto body = a.wall_body_of_mill()) {
@@ -153,39 +194,62 @@ std::size_t write_frames(const std::vector<fs::path>& files, const run::Assembly
     writer->append(view);
   }
   if (writer) writer->close();
-  return files.size();
+  return steps.size();
 }
 
-double charge_mass(const run::Assembly& a) { return static_cast<double>(a.bead_count) * a.c.mean_bead_mass(); }
+/// Of the beads in beads.data, kg.
+double charge_mass(const fs::path& file) {
+  TextFile in(file);
+  double mass = 0;
+  while (in.next() && in.text() != "Atoms") {
+  }
+  in.next();
+  while (in.next() && !in.text().empty()) {
+    const std::vector<double> row = in.numbers(7);
+    mass += row[3] * config::sphere_volume(row[2]);
+  }
+  return mass;
+}
 
-void write_series(const std::vector<Instant>& series, const run::Assembly& a, double mass, const fs::path& file) {
-  const std::vector<std::string> columns{
-      "time_s", "translational_energy_J", "rotational_energy_J", "torque_N_m", "power_torque_W", "power_com_W", "com_x_m", "com_y_m",
-      "com_z_m"};
+/// Whether the power by centre of mass is known: along a periodic axis LIGGGHTS follows beads from image to image.
+bool knows_centre(const run::Assembly& a) { return !a.c.domain.periodic[0] && !a.c.domain.periodic[1]; }
+
+void write_series(const std::vector<Span>& series, const run::Assembly& a, double mass, const fs::path& file) {
+  std::vector<std::string> columns{"time_s", "translational_energy_J", "rotational_energy_J", "torque_N_m", "power_torque_W"};
+  if (knows_centre(a)) columns.emplace_back("power_com_W");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!a.c.domain.periodic[axis]) columns.push_back(fmt::format("com_{}_m", "xyz"[axis]));
+  }
   output::SeriesWriter writer = output::SeriesWriter::create(file, columns);
-  for (const Instant& s : series) {
-    if (s.time < 0) continue;
-    const std::array<double, 9> row{s.time,      s.translation, s.rotation,
-                                    s.torque,    s.power,       run::power_of_centre(a, mass, s.time, s.centre),
-                                    s.centre[0], s.centre[1],   s.centre[2]};
+  for (const Span& s : series) {
+    std::vector<double> row{s.time, s.translation, s.rotation, s.torque, s.power};
+    if (knows_centre(a)) row.push_back(run::power_of_centre(a, mass, s.time, s.centre));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!a.c.domain.periodic[axis]) row.push_back(s.centre[axis]);
+    }
     writer.append(row);
   }
   writer.close();
 }
 
-nlohmann::ordered_json summary_of(const std::vector<Instant>& series, const run::Assembly& a, double mass) {
+nlohmann::ordered_json summary_of(const std::vector<Span>& series, const run::Assembly& a, double mass) {
+  constexpr std::size_t kFewest = 9;
   std::vector<double> torque, centre, kinetic;
   std::array<std::vector<double>, 3> place;
-  double from = 0, to = 0;
-  for (const Instant& s : series) {
-    if (s.time <= a.c.time.analyze_from) continue;
-    if (torque.empty()) from = s.time;
-    to = s.time;
+  double from = 0;
+  for (const Span& s : series) {
+    if (s.begin < a.c.time.analyze_from - 1e-9) continue;
+    if (torque.empty()) from = s.begin;
     torque.push_back(s.power);
     centre.push_back(run::power_of_centre(a, mass, s.time, s.centre));
     kinetic.push_back(s.translation + s.rotation);
     for (std::size_t axis = 0; axis < 3; ++axis) place[axis].push_back(s.centre[axis]);
   }
+  if (torque.size() < kFewest)
+    throw UserError(
+        fmt::format("the analysed window holds {} means of 10 ms, at least {} are needed; export the case again with a later "
+                    "time.end_s or an earlier time.analyze_from_s",
+                    torque.size(), kFewest));
   const run::Mean pt = run::correlated_mean(torque), pc = run::correlated_mean(centre), ke = run::correlated_mean(kinetic);
   nlohmann::ordered_json j;
   j["schema_version"] = 1;
@@ -195,15 +259,16 @@ nlohmann::ordered_json summary_of(const std::vector<Instant>& series, const run:
   j["steps"] = a.end_step - a.first_step;
   j["dt_s"] = a.time_step;
   j["dt_rayleigh_fraction"] = a.time_step / a.rayleigh_time;
-  j["simulated_s"] = series.back().time;
+  j["simulated_s"] = series.back().end;
   j["settle_s"] = static_cast<double>(-a.first_step) * a.time_step;
   j["mill_speed_rad_per_s"] = a.mill_speed;
   j["stiffness_factor"] = a.c.stiffness_factor;
-  j["window_s"] = {from, to};
-  j["power_W"] = {{"torque", pt.value}, {"torque_sem", pt.standard_error}, {"com", pc.value}, {"com_sem", pc.standard_error}};
+  j["window_s"] = {from, series.back().end};
+  j["power_W"] = {{"torque", pt.value}, {"torque_sem", pt.standard_error}};
+  if (knows_centre(a)) j["power_W"].update({{"com", pc.value}, {"com_sem", pc.standard_error}});
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const run::Mean m = run::correlated_mean(place[axis]);
-    const bool repeats = a.c.domain.periodic[axis];  // there LIGGGHTS follows beads from image to image
+    const bool repeats = a.c.domain.periodic[axis];
     j["com_m"].push_back(repeats ? nlohmann::ordered_json() : nlohmann::ordered_json(m.value));
     j["com_m_sem"].push_back(repeats ? nlohmann::ordered_json() : nlohmann::ordered_json(m.standard_error));
   }
@@ -223,31 +288,21 @@ std::string version_in(const fs::path& log) {
   return "unknown";
 }
 
-void require_enough(const std::vector<Instant>& series, const run::Assembly& a, const fs::path& file) {
-  const double last = series.empty() ? 0 : series.back().time, step = series.size() > 1 ? series[1].time - series[0].time : 0;
-  if (last + 1.5 * step >= a.c.time.end) return;
-  throw UserError(
-      fmt::format("{}: ends at {:.4g} s of {:.4g} s; let LIGGGHTS run to its end (README.md), or export the case again with --set "
-                  "time.end_s",
-                  file.string(), last, a.c.time.end));
-}
-
 }  // namespace
 
 Imported import_case(const fs::path& folder, const fs::path& out, const host::Registry& registry,
                      const std::vector<std::string>& command_line) {
-  const fs::path case_file = folder / kResolvedCase, series_file = folder / "post" / "series.txt";
+  const fs::path case_file = folder / kResolvedCase;
   if (!fs::exists(case_file))
     throw UserError(fmt::format("{}: there is none; give a folder that 'millscope export' has made", case_file.string()));
   const run::Assembly a = run::assemble(config::read_case(case_file.string()), registry);
-  const std::vector<Instant> series = series_of(series_file, a, meshes_of(a));
-  require_enough(series, a, series_file);
-  const double mass = charge_mass(a);
+  const std::vector<Span> series = series_of(folder / "post" / "series.txt", a, meshes_of(a));
+  const double mass = charge_mass(folder / "beads.data");
+  nlohmann::ordered_json j = summary_of(series, a, mass);
   output::NewFolder aside(out);
-  Imported imported{a.bead_count, write_frames(frames_in(folder / "post"), a, aside.path() / "frames.h5"), series.back().time};
+  Imported imported{a.bead_count, write_frames(folder / "post", a, aside.path() / "frames.h5"), series.back().end};
   write_series(series, a, mass, aside.path() / "series.csv");
   output::write_file(aside.path() / kResolvedCase, config::resolved_yaml(a.c, registry.descriptors()));
-  nlohmann::ordered_json j = summary_of(series, a, mass);
   j["engine"]["version"] = version_in(folder / "log.liggghts");
   j["provenance"] = output::provenance(command_line, {});
   output::write_json(aside.path() / "summary.json", j);

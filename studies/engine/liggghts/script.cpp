@@ -30,16 +30,10 @@ std::string joined(const std::vector<double>& values) {
 
 std::string triple(const base::Vector3& v) { return fmt::format("{} {} {}", v[0], v[1], v[2]); }
 
-std::int64_t steps_of(const run::Assembly& a, double seconds) { return std::max<std::int64_t>(1, std::llround(seconds / a.time_step)); }
-
-/// What holds all beads on their way: the domain, and on axes that are not periodic a bead's diameter more.
-struct Bounds {
-  double low, high;
-};
-Bounds bounds_of(const run::Assembly& a, std::size_t axis) {
-  const dem::Settings& s = a.system->settings();
-  if (s.periodic.length[axis] > 0) return {s.periodic_low[axis], s.periodic_low[axis] + s.periodic.length[axis]};
-  return {s.low[axis], s.high[axis]};
+/// At least one, and no more than the whole run has and one.
+std::int64_t steps_of(const run::Assembly& a, double seconds) {
+  const auto most = static_cast<double>(a.end_step - a.first_step + 1);
+  return std::max<std::int64_t>(1, std::llround(std::min(seconds / a.time_step, most)));
 }
 
 void add_physics(const run::Assembly& a, const Physics& physics, Lines& lines) {
@@ -49,7 +43,7 @@ void add_physics(const run::Assembly& a, const Physics& physics, Lines& lines) {
   lines.say(fmt::format("of each pair of types; {:g} where two never meet", kNeverUsed));
   for (const PairProperty& p : physics.pairs)
     lines.add("fix", fmt::format("{0} all property/global {0} peratomtypepair {1}{2}", p.name, a.materials.size(), joined(p.values)));
-  lines.add("pair_style", "gran model " + physics.model);
+  lines.add("pair_style", "gran model " + physics.model + physics.settings);
   lines.add("pair_coeff", "* *");
   const double g = std::hypot(a.gravity[0], a.gravity[1], a.gravity[2]);
   if (g > 0) lines.add("fix", fmt::format("gravity all gravity {} vector {} {} {}", g, a.gravity[0], a.gravity[1], a.gravity[2]));
@@ -65,26 +59,23 @@ void add_walls(const run::Assembly& a, const Physics& physics, const std::vector
                                  triple(motion.point)));
     names += " " + mesh.id;
   }
-  lines.add("fix", fmt::format("walls all wall/gran model {} mesh n_meshes {} meshes{}", physics.model, meshes.size(), names));
+  lines.add("fix",
+            fmt::format("walls all wall/gran model {} mesh n_meshes {} meshes{}{}", physics.model, meshes.size(), names, physics.settings));
 }
 
-/// Ω(t) as a formula of the step, or "" where it is the same from t = 0 on.
+/// Ω(t) as a formula of the step (dem::angular_speed), or "" where it is the same from t = 0 on.
 std::string speed_formula(const run::Assembly& a, const dem::Motion& m) {
   if (m.start == 0 && m.ramp == 0 && m.ripple_amplitude == 0) return "";
-  // Of the step that is being made: positions are those at its end.
-  const std::string time = fmt::format("((step-{})*{})", zero_step(a), a.time_step);
-  std::string formula = fmt::format("{}", m.speed);
-  if (m.ramp > 0)
-    formula += fmt::format("*(({0}>={1})+({0}<{1})*({0}>{2})*({0}-{2})/{3})", time, m.start + m.ramp, m.start, m.ramp);
-  else
-    formula += fmt::format("*({}>={})", time, m.start);
+  const std::string steady = fmt::format("((step-{})*{}-{})", zero_step(a), a.time_step, m.start + m.ramp);  // s, since the ramp's end
+  std::string formula = fmt::format("{}*({}>=0)", m.speed, steady);
   if (m.ripple_amplitude > 0)
-    formula += fmt::format("*(1+{}*sin({}*{}+{}))", m.ripple_amplitude, 2 * std::numbers::pi * m.ripple_frequency, time, m.ripple_phase);
+    formula += fmt::format("*(1+{}*sin({}*{}+{}))", m.ripple_amplitude, 2 * std::numbers::pi * m.ripple_frequency, steady, m.ripple_phase);
+  if (m.ramp > 0) formula += fmt::format("+{0}*({1}<0)*({1}>{2})*(1+{1}/{3})", m.speed, steady, -m.ramp, m.ramp);
   return formula;
 }
 
 void add_motion(const run::Assembly& a, const std::vector<MeshFile>& meshes, Lines& lines) {
-  lines.say("the walls turn");
+  if (a.wall_body_of_mill()) lines.say("the walls turn");
   for (const MeshFile& mesh : meshes) {
     const dem::Motion& m = a.system->bodies[mesh.body].motion;
     if (m.speed == 0) continue;
@@ -110,10 +101,10 @@ void add_output(const run::Assembly& a, const std::vector<MeshFile>& meshes, Lin
   for (const char* axis : {"x", "y", "z"}) lines.add("variable", fmt::format("centre_{0} equal xcm(all,{0})", axis));
   std::string torques;
   for (const MeshFile& mesh : meshes) torques += fmt::format(" f_{0}[4] f_{0}[5] f_{0}[6]", mesh.id);
-  const std::int64_t often = std::max<std::int64_t>(1, steps_of(a, 0.01) / 20);
+  const std::int64_t often = series_every(a);
   lines.add("fix",
-            fmt::format("series all ave/time {} 20 {} c_translation c_rotation v_centre_x v_centre_y v_centre_z{} file post/series.txt",
-                        often, 20 * often, torques));
+            fmt::format("series all ave/time {} {} {} c_translation c_rotation v_centre_x v_centre_y v_centre_z{} file post/series.txt",
+                        often, kSeriesValues, kSeriesValues * often, torques));
   lines.add("thermo_style", "custom step time atoms ke");
   lines.add("thermo", fmt::format("{}", std::max<std::int64_t>(1, (a.end_step - a.first_step) / 200)));
   lines.add("thermo_modify", "lost error norm no");
@@ -124,10 +115,10 @@ void add_output(const run::Assembly& a, const std::vector<MeshFile>& meshes, Lin
 void add_runs(const run::Assembly& a, Lines& lines) {
   std::int64_t from = 0;
   if (a.c.output.frames) {
-    from = std::min<std::int64_t>(a.end_step, std::llround(a.c.output.frames->from / a.time_step));
+    from = frames_from(a);
     if (from > 0) lines.add("run", fmt::format("{}", from));
     lines.add("dump", fmt::format("frames all custom {} post/frame_*.txt id type x y z vx vy vz omegax omegay omegaz radius density",
-                                  steps_of(a, a.c.output.frames->every)));
+                                  frame_every(a)));
     lines.add("dump_modify", "frames sort id format \"%d %d %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g\"");
   }
   lines.add("run", fmt::format("{}", a.end_step - from));
@@ -135,8 +126,22 @@ void add_runs(const run::Assembly& a, Lines& lines) {
 
 }  // namespace
 
+Bounds bounds_of(const run::Assembly& a, std::size_t axis) {
+  const dem::Settings& s = a.system->settings();
+  if (s.periodic.length[axis] > 0) return {s.periodic_low[axis], s.periodic_low[axis] + s.periodic.length[axis]};
+  return {s.low[axis], s.high[axis]};
+}
+
+std::int64_t series_every(const run::Assembly& a) { return std::max<std::int64_t>(1, steps_of(a, 0.01) / kSeriesValues); }
+
+std::int64_t frame_every(const run::Assembly& a) { return steps_of(a, a.c.output.frames->every); }
+
+std::int64_t frames_from(const run::Assembly& a) {
+  return std::min(a.end_step, static_cast<std::int64_t>(std::llround(std::min(a.c.output.frames->from, a.c.time.end) / a.time_step)));
+}
+
 std::int64_t zero_step(const run::Assembly& a) {
-  const std::int64_t often = a.c.output.frames ? steps_of(a, a.c.output.frames->every) : 1;
+  const std::int64_t often = a.c.output.frames ? frame_every(a) : 1;
   return (-a.first_step + often - 1) / often * often;
 }
 

@@ -18,6 +18,20 @@ struct MeshFile {
 };
 std::vector<MeshFile> meshes_of(const run::Assembly& a);
 
+/// What holds all beads on their way, m.
+struct Bounds {
+  double low, high;
+};
+Bounds bounds_of(const run::Assembly& a, std::size_t axis);
+
+/// A row of series.txt is the mean of so many values, each so many steps after the one before; together about 10 ms.
+inline constexpr std::int64_t kSeriesValues = 20;
+std::int64_t series_every(const run::Assembly& a);
+
+/// Where the case has frames: steps between them, and from which step after t = 0 on.
+std::int64_t frame_every(const run::Assembly& a);
+std::int64_t frames_from(const run::Assembly& a);
+
 /// The step at which the case's own time begins: frames come at whole multiples of their steps.
 std::int64_t zero_step(const run::Assembly& a);
 
