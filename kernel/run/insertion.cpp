@@ -85,6 +85,24 @@ std::vector<base::Vector3> lattice_sites(const Assembly& a, const Region& region
   }
 }
 
+/// Beads that cannot fit are refused before memory is asked for them.
+void refuse_too_many(const Assembly& a, const Region& region, std::size_t places) {
+  if (places >= a.bead_count) return;
+  if (a.c.smallest_diameter() == a.c.largest_diameter()) {
+    throw UserError(a.c.fill.where,
+                    fmt::format("{} beads are asked for but only {} fit without touching; lower the filling, or check that the liner is in "
+                                "the right unit (millscope geometry report)",
+                                a.bead_count, places));
+  }
+  double space = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) space *= region.box.high[axis] - region.box.low[axis];
+  const double volume = static_cast<double>(a.bead_count) * a.c.mean_bead_volume();
+  if (volume <= space) return;
+  throw UserError(a.c.fill.where,
+                  fmt::format("{} beads of {:.4g} m^3 are asked for, but the space to fill has {:.4g} m^3; lower the filling", a.bead_count,
+                              volume, space));
+}
+
 }  // namespace
 
 std::vector<BeadType> draw_types(const Assembly& a, std::uint64_t count, Random& random) {
@@ -136,18 +154,10 @@ void insert_beads(Assembly& a) {
   const double jitter = 0.25 * (kSpacing - 1) * a.c.largest_diameter();
   const Region region = region_of(a);
   std::vector<base::Vector3> centres = lattice_sites(a, region, jitter);
+  refuse_too_many(a, region, centres.size());
   const std::vector<BeadType> types = draw_types(a, a.bead_count, random);
   a.system->particles.resize(a.bead_count);
   if (centres.size() < a.bead_count) {
-    const auto [smallest, largest] =
-        std::minmax_element(types.begin(), types.end(), [](const BeadType& p, const BeadType& q) { return p.diameter < q.diameter; });
-    if (smallest->diameter == largest->diameter) {
-      throw UserError(
-          a.c.fill.where,
-          fmt::format("{} beads are asked for but only {} fit without touching; lower the filling, or check that the liner is in "
-                      "the right unit (millscope geometry report)",
-                      a.bead_count, centres.size()));
-    }
     centres = scattered(a, region, types, random);
   } else {
     const auto shake = [&random, jitter] { return jitter * (2 * random.uniform() - 1) / std::numbers::sqrt3; };
