@@ -1,5 +1,5 @@
 // run, resume, check.
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -64,8 +64,7 @@ int check_for_engine(const Options& options) {
   check_engine(options.text("engine"));
   const host::Registry registry = options.registry();
   const run::Assembly a = run::assemble(config::read_case(options.text("CASE.yaml"), options.list("set")), registry);
-  const std::vector<std::string> obstacles = engine::liggghts::obstacles_of(a, registry);
-  if (!obstacles.empty()) throw base::UserError(fmt::format("{}", fmt::join(obstacles, "\n")));
+  engine::liggghts::require_playable(a, registry);
   fmt::print("LIGGGHTS can play this case: {} beads, {} steps of {:.4g} s\n", a.bead_count, a.end_step - a.first_step, a.time_step);
   for (const std::string& difference : engine::liggghts::differences_of(a)) fmt::print("differs: {}\n", difference);
   return kDone;

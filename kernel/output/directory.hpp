@@ -7,6 +7,9 @@
 
 namespace millscope::output {
 
+/// In the directory of a run: the case with all its values.
+inline constexpr const char* kResolvedCase = "case.resolved.yaml";
+
 enum class Mode {
   fresh,      ///< must be missing or empty
   overwrite,  ///< `--force`: files of an earlier run are removed, foreign files refuse

@@ -188,6 +188,10 @@ double rayleigh_time(double radius, double density, double young, double poisson
   return std::numbers::pi * radius * std::sqrt(density / shear) / (0.1631 * poisson + 0.8766);
 }
 
+std::int64_t steps_of(double interval, double time_step) {
+  return std::max<std::int64_t>(1, std::llround(std::min(interval / time_step, kMostSteps)));
+}
+
 int Assembly::index_of_material(const std::string& name) const {
   const auto found = std::find(materials.begin(), materials.end(), name);
   assert(found != materials.end());

@@ -22,6 +22,8 @@ struct GeometryUse {
 
 /// More steps than any run will take, and few enough to be counted exactly.
 inline constexpr double kMostSteps = 1e15;
+/// From one output to the next, `interval` s apart: at least one. An interval beyond any run is as good as never.
+std::int64_t steps_of(double interval, double time_step);
 
 /// Everything a run is made of. Movable only.
 struct Assembly {

@@ -12,11 +12,6 @@
 namespace millscope::run {
 namespace {
 
-/// An interval beyond any run is as good as never.
-std::int64_t steps_of(double interval, double time_step) {
-  return std::max<std::int64_t>(1, std::llround(std::min(interval / time_step, kMostSteps)));
-}
-
 [[noreturn]] void refuse_tracks(const Assembly& a, const std::string& message) {
   a.c.root.at("output").at("tracks").at("beads").fail(message);
 }

@@ -30,7 +30,6 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-constexpr const char* kResolvedCase = "case.resolved.yaml";
 constexpr const char* kSummary = "summary.json";
 constexpr int kMostHalvings = 2;  // of the time step, where beads run away before the analysis begins
 
@@ -248,7 +247,7 @@ std::uint64_t disk_estimate(const Assembly& a) {
 }
 
 void write_resolved(const Session& s, const host::Registry& registry) {
-  output::write_file(s.directory / kResolvedCase, config::resolved_yaml(s.assembly.c, registry.descriptors()));
+  output::write_file(s.directory / output::kResolvedCase, config::resolved_yaml(s.assembly.c, registry.descriptors()));
 }
 
 /// The newest sound checkpoint. `damaged`: it is the previous one, because the newest cannot be read.
@@ -323,7 +322,7 @@ Outcome resume_run(const host::Registry& registry, const RunOptions& options) {
   bool damaged = false;
   const auto opened = open_checkpoint(options.output, options.quiet, damaged);
   const output::ArchiveReader& archive = *opened;
-  Session s{assemble(config::read_case((options.output / kResolvedCase).string(), options.overrides), registry,
+  Session s{assemble(config::read_case((options.output / output::kResolvedCase).string(), options.overrides), registry,
                      {options.threads, options.instruction_set}),
             options.output, nullptr, options};
   s.case_fingerprint = fingerprint(s.assembly, registry);
@@ -331,7 +330,7 @@ Outcome resume_run(const host::Registry& registry, const RunOptions& options) {
     throw UserError(fmt::format(
         "{}: it or a mesh that it names is no longer what the checkpoint was written with; put it back, or start a new run with "
         "another -o",
-        (options.output / kResolvedCase).string()));
+        (options.output / output::kResolvedCase).string()));
   }
   dem::System& system = *s.assembly.system;
   system.restore([&archive](const std::string& name) { return archive.read<double>("system/" + name); },

@@ -8,6 +8,7 @@
 
 #include "kernel/dem/state_visitors.hpp"
 #include "kernel/output/archive.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/run/bodies.hpp"
 #include "kernel/run/insertion.hpp"
 
@@ -43,7 +44,7 @@ fs::path checkpoint_of(const Assembly& a) {
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored)) refuse(a, "no such folder; give the one that 'millscope run CASE.yaml -o OUT' wrote");
   const fs::path checkpoint = output::checkpoint_path(folder);
-  if (!fs::exists(checkpoint, ignored) || !fs::exists(folder / "case.resolved.yaml", ignored))
+  if (!fs::exists(checkpoint, ignored) || !fs::exists(folder / output::kResolvedCase, ignored))
     refuse(a, "it holds no checkpoint.h5 with its case.resolved.yaml; give a folder that 'millscope run CASE.yaml -o OUT' wrote");
   if (!fs::exists(folder / "summary.json", ignored))
     refuse(a, fmt::format("that run has not reached its end; millscope resume {}", folder.string()));
@@ -85,7 +86,7 @@ void take_beads(const output::ArchiveReader& archive, Donor& donor) {
 Donor donor_of(const Assembly& a) {
   const fs::path checkpoint = checkpoint_of(a);
   Donor donor;
-  donor.c = config::read_case((checkpoint.parent_path() / "case.resolved.yaml").string());
+  donor.c = config::read_case((checkpoint.parent_path() / output::kResolvedCase).string());
   const std::unique_ptr<const output::ArchiveReader> archive = opened(a, checkpoint);
   if (!archive->has("time_s") || !archive->has("surfaces"))
     refuse(a, "an older millscope wrote its checkpoint; run it again with this one");

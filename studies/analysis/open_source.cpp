@@ -6,6 +6,7 @@
 
 #include "kernel/base/hash.hpp"
 #include "kernel/config/units.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/output/track_reader.hpp"
 #include "studies/analysis/frames_source.hpp"
 #include "studies/analysis/mill.hpp"
@@ -19,8 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using base::UserError;
 
-constexpr const char* kResolvedCase = "case.resolved.yaml";
-
 OpenedSource open_frames(const SourceRequest& request, MillOfCase mill) {
   const fs::path file = request.path / "frames.h5";
   OpenedSource opened;
@@ -31,10 +30,10 @@ OpenedSource open_frames(const SourceRequest& request, MillOfCase mill) {
 }
 
 OpenedSource open_simulation(const SourceRequest& request, const host::Registry& registry) {
-  const fs::path case_file = request.path / kResolvedCase;
+  const fs::path case_file = request.path / output::kResolvedCase;
   if (!fs::exists(case_file)) {
     throw UserError(fmt::format("{}: holds no {}; give the directory that 'millscope run CASE.yaml -o OUT' wrote, or a recording",
-                                request.path.string(), kResolvedCase));
+                                request.path.string(), output::kResolvedCase));
   }
   MillOfCase mill = read_mill_of_case(case_file, registry);
   const bool has_frames = fs::exists(request.path / "frames.h5"), has_tracks = fs::exists(request.path / "tracks.h5");
@@ -60,7 +59,7 @@ OpenedSource open_simulation(const SourceRequest& request, const host::Registry&
 SourceRequest as_directory(SourceRequest request) {
   const fs::path name = request.path.filename();
   const fs::path directory = request.path.has_parent_path() ? request.path.parent_path() : fs::path(".");
-  if ((name != "frames.h5" && name != "tracks.h5") || !fs::exists(directory / kResolvedCase)) return request;
+  if ((name != "frames.h5" && name != "tracks.h5") || !fs::exists(directory / output::kResolvedCase)) return request;
   if (name == "tracks.h5" && request.tracers.empty()) request.tracers = {"all"};
   request.path = directory;
   return request;

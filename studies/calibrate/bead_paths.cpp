@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kernel/config/case.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/output/frame_reader.hpp"
 #include "studies/camera/camera.hpp"
 
@@ -43,7 +44,7 @@ double lever_ratio(const output::FrameBeads& beads, const config::Case& c, const
 }  // namespace
 
 BeadPaths::BeadPaths(const std::filesystem::path& run, int beads, const AxialPlace& place, const host::Registry& registry)
-    : case_file_(run / "case.resolved.yaml"), mill_(analysis::read_mill_of_case(case_file_, registry)), place_(place) {
+    : case_file_(run / output::kResolvedCase), mill_(analysis::read_mill_of_case(case_file_, registry)), place_(place) {
   const output::FrameReader reader(run / "frames.h5");
   const config::Case c = config::read_case(case_file_.string());
   const double from = c.time.analyze_from;

@@ -12,6 +12,7 @@
 #include "kernel/config/case.hpp"
 #include "kernel/config/existing_file.hpp"
 #include "kernel/config/units.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/output/frame_reader.hpp"
 #include "studies/analysis/engine.hpp"
 #include "studies/analysis/frames_source.hpp"
@@ -217,7 +218,7 @@ RecordedCondition look_at_profile(const VelocityProfile& profile, std::size_t co
 }
 
 analysis::ResultSet profile_of_run(const fs::path& run, const RecordedCondition& recorded, const Processing& how) {
-  const fs::path case_file = run / "case.resolved.yaml";
+  const fs::path case_file = run / output::kResolvedCase;
   const analysis::MillOfCase mill = analysis::read_mill_of_case(case_file, how.registry);
   analysis::FramesSource source(output::FrameReader(run / "frames.h5"), mill.context,
                                 config::read_case(case_file.string()).time.analyze_from, std::nullopt);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kernel/config/case.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/output/summary.hpp"
 #include "studies/analysis/mill.hpp"
 #include "studies/camera/camera.hpp"
@@ -17,7 +18,7 @@ namespace {
 using base::UserError;
 
 std::filesystem::path case_of(const std::filesystem::path& run) {
-  const std::filesystem::path file = run / "case.resolved.yaml";
+  const std::filesystem::path file = run / output::kResolvedCase;
   if (std::filesystem::exists(file)) return file;
   throw UserError(fmt::format("{}: is no directory of a run (it has no case.resolved.yaml); make one: millscope run CASE.yaml -o {}",
                               run.string(), run.string()));

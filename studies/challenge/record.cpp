@@ -7,6 +7,7 @@
 
 #include "kernel/base/parallel.hpp"
 #include "kernel/config/case.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
 #include "studies/analysis/mill.hpp"
@@ -49,7 +50,7 @@ PowerOfRun power_of(const fs::path& run, const host::Registry& registry) {
   const auto power = j.is_object() ? j.value("power_W", nlohmann::ordered_json()) : nlohmann::ordered_json();
   if (!power.is_object() || !power.contains("com") || !power["com"].is_number())
     throw UserError(fmt::format("{}: its summary.json tells no power; the run has not come to its end", run.string()));
-  const bool tracers = config::read_case((run / "case.resolved.yaml").string()).has_tracers();
+  const bool tracers = config::read_case((run / output::kResolvedCase).string()).has_tracers();
   const double ratio = tracers ? calibrate::BeadPaths(run, 1, {}, registry).power_ratio() : 1.0;
   const double sem = power.contains("com_sem") && power["com_sem"].is_number() ? power["com_sem"].get<double>() : 0.0;
   return {ratio * power["com"].get<double>(), ratio * sem};

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "kernel/config/case.hpp"
+#include "kernel/output/directory.hpp"
 #include "studies/campaign/progress.hpp"
 #include "studies/report/one_section.hpp"
 
@@ -15,7 +16,7 @@ namespace fs = std::filesystem;
 /// The part of a simulation's time that is done, 0 … 1.
 double fraction_of(const fs::path& run) {
   try {
-    const double end = config::read_case((run / "case.resolved.yaml").string()).time.end;
+    const double end = config::read_case((run / output::kResolvedCase).string()).time.end;
     return std::clamp(campaign::simulated_time(run) / end, 0.0, 1.0);
   } catch (const base::UserError&) {
     return 0;  // it has only just begun

@@ -4,6 +4,7 @@
 
 #include "kernel/base/text.hpp"
 #include "kernel/config/case.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/output/series.hpp"
 #include "studies/analysis/mill.hpp"
 #include "studies/report/movie.hpp"
@@ -48,7 +49,7 @@ Json mill_json(const fs::path& case_file, const host::Registry& registry) {
 
 /// Movie, liner and mill; what cannot be shown is a note, not the end of the report: the figures do not need it.
 void add_pictures(Json& section, const fs::path& folder, const host::Registry& registry, const SectionOptions& options) {
-  const fs::path case_file = folder / "case.resolved.yaml";
+  const fs::path case_file = folder / output::kResolvedCase;
   for (const char* key : {"movie", "liner", "mill"}) section[key] = nullptr;
   try {
     const config::Case c = config::read_case(case_file.string());
@@ -73,11 +74,11 @@ void add_pictures(Json& section, const fs::path& folder, const host::Registry& r
 Json run_section(const fs::path& folder, const host::Registry& registry, const SectionOptions& options) {
   const State state = state_of(folder, "summary.json");
   const Json summary = state == State::done ? json_object_of(folder / "summary.json") : Json(nullptr);
-  const config::Case c = config::read_case((folder / "case.resolved.yaml").string());
+  const config::Case c = config::read_case((folder / output::kResolvedCase).string());
   Json section = begun("run", c.name, folder);
   section["state"] = text(state);
   section["summary"] = summary;
-  section["case"] = base::text_of(folder / "case.resolved.yaml");
+  section["case"] = base::text_of(folder / output::kResolvedCase);
   section["series"] = series_json(folder);
   section["progress"] = nullptr;
   const Json& times = section["series"].contains("time_s") ? section["series"]["time_s"] : Json::array();

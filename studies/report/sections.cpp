@@ -6,6 +6,7 @@
 #include <array>
 #include <functional>
 
+#include "kernel/output/directory.hpp"
 #include "studies/report/one_section.hpp"
 
 namespace millscope::report {
@@ -23,7 +24,7 @@ struct Kind {
 
 const std::array<Kind, 8>& kinds() {
   static const std::array<Kind, 8> all{{
-      {"case.resolved.yaml", run_section},
+      {output::kResolvedCase, run_section},
       {"results.h5",
        [](const fs::path& folder, const host::Registry& registry, const SectionOptions&) { return analysis_section(folder, registry); }},
       {"comparison.json", [](const fs::path& folder, const host::Registry&, const SectionOptions&) { return comparison_section(folder); }},

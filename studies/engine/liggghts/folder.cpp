@@ -7,6 +7,7 @@
 #include "kernel/base/error.hpp"
 #include "kernel/base/program.hpp"
 #include "kernel/config/writer.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/new_folder.hpp"
 #include "kernel/output/stl.hpp"
@@ -62,8 +63,7 @@ Up to step {} the charge falls with the walls at rest; the case's own time begin
 }  // namespace
 
 Exported export_case(run::Assembly& a, const host::Registry& registry, const fs::path& folder) {
-  const std::vector<std::string> obstacles = obstacles_of(a, registry);
-  if (!obstacles.empty()) throw base::UserError(fmt::format("{}", fmt::join(obstacles, "\n")));
+  require_playable(a, registry);
   output::NewFolder aside(folder);
   run::insert_beads(a);
   Exported exported;
@@ -75,7 +75,7 @@ Exported export_case(run::Assembly& a, const host::Registry& registry, const fs:
   for (const MeshFile& mesh : meshes) exported.triangles += write_mesh(a, mesh, aside.path());
   output::write_file(aside.path() / "beads.data", data_of(a));
   output::write_file(aside.path() / "in.liggghts", script_of(a, physics_of(a, registry), meshes));
-  output::write_file(aside.path() / kResolvedCase, config::resolved_yaml(a.c, registry.descriptors()));
+  output::write_file(aside.path() / output::kResolvedCase, config::resolved_yaml(a.c, registry.descriptors()));
   output::write_file(aside.path() / "README.md", readme(a, exported));
   aside.publish();
   return exported;

@@ -8,8 +8,6 @@
 
 namespace millscope::engine::liggghts {
 
-inline constexpr const char* kResolvedCase = "case.resolved.yaml";
-
 /// What was written.
 struct Exported {
   std::size_t beads = 0, meshes = 0, triangles = 0;

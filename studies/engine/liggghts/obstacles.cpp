@@ -126,6 +126,11 @@ std::vector<std::string> obstacles_of(const run::Assembly& a, const host::Regist
   return found.take();
 }
 
+void require_playable(const run::Assembly& a, const host::Registry& registry) {
+  const std::vector<std::string> obstacles = obstacles_of(a, registry);
+  if (!obstacles.empty()) throw base::UserError(fmt::format("{}", fmt::join(obstacles, "\n")));
+}
+
 std::vector<std::string> differences_of(const run::Assembly& a) {
   std::vector<std::string> all{
       "LIGGGHTS books no energy by kind: neither dissipation nor a balance",

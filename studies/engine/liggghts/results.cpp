@@ -11,6 +11,7 @@
 #include "kernel/base/error.hpp"
 #include "kernel/config/case.hpp"
 #include "kernel/config/writer.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/frames.hpp"
 #include "kernel/output/new_folder.hpp"
@@ -292,7 +293,7 @@ std::string version_in(const fs::path& log) {
 
 Imported import_case(const fs::path& folder, const fs::path& out, const host::Registry& registry,
                      const std::vector<std::string>& command_line) {
-  const fs::path case_file = folder / kResolvedCase;
+  const fs::path case_file = folder / output::kResolvedCase;
   if (!fs::exists(case_file))
     throw UserError(fmt::format("{}: there is none; give a folder that 'millscope export' has made", case_file.string()));
   const run::Assembly a = run::assemble(config::read_case(case_file.string()), registry);
@@ -302,7 +303,7 @@ Imported import_case(const fs::path& folder, const fs::path& out, const host::Re
   output::NewFolder aside(out);
   Imported imported{a.bead_count, write_frames(folder / "post", a, aside.path() / "frames.h5"), series.back().end};
   write_series(series, a, mass, aside.path() / "series.csv");
-  output::write_file(aside.path() / kResolvedCase, config::resolved_yaml(a.c, registry.descriptors()));
+  output::write_file(aside.path() / output::kResolvedCase, config::resolved_yaml(a.c, registry.descriptors()));
   j["engine"]["version"] = version_in(folder / "log.liggghts");
   j["provenance"] = output::provenance(command_line, {});
   output::write_json(aside.path() / "summary.json", j);

@@ -30,10 +30,9 @@ std::string joined(const std::vector<double>& values) {
 
 std::string triple(const base::Vector3& v) { return fmt::format("{} {} {}", v[0], v[1], v[2]); }
 
-/// At least one, and no more than the whole run has and one.
+/// LIGGGHTS reads intervals as 32 bits: none is longer than the whole run and a step.
 std::int64_t steps_of(const run::Assembly& a, double seconds) {
-  const auto most = static_cast<double>(a.end_step - a.first_step + 1);
-  return std::max<std::int64_t>(1, std::llround(std::min(seconds / a.time_step, most)));
+  return std::min(run::steps_of(seconds, a.time_step), a.end_step - a.first_step + 1);
 }
 
 void add_physics(const run::Assembly& a, const Physics& physics, Lines& lines) {
