@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
 #include "kernel/output/terminal.hpp"
@@ -58,8 +59,7 @@ std::vector<std::string> split(const std::string& text) {
 
 /// Where the results go unless -o says it: beside the data they are of.
 fs::path default_output(const fs::path& source) {
-  fs::path plain = source;
-  while (!plain.has_filename() && plain.has_parent_path() && plain != plain.parent_path()) plain = plain.parent_path();
+  fs::path plain = output::without_end_slash(source);
   if (fs::is_directory(plain)) return plain.string() + "-analysis";
   if (plain.extension() == ".gz") plain = plain.stem();
   return fs::path(plain.stem().string() + "-analysis");

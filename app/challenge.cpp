@@ -6,6 +6,7 @@
 #include "app/actions.hpp"
 #include "app/commands.hpp"
 #include "app/study_options.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
 #include "studies/challenge/make.hpp"
@@ -113,7 +114,7 @@ int score_sets(const Arguments& arguments) {
   const std::vector<challenge::Marked> marked = challenge::read_all_sets(folders);
   const challenge::Score score = challenge::score(marked);
   std::vector<std::pair<std::string, std::string>> manifests;
-  for (const fs::path& folder : folders) manifests.emplace_back(challenge::name_of_folder(folder), challenge::manifest_hash(folder));
+  for (const fs::path& folder : folders) manifests.emplace_back(output::name_of_folder(folder), challenge::manifest_hash(folder));
   output::write_file(page, challenge::page_text({marked, score, command_text(), manifests}));
   for (std::size_t k = 0; k < folders.size(); ++k) {
     const std::vector<challenge::Marked> own = challenge::read_sets(folders[k]);

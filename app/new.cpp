@@ -7,6 +7,7 @@
 #include "app/commands.hpp"
 #include "app/tables.hpp"
 #include "kernel/config/document.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/output/new_folder.hpp"
 #include "studies/new/folder.hpp"
 #include "studies/new/liner.hpp"
@@ -105,8 +106,7 @@ int new_mill(const Arguments& arguments) {
   options.positional("FOLDER", "to be made; its last name is the mill's");
   add_new_options(options);
   if (!options.parse(arguments)) return kDone;
-  fs::path folder = options.text("FOLDER");
-  if (!folder.has_filename()) folder = folder.parent_path();  // "my_mill/"
+  const fs::path folder = output::without_end_slash(options.text("FOLDER"));
   if (folder.empty() || folder.filename() == "." || folder.filename() == "..")
     throw UserError(fmt::format("'{}' names no new folder; give a name, e.g. my_mill", options.text("FOLDER")));
   output::refuse_folder(folder);

@@ -8,6 +8,7 @@
 
 #include "app/commands.hpp"
 #include "app/watching.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/output/file.hpp"
 #include "studies/report/movie.hpp"
 #include "studies/report/report.hpp"
@@ -28,8 +29,7 @@ void stop_watching(int) { stop_asked = 1; }
 
 std::string title_of(const Options& options, const std::vector<std::string>& folders) {
   if (options.has("title")) return options.text("title");
-  const fs::path last = fs::absolute(folders.front()).lexically_normal();
-  return (last.filename().empty() ? last.parent_path() : last).filename().string();
+  return output::name_of_folder(folders.front());
 }
 
 report::SectionOptions sections_from(const Options& options) {

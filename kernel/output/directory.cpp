@@ -137,8 +137,17 @@ struct OutputDirectory::Impl {
   }
 };
 
-OutputDirectory::OutputDirectory(fs::path path, Mode mode, std::uint64_t needed_bytes) : impl_(std::make_unique<Impl>()) {
-  while (!path.has_filename() && path.has_parent_path() && path != path.parent_path()) path = path.parent_path();  // "out/"
+fs::path without_end_slash(fs::path path) {
+  while (!path.has_filename() && path.has_parent_path() && path != path.parent_path()) path = path.parent_path();
+  return path;
+}
+
+std::string name_of_folder(const fs::path& folder) {
+  return without_end_slash(fs::absolute(folder).lexically_normal()).filename().string();
+}
+
+OutputDirectory::OutputDirectory(fs::path given, Mode mode, std::uint64_t needed_bytes) : impl_(std::make_unique<Impl>()) {
+  const fs::path path = without_end_slash(std::move(given));
   impl_->path = path;
   impl_->mode = mode;
   try {

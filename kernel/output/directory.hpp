@@ -4,11 +4,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 namespace millscope::output {
 
 /// In the directory of a run: the case with all its values.
 inline constexpr const char* kResolvedCase = "case.resolved.yaml";
+
+/// The path without slashes at its end ("out/"), so that its last name is the folder's.
+std::filesystem::path without_end_slash(std::filesystem::path path);
+
+/// Its last name, also of "." and of "out/".
+std::string name_of_folder(const std::filesystem::path& folder);
 
 enum class Mode {
   fresh,      ///< must be missing or empty

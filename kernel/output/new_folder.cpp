@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "kernel/base/error.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/output/file.hpp"
 
 namespace millscope::output {
@@ -16,15 +17,8 @@ namespace millscope::output {
 namespace fs = std::filesystem;
 using base::UserError;
 
-namespace {
-
-/// Without a slash at its end.
-fs::path named(const fs::path& folder) { return folder.has_filename() ? folder : folder.parent_path(); }
-
-}  // namespace
-
 void refuse_folder(const fs::path& given) {
-  const fs::path folder = named(given);
+  const fs::path folder = without_end_slash(given);
   std::error_code trouble;
   if (fs::exists(fs::symlink_status(folder, trouble)))
     throw UserError(fmt::format("{} exists already; choose another name, or remove it", folder.string()));
@@ -33,7 +27,7 @@ void refuse_folder(const fs::path& given) {
     throw UserError(fmt::format("{}: there is no folder {}; make it first, or choose another place", folder.string(), parent.string()));
 }
 
-NewFolder::NewFolder(const fs::path& target) : target_(named(target)) {
+NewFolder::NewFolder(const fs::path& target) : target_(without_end_slash(target)) {
   refuse_folder(target_);
   std::error_code trouble;
   for (int n = 0;; ++n) {

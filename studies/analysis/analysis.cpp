@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "kernel/config/units.hpp"
+#include "kernel/output/directory.hpp"
 #include "kernel/output/summary.hpp"
 
 namespace millscope::analysis {
@@ -34,9 +35,7 @@ std::optional<double> seconds(const config::Node& settings, const char* key) {
 
 SourceRequest source_request(const AnalysisRequest& request, const config::Node& settings) {
   SourceRequest source;
-  source.path = request.path;
-  while (!source.path.has_filename() && source.path.has_parent_path() && source.path != source.path.parent_path())
-    source.path = source.path.parent_path();
+  source.path = output::without_end_slash(request.path);
   source.tracers = request.tracers;
   source.threads = request.threads;
   source.from = request.from ? request.from : seconds(settings, "from");

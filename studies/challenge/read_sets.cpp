@@ -4,6 +4,7 @@
 #include <set>
 
 #include "kernel/base/text.hpp"
+#include "kernel/output/directory.hpp"
 #include "studies/challenge/score.hpp"
 
 namespace millscope::challenge {
@@ -87,17 +88,12 @@ std::vector<Marked> read_sets(const fs::path& sets) {
   return out;
 }
 
-std::string name_of_folder(const fs::path& folder) {
-  const fs::path whole = fs::absolute(folder).lexically_normal();
-  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
-}
-
 std::vector<Marked> read_all_sets(const std::vector<fs::path>& folders) {
   if (folders.size() == 1) return read_sets(folders[0]);
   std::vector<Marked> all;
   std::set<std::string> names, manifests;
   for (const fs::path& folder : folders) {
-    const std::string name = name_of_folder(folder);
+    const std::string name = output::name_of_folder(folder);
     if (!manifests.insert(manifest_hash(folder)).second)
       throw base::UserError(fmt::format("{}: holds the same sets as a folder before it; leave one out", folder.string()));
     if (!names.insert(name).second)

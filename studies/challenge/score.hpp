@@ -56,8 +56,6 @@ std::vector<Marked> read_sets(const std::filesystem::path& sets);
 /// Those of several folders; each set is then called FOLDER/set_001. Throws base::UserError where two folders have one name,
 /// or the same manifest.
 std::vector<Marked> read_all_sets(const std::vector<std::filesystem::path>& folders);
-/// Last part of a folder's path that is a name: "sets" of "a/sets/".
-std::string name_of_folder(const std::filesystem::path& folder);
 
 struct Count {
   int hits = 0, of = 0;

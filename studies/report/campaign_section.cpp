@@ -49,8 +49,7 @@ Json task_json(const fs::path& entry) {
 }  // namespace
 
 Json campaign_section(const fs::path& folder) {
-  Json section =
-      begun("campaign", "Simulations of " + (folder.filename().empty() ? folder.parent_path() : folder).filename().string(), folder);
+  Json section = begun("campaign", "Simulations of " + output::without_end_slash(folder).filename().string(), folder);
   std::vector<Json> tasks;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder / "cache"))
     if (entry.is_directory() && fs::exists(entry.path() / "case.yaml")) tasks.push_back(task_json(entry.path()));

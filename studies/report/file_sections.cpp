@@ -7,6 +7,7 @@
 
 #include "kernel/base/table.hpp"
 #include "kernel/base/text.hpp"
+#include "kernel/output/directory.hpp"
 #include "studies/report/one_section.hpp"
 
 namespace millscope::report {
@@ -49,7 +50,7 @@ Json table_json(const fs::path& file) {
 
 /// A section that is one JSON file.
 Json from_file(const char* kind, const char* file, const fs::path& folder) {
-  Json section = begun(kind, folder.filename().empty() ? folder.parent_path().filename() : folder.filename(), folder);
+  Json section = begun(kind, output::without_end_slash(folder).filename(), folder);
   section[kind] = json_object_of(folder / file);
   return section;
 }
