@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace po = boost::program_options;
 
 /// Every number of an observation to its last bit, so that two programs can be compared: `cmp`.
-void write_values(std::ostream& out, int look, const calibrate::Observation& o) {
+void write_values(std::ostream& out, const std::string& look, const calibrate::Observation& o) {
   for (Eigen::Index i = 0; i < o.value.size(); ++i) {
     out << fmt::format("{} {} {:.17g}", look, o.observables[static_cast<std::size_t>(i)].name, o.value[i]);
     for (Eigen::Index j = 0; j <= i; ++j) out << fmt::format(" {:.17g}", o.covariance(i, j));
@@ -50,15 +50,16 @@ int measure(const po::variables_map& options) {
   std::ofstream values;
   if (options.count("values") > 0) values.open(options["values"].as<std::string>());
   std::vector<double> cost;
+  if (values.is_open()) write_values(values, "recorded", observer.recorded(0));
   for (int k = 0; k < looks; ++k) {
     campaign::Outcome run;
     run.state = campaign::State::done;
     run.folder = options["run"].as<std::string>();
-    run.key = fmt::format("look-{}", k);
+    run.key = fmt::format("look{}-", k);
     const double before = cpu_seconds();
     const calibrate::Observation seen = observer.simulated(0, run);
     cost.push_back(cpu_seconds() - before);
-    if (values.is_open()) write_values(values, k, seen);
+    if (values.is_open()) write_values(values, std::to_string(k), seen);
   }
   std::sort(cost.begin(), cost.end());
   fmt::print("a look: {:.4f} s of processor time, median of {} (least {:.4f}, most {:.4f})\n", cost[cost.size() / 2], looks, cost.front(),

@@ -2,7 +2,8 @@
 """Whether two programs see the same: bench/look_bias.py BUILD OTHER_LOOK_BENCH [--seeds 30] [--looks 4].
 
 The mill of the story is simulated with each seed, and both programs look at each simulation some times. For every summary: by how much its
-mean over the seeds and its scatter between them differ, against the standard error that a look states. `bench/look.sh BUILD` comes first.
+mean over the seeds and its scatter between them differ, against the standard error that a look states. Beside it by how much
+farther from the recording the simulations lie, the recording too as each program sees it. `bench/look.sh BUILD` comes first.
 """
 
 import argparse
@@ -36,8 +37,9 @@ def simulate(build, folder, seed):
 
 
 def seen(file):
-    """{summary: [value of each look]} and {summary: [standard error of each look]}. A line: look, name, value, its row of the covariance."""
-    values, errors, names = {}, {}, []
+    """{summary: [value of each look]}, {summary: [standard error of each look]}, {summary: value of the recording}. A line: look or
+    "recorded", name, value, its row of the covariance."""
+    values, errors, recorded, names = {}, {}, {}, []
     for line in file.read_text().splitlines():
         words = line.split()
         if len(words) > 1 and words[-4:-3] == ["blocks"]:
@@ -48,9 +50,12 @@ def seen(file):
         numbers = len(names) + 2
         name = " ".join(words[1:-numbers])
         names.append(name)
+        if words[0] == "recorded":
+            recorded[name] = float(words[-numbers])
+            continue
         values.setdefault(name, []).append(float(words[-numbers]))
         errors.setdefault(name, []).append(math.sqrt(float(words[-1])))
-    return values, errors
+    return values, errors, recorded
 
 
 def looks(program, build, folder, count, label, out):
@@ -60,14 +65,15 @@ def looks(program, build, folder, count, label, out):
 
 
 def row(name, one, other):
-    """`one`, `other`: for each seed the values and errors of the looks."""
-    means = [[statistics.mean(values[name]) for values, _ in side] for side in (one, other)]
-    error = statistics.mean(e for side in (one, other) for _, errors in side for e in errors[name])
+    """`one`, `other`: for each seed the values and errors of the looks, and the values of the recording."""
+    means = [[statistics.mean(values[name]) for values, _, _ in side] for side in (one, other)]
+    error = statistics.mean(e for side in (one, other) for _, errors, _ in side for e in errors[name])
     differences = [b - a for a, b in zip(*means)]
-    spread = [math.sqrt(statistics.mean(statistics.variance(values[name][k] for values, _ in side) for k in range(len(side[0][0][name])))) for side in (one, other)]
-    stated = [statistics.mean(e for _, errors in side for e in errors[name]) for side in (one, other)]
+    spread = [math.sqrt(statistics.mean(statistics.variance(values[name][k] for values, _, _ in side) for k in range(len(side[0][0][name])))) for side in (one, other)]
+    stated = [statistics.mean(e for _, errors, _ in side for e in errors[name]) for side in (one, other)]
+    of_recording = (other[0][2][name] - one[0][2][name]) / error
     return {"name": name, "shift": statistics.mean(differences) / error, "of": statistics.stdev(differences) / math.sqrt(len(differences)) / error,
-            "scatter": spread[1] / spread[0], "stated": stated[1] / stated[0]}
+            "farther": statistics.mean(differences) / error - of_recording, "scatter": spread[1] / spread[0], "stated": stated[1] / stated[0]}
 
 
 def main():
@@ -89,10 +95,10 @@ def main():
         print("look_bias: %s" % e, file=sys.stderr)
         return 2
     rows = [row(name, *sides) for name in sides[0][0][0]]
-    print("| summary | shift of the mean, in standard errors of a look | scatter between seeds | standard error that a look states |")
-    print("|---|---|---|---|")
+    print("| summary | shift of the mean, in standard errors of a look | less the shift of the recording | scatter between seeds | standard error that a look states |")
+    print("|---|---|---|---|---|")
     for r in rows:
-        print("| %s | %+.3f ± %.3f | × %.3f | × %.3f |" % (r["name"], r["shift"], r["of"], r["scatter"], r["stated"]))
+        print("| %s | %+.3f ± %.3f | %+.3f | × %.3f | × %.3f |" % (r["name"], r["shift"], r["of"], r["farther"], r["scatter"], r["stated"]))
     beyond = sum(abs(r["shift"]) > 0.1 for r in rows)
     chance = math.sqrt(statistics.mean((r["shift"] / r["of"]) ** 2 for r in rows if r["of"] > 0))
     print("%d summaries, %d of them shifted by more than a tenth of a standard error; shifts over their own errors: %.2f (1: chance alone); "

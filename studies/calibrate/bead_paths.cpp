@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "kernel/config/case.hpp"
 #include "kernel/output/directory.hpp"
@@ -14,6 +15,8 @@ namespace millscope::calibrate {
 namespace {
 
 using base::UserError;
+
+constexpr std::size_t kAtOnce = 1 << 14;  // numbers that are read together
 
 /// At most `wished` of those that may be followed.
 std::vector<std::size_t> evenly(const output::FrameBeads& beads, const config::Case& c, int wished) {
@@ -63,12 +66,15 @@ BeadPaths::BeadPaths(const std::filesystem::path& run, int beads, const AxialPla
     ids_.push_back(reader.beads().id[b]);
     radius_.push_back(reader.beads().radius[b]);
   }
-  std::vector<float> all(reader.beads().size() * 3);
+  const std::size_t row = reader.beads().size() * 3, together = std::min(frames, kAtOnce / row + 1);
+  std::vector<float> rows(together * row);
   std::vector<double> sum_x(c.has_tracers() ? reader.beads().size() : 0);  // of all beads, where some are set apart
   const auto load = [&](output::BeadField field, std::vector<float>& values) {
     values.reserve(frames * chosen.size() * 3);
     for (std::size_t f = 0; f < frames; ++f) {
-      reader.read(field, first + f, 1, all);
+      const float* const all = rows.data() + f % together * row;
+      if (const std::size_t count = std::min(together, frames - f); f % together == 0)
+        reader.read(field, first + f, count, std::span(rows).first(count * row));
       for (std::size_t b = 0; field == output::BeadField::position && b < sum_x.size(); ++b) sum_x[b] += static_cast<double>(all[3 * b]);
       for (const std::size_t b : chosen) values.insert(values.end(), {all[3 * b], all[3 * b + 1], all[3 * b + 2]});
     }

@@ -56,7 +56,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Histogram, edges, percent, sem)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PowerFigure, value, sem, how)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Observation, of, observables, value, covariance, power, x, speed, bead_seconds, blocks, notes)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Summary, observable, kind, analyzer, result, weight, cells, factor, places)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Smoothing, noise, noise_correlation, gap_limit, travel, blocks)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Smoothing, noise, noise_correlation, roughness, gap_limit, travel, blocks)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AxialPlace, low, high, middle)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RecordedCondition, observation, summaries, analyzers, camera, smoothing, place, mass, omega,
                                    measured_power, identity)

@@ -57,16 +57,16 @@ struct Film {
   const Smoothing& smoothing;  ///< by which it is cleaned
 };
 
-/// s between the points of a path: where a camera samples it, and does nothing before but blur it, a quarter of the shortest span of
-/// either, from 0.5 to 1.25 ms; straight lines are then off by 2 µm at 10 m/s² and by 80 µm in an impact. Else 0.5 ms.
+/// s between the points of a path: where a camera samples it, and does nothing before but blur it, half of the shortest span of either,
+/// from 0.5 to 1.25 ms; straight lines are then off by 2 µm at 10 m/s² and by 80 µm in an impact. Else 0.5 ms.
 double path_step(const camera::Camera& camera) {
   constexpr double kShortest = 0.5e-3, kLongest = 1.25e-3;
-  double shortest = 4 * kLongest;
+  double shortest = 2 * kLongest;
   for (const camera::CameraLink& link : camera.links()) {
     const bool samples = link.plugin.name() == "sampling";
     if (!samples && link.plugin.name() != "location_blur") return kShortest;
     if (link.span > 0) shortest = std::min(shortest, link.span);
-    if (samples && link.span > 0) return std::clamp(shortest / 4, kShortest, kLongest);
+    if (samples && link.span > 0) return std::clamp(shortest / 2, kShortest, kLongest);
   }
   return kShortest;
 }

@@ -13,7 +13,7 @@
 namespace millscope::calibrate {
 namespace {
 
-constexpr double kEvenStep = 0.002;  // s between the even times: recordings have a location every 5 ms
+constexpr double kEvenStep = 0.004;  // s between the even times: recordings have a location every 5 ms
 
 std::string used_analyzers(const Study& study) {
   const auto& terms = study.objective.terms;
@@ -32,7 +32,9 @@ Smoothing smoothing_of(const recording::Recording& recording) {
   const trajectory::NoiseEstimate noise = trajectory::estimate_noise_model(recording.runs, recording.gap_limit);
   const bool cleaned = recording.travel.speed > 0;
   const recording::Travel travel = cleaned ? recording.travel : recording::measure_travel(recording.runs, recording.gap_limit);
-  return {noise.standard_deviation, noise.correlation, recording.gap_limit, travel, {}};
+  Smoothing smoothing{noise.standard_deviation, noise.correlation, {}, recording.gap_limit, travel, {}};
+  smoothing.roughness = trajectory::estimate_roughness(recording.runs, trajectory_options(Side::recorded, smoothing, {}));
+  return smoothing;
 }
 
 trajectory::TrajectoryOptions trajectory_options(Side side, const Smoothing& smoothing, const Observing& observing) {
@@ -41,8 +43,9 @@ trajectory::TrajectoryOptions trajectory_options(Side side, const Smoothing& smo
   options.gap_limit = smoothing.gap_limit;
   options.noise = smoothing.noise;
   options.noise_correlation = smoothing.noise_correlation;
+  options.roughness = smoothing.roughness;
   options.travel = smoothing.travel;
-  if (side == Side::simulated && observing.camera == "exact") options.noise = {}, options.noise_correlation.reset();
+  if (side == Side::simulated && observing.camera == "exact") options.noise = {}, options.noise_correlation.reset(), options.roughness = {};
   if (side == Side::recorded && observing.z_low) options.low = *observing.z_low, options.high = *observing.z_high;
   return options;
 }

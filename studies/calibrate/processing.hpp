@@ -18,11 +18,12 @@ namespace millscope::calibrate {
 /// What a recording says of its tracks. It decides how each track of its condition is cleaned, smoothed and cut into blocks, also a
 /// simulated bead's.
 struct Smoothing {
-  std::array<double, 3> noise{};  ///< standard deviation of each component of a point, m
-  double noise_correlation = 0;   ///< from one point to the next
-  double gap_limit = 0;           ///< s
-  recording::Travel travel;       ///< what a bead can do
-  analysis::BlockLengths blocks;  ///< by what it forgets
+  std::array<double, 3> noise{};      ///< standard deviation of each component of a point, m
+  double noise_correlation = 0;       ///< from one point to the next
+  std::array<double, 3> roughness{};  ///< of the motion, about: random acceleration of each component, m²/s³
+  double gap_limit = 0;               ///< s
+  recording::Travel travel;           ///< what a bead can do
+  analysis::BlockLengths blocks;      ///< by what it forgets
   bool operator==(const Smoothing&) const = default;
 };
 Smoothing smoothing_of(const recording::Recording& recording);  ///< but for the blocks, which come from its results

@@ -65,11 +65,14 @@ void move_to_axis(recording::Run& run, const std::array<double, 2>& axis) {
   }
 }
 
+bool is_known(const Lanes& lanes) {
+  return std::all_of(lanes.begin(), lanes.end(), [](double value) { return value > 0; });
+}
+
 void set_noise(const recording::Run& run, const TrajectoryOptions& options, Trajectory& trajectory) {
   constexpr double kLeast = 1e-7;  // m; a simulated bead has none, a smoothing spline needs some
-  const bool given = std::all_of(options.noise.begin(), options.noise.end(), [](double value) { return value > 0; });
   NoiseEstimate noise;
-  if (!given || !options.noise_correlation) noise = estimate_noise_model(run, options.gap_limit);
+  if (!is_known(options.noise) || !options.noise_correlation) noise = estimate_noise_model(run, options.gap_limit);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (options.noise[axis] > 0) noise.standard_deviation[axis] = options.noise[axis];
   }
@@ -78,16 +81,30 @@ void set_noise(const recording::Run& run, const TrajectoryOptions& options, Traj
   trajectory.noise_correlation = noise.correlation;
 }
 
+/// To a smoothing spline, which is wider than a few points, noise with a correlation of φ looks like white noise (1 + φ)/(1 − φ) times as
+/// strong.
+Lanes noise_as_seen(SplineKind kind, const Trajectory& trajectory) {
+  const double phi = trajectory.noise_correlation, inflation = kind == SplineKind::smoothing ? std::sqrt((1 + phi) / (1 - phi)) : 1;
+  return {trajectory.noise[0] * inflation, trajectory.noise[1] * inflation, trajectory.noise[2] * inflation};
+}
+
+/// Spans with enough points; those of the others are counted.
+std::vector<Span> usable(const recording::Run& run, const TrajectoryOptions& options, Trajectory& trajectory) {
+  std::vector<Span> spans;
+  for (const Span& span : options.travel ? unbroken(run, options.gap_limit, *options.travel) : unbroken(run, options.gap_limit)) {
+    const bool enough = span.size() >= static_cast<std::size_t>(std::max(options.least_points, 3));
+    if (enough) spans.push_back(span);
+    if (!enough) trajectory.points_left_out += span.size();
+  }
+  return spans;
+}
+
 /// Fits the splines of one span after another.
 class Fitter {
  public:
-  Fitter(const recording::Run& run, const std::vector<Span>& spans, SplineKind kind, const Trajectory& trajectory)
-      : run_(run), kind_(kind), correlation_(trajectory.noise_correlation) {
-    // To a spline that is wider than a few points, noise with a correlation of φ looks like white noise (1 + φ)/(1 − φ) times as strong.
-    const double phi = correlation_;
-    const double inflation = kind == SplineKind::smoothing ? std::sqrt((1 + phi) / (1 - phi)) : 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) noise_[axis] = trajectory.noise[axis] * inflation;
-    if (kind == SplineKind::smoothing) roughness_ = likely_roughness(run, spans, noise_);
+  Fitter(const recording::Run& run, const std::vector<Span>& spans, const TrajectoryOptions& options, const Trajectory& trajectory)
+      : run_(run), kind_(options.kind), correlation_(trajectory.noise_correlation), noise_(noise_as_seen(kind_, trajectory)) {
+    if (kind_ == SplineKind::smoothing) roughness_ = likely_roughness(run, spans, {noise_, options.roughness});
   }
 
   /// The spline of a span; `points()` are its knots.
@@ -109,7 +126,7 @@ class Fitter {
   const recording::Run& run_;
   SplineKind kind_;
   double correlation_;
-  Lanes noise_{}, roughness_{};
+  Lanes noise_, roughness_{};
   Points points_{};
   Averaged averaged_;
   Spline spline_;
@@ -153,6 +170,23 @@ std::vector<Span> unbroken(const recording::Run& run, double gap_limit, recordin
   return spans;
 }
 
+std::array<double, 3> estimate_roughness(std::span<const recording::Run> runs, const TrajectoryOptions& options) {
+  check(options);
+  Lanes sum_of_logs{};
+  double count = 0;
+  for (const recording::Run& run : runs) {
+    Trajectory trajectory;
+    const std::vector<Span> spans = usable(run, options, trajectory);
+    if (spans.empty()) continue;
+    set_noise(run, options, trajectory);
+    const Lanes found = likely_roughness(run, spans, {noise_as_seen(SplineKind::smoothing, trajectory), options.roughness});
+    for (std::size_t axis = 0; axis < 3; ++axis) sum_of_logs[axis] += std::log(found[axis]);
+    ++count;
+  }
+  if (count == 0) return {0, 0, 0};
+  return {std::exp(sum_of_logs[0] / count), std::exp(sum_of_logs[1] / count), std::exp(sum_of_logs[2] / count)};
+}
+
 Trajectory fit_trajectory(const recording::Run& run, const TrajectoryOptions& options) {
   check(options);
   recording::Run moved = run;
@@ -161,14 +195,8 @@ Trajectory fit_trajectory(const recording::Run& run, const TrajectoryOptions& op
   trajectory.name = run.name;
   trajectory.span = run.size() > 0 ? run.time.back() - run.time.front() : 0;
   set_noise(moved, options, trajectory);
-  std::vector<Span> spans;
-  const std::vector<Span> all = options.travel ? unbroken(moved, options.gap_limit, *options.travel) : unbroken(moved, options.gap_limit);
-  for (const Span& span : all) {
-    const bool enough = span.size() >= static_cast<std::size_t>(std::max(options.least_points, 3));
-    if (enough) spans.push_back(span);
-    if (!enough) trajectory.points_left_out += span.size();
-  }
-  Fitter fitter(moved, spans, options.kind, trajectory);
+  const std::vector<Span> spans = usable(moved, options, trajectory);
+  Fitter fitter(moved, spans, options, trajectory);
   for (const Span& span : spans) {
     const Spline& spline = fitter.fit(span);
     const Points& knots = fitter.points();

@@ -84,8 +84,12 @@ void weigh_evidence(const Points& points, const SmoothingBy& by, std::vector<Evi
 /// −2 log likelihood of each coordinate of a span under a roughness that is the same everywhere, without constants.
 Lanes misfit(const Points& points, const Lanes& noise, const Lanes& roughness);
 
+/// The noise, m, and about how rough the motion is, m²/s³; 0: not known.
+struct RoughnessSearch {
+  Lanes noise, begin;
+};
 /// The roughness that makes each coordinate most likely given the noise, from at most some ten thousand points of the run.
-Lanes likely_roughness(const recording::Run& run, const std::vector<Span>& spans, const Lanes& noise);
+Lanes likely_roughness(const recording::Run& run, const std::vector<Span>& spans, const RoughnessSearch& search);
 
 /// Smoothing splines whose strength follows the motion: at an impact the roughness rises in all three coordinates by one factor, in calm
 /// motion it falls.

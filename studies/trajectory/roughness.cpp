@@ -55,9 +55,13 @@ void spread(const std::vector<double>& decay, std::vector<double>& values) {
 }
 
 /// The least cost over log q, from a bead at rest to one that is thrown about at 10 m/s every millisecond: three values a step apart move
-/// on until the middle one is the least, and the parabola through them has its vertex there; the same once more with a fine step.
+/// on until the middle one is the least, and the parabola through them has its vertex there; the same once more with a fine step. Where
+/// the roughness is known about, with the fine step alone.
 class Search {
  public:
+  explicit Search(double begin) {
+    if (begin > 0) middle_ = std::log(begin), step_ = kFine;
+  }
   bool done() const { return done_; }
   /// Where the cost is asked for; of a search that is done, what it found.
   double next() const { return done_ ? middle_ : middle_ + offset(missing()) * step_; }
@@ -110,17 +114,17 @@ double median_interval(const Points& points) {
   return base::quantile(some, 0.5);
 }
 
-Lanes likely_roughness(const recording::Run& run, const std::vector<Span>& spans, const Lanes& noise) {
+Lanes likely_roughness(const recording::Run& run, const std::vector<Span>& spans, const RoughnessSearch& by) {
   const std::vector<Span> sample = sample_of(spans);
   const auto cost = [&](const Lanes& log_q) {
     Lanes sum{};
     for (const Span& span : sample) {
-      const Lanes one = misfit(points_of(run, span), noise, {std::exp(log_q[0]), std::exp(log_q[1]), std::exp(log_q[2])});
+      const Lanes one = misfit(points_of(run, span), by.noise, {std::exp(log_q[0]), std::exp(log_q[1]), std::exp(log_q[2])});
       for (std::size_t k = 0; k < 3; ++k) sum[k] += one[k];
     }
     return sum;
   };
-  std::array<Search, 3> search;
+  std::array<Search, 3> search{Search(by.begin[0]), Search(by.begin[1]), Search(by.begin[2])};
   while (!search[0].done() || !search[1].done() || !search[2].done()) {
     const Lanes found = cost({search[0].next(), search[1].next(), search[2].next()});
     for (std::size_t k = 0; k < 3; ++k) search[k].take(found[k]);

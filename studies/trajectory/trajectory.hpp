@@ -27,6 +27,9 @@ struct TrajectoryOptions {
   std::array<double, 3> noise{0, 0, 0};
   /// Correlation of the noise from one point to the next, 0 … 0.9; absent: estimated, also where `noise` is given.
   std::optional<double> noise_correlation = std::nullopt;
+  /// Of the motion: spectral density of the random acceleration of each component, m²/s³, about. The search for what makes the run most
+  /// likely begins there, and ends sooner; 0: it begins with a wide one.
+  std::array<double, 3> roughness{0, 0, 0};
   std::optional<recording::Travel> travel = std::nullopt;  ///< what parts two points that no bead joins; absent: measured from the run
   std::array<double, 2> axis{0, 0};                        ///< subtracted from x and y, m
   double low = 0, high = 0;  ///< only samples with low ≤ z ≤ high are kept (end-face trimming), pieces end there; equal: all
@@ -70,6 +73,10 @@ struct NoiseEstimate {
 NoiseEstimate estimate_noise_model(const recording::Run& run, double gap_limit);
 /// The same from all runs of one tracker together: steadier, for TrajectoryOptions::noise and noise_correlation.
 NoiseEstimate estimate_noise_model(std::span<const recording::Run> runs, double gap_limit);
+
+/// The most likely roughness of the motion on all runs (their geometric mean), for TrajectoryOptions::roughness; 0 where no run is long
+/// enough to tell.
+std::array<double, 3> estimate_roughness(std::span<const recording::Run> runs, const TrajectoryOptions& options);
 
 /// Throws base::UserError when no piece is long enough, with the reason. Of a run that never comes between `low` and `high` no piece is
 /// left; `samples_trimmed` tells.

@@ -32,6 +32,26 @@ TEST_CASE("random numbers have the moments that they say") {
   CHECK(between == Approx(4).margin(0.015));
 }
 
+TEST_CASE("two normal numbers are normal, and independent of each other") {
+  constexpr int kDraws = 100000;
+  Random random(5);
+  double mean = 0, product = 0, squares[2] = {}, fourth = 0, beyond_two = 0;
+  for (int i = 0; i < kDraws; ++i) {
+    const auto [a, b] = random.normals();
+    mean += (a + b) / (2 * kDraws), product += a * b / kDraws;
+    squares[0] += a * a / kDraws, squares[1] += b * b / kDraws;
+    fourth += (a * a * a * a + b * b * b * b) / (2 * kDraws);
+    beyond_two += (std::abs(a) > 2) / static_cast<double>(kDraws);
+  }
+  // Four standard errors: of the means 4/√n (two as many: 4/√(2n)), of the squares 4 √(2/n), of the fourth power 4 √(96/(2n)).
+  CHECK(std::abs(mean) < 0.009);
+  CHECK(std::abs(product) < 0.013);
+  CHECK(squares[0] == Approx(1).margin(0.018));
+  CHECK(squares[1] == Approx(1).margin(0.018));
+  CHECK(fourth == Approx(3).margin(0.088));
+  CHECK(beyond_two == Approx(0.0455).margin(0.0027));
+}
+
 TEST_CASE("a shuffle keeps what it shuffles, and puts every item everywhere") {
   constexpr int kItems = 4, kDraws = 24000;
   Random random(2);

@@ -63,7 +63,7 @@ Study study_in(const testing::Folder& folder, const std::string& more) {
 }  // namespace
 
 TEST_CASE("recorded and simulated tracks are followed by the same options") {
-  const Smoothing smoothing{{3e-4, 4e-4, 5e-4}, 0.3, 0.04, {4, 5e-4}, {1, 2}};
+  const Smoothing smoothing{{3e-4, 4e-4, 5e-4}, 0.3, {1, 2, 3}, 0.04, {4, 5e-4}, {1, 2}};
   Observing observing;
   CHECK(trajectory_options(Side::recorded, smoothing, observing) == trajectory_options(Side::simulated, smoothing, observing));
   observing.camera = "eye.yaml";
@@ -71,6 +71,7 @@ TEST_CASE("recorded and simulated tracks are followed by the same options") {
   CHECK(plain == trajectory_options(Side::recorded, smoothing, observing));
   CHECK(plain.noise == smoothing.noise);
   CHECK(plain.noise_correlation == smoothing.noise_correlation);
+  CHECK(plain.roughness == smoothing.roughness);
   CHECK(plain.gap_limit == smoothing.gap_limit);
   CHECK(plain.travel == smoothing.travel);
 
@@ -83,8 +84,8 @@ TEST_CASE("recorded and simulated tracks are followed by the same options") {
   CHECK(recorded == plain);
   observing.camera = "exact";
   trajectory::TrajectoryOptions exact = trajectory_options(Side::simulated, smoothing, observing);
-  CHECK((exact.noise == std::array<double, 3>{} && !exact.noise_correlation));
-  exact.noise = smoothing.noise, exact.noise_correlation = smoothing.noise_correlation;
+  CHECK((exact.noise == std::array<double, 3>{} && !exact.noise_correlation && exact.roughness == std::array<double, 3>{}));
+  exact.noise = smoothing.noise, exact.noise_correlation = smoothing.noise_correlation, exact.roughness = smoothing.roughness;
   CHECK(exact == plain);
 }
 
@@ -194,8 +195,8 @@ TEST_CASE("nothing of what is cached of a recording is lost") {
   RecordedCondition r;
   auto& [observation, summaries, analyzers, camera, smoothing, place, mass, omega, measured_power, identity] = r;
   observation = o, summaries = {s}, analyzers = "analyzers: {}", camera = "observations: {}";
-  auto& [noise, noise_correlation, gap_limit, travel, lengths] = smoothing;
-  noise = {1e-4, 2e-4, 3e-4}, noise_correlation = 0.2, gap_limit = 0.04;
+  auto& [noise, noise_correlation, roughness, gap_limit, travel, lengths] = smoothing;
+  noise = {1e-4, 2e-4, 3e-4}, noise_correlation = 0.2, roughness = {1, 2, 3}, gap_limit = 0.04;
   auto& [greatest_speed, greatest_noise] = travel;
   greatest_speed = 4, greatest_noise = 5e-4;
   auto& [least, wished] = lengths;

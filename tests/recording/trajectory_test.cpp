@@ -111,6 +111,28 @@ TEST_CASE("the values at a time do not depend on the step or on where the clock 
   }
 }
 
+TEST_CASE("a search for the roughness that begins near it finds the same motion") {
+  const recording::Run run = see(Motion(), {.duration = 3});
+  trajectory::TrajectoryOptions options{.noise = {0.7e-3, 0.7e-3, 0.7e-3}, .noise_correlation = 0};
+  const trajectory::Trajectory wide = trajectory::fit_trajectory(run, options);
+  const std::array<double, 3> found = trajectory::estimate_roughness({&run, 1}, options);
+  CHECK(found[0] > 0);
+  for (const double beside : {0.3, 1.0, 4.0}) {
+    for (std::size_t axis = 0; axis < 3; ++axis) options.roughness[axis] = beside * found[axis];
+    const std::array<double, 3> again = trajectory::estimate_roughness({&run, 1}, options);
+    for (std::size_t axis = 0; axis < 3; ++axis) CHECK(again[axis] == Approx(found[axis]).epsilon(0.03));
+    const trajectory::Trajectory near = trajectory::fit_trajectory(run, options);
+    REQUIRE(near.pieces.size() == wide.pieces.size());
+    const trajectory::Piece &p = near.pieces[0], &q = wide.pieces[0];
+    REQUIRE(p.size() == q.size());
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      REQUIRE(p.position[0][k] == Approx(q.position[0][k]).margin(1e-5));
+      REQUIRE(p.velocity_variance[k] == Approx(q.velocity_variance[k]).epsilon(0.03));
+    }
+  }
+  CHECK(trajectory::estimate_roughness({}, options) == std::array<double, 3>{});
+}
+
 TEST_CASE("lengths scale, and the axis is subtracted") {
   const recording::Run run = see(Motion(), {.duration = 3});
   recording::Run larger = run;
