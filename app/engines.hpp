@@ -1,4 +1,4 @@
-// The option that names another engine.
+// The options that let another engine play a case.
 #pragma once
 
 #include <fmt/core.h>
@@ -7,19 +7,20 @@
 #include <vector>
 
 #include "app/commands.hpp"
-#include "kernel/base/error.hpp"
-#include "kernel/base/nearest.hpp"
 
 namespace millscope::app {
 
 inline void add_engine(Options& options) {
-  options.add()("engine", boost::program_options::value<std::string>()->value_name("NAME"), "which engine: liggghts");
+  options.add()("engine", boost::program_options::value<std::string>()->value_name("NAME"),
+                "another program that moves the beads: liggghts (run.engine of the case)");
 }
 
-/// Throws base::UserError for a name that is no engine's.
-inline void check_engine(const std::string& name) {
-  const std::vector<std::string> known{"liggghts"};
-  if (name != known.front()) throw base::UserError(fmt::format("--engine '{}' is not known; {}", name, base::suggestion(name, known)));
+/// What is laid on the case: --set, and what stands in options of their own.
+inline std::vector<std::string> settings_of(const Options& options) {
+  std::vector<std::string> settings = options.list("set");
+  if (options.has("engine")) settings.push_back("run.engine=" + options.text("engine"));
+  if (options.has("ranks")) settings.push_back(fmt::format("run.ranks={}", options.integer("ranks")));
+  return settings;
 }
 
 }  // namespace millscope::app

@@ -5,6 +5,7 @@
 #include "app/engines.hpp"
 #include "kernel/config/case.hpp"
 #include "kernel/run/assembly.hpp"
+#include "studies/engine/engine.hpp"
 #include "studies/engine/liggghts/folder.hpp"
 #include "studies/engine/liggghts/results.hpp"
 
@@ -24,9 +25,11 @@ int export_case(const Arguments& arguments) {
   options.with_overrides();
   options.with_plugins();
   if (!options.parse(arguments)) return kDone;
-  check_engine(options.text("engine"));
+  const config::Case c = config::read_case(options.text("CASE.yaml"), settings_of(options));
+  if (c.run.engine.empty()) throw base::UserError("export: for which engine? Add --engine liggghts");
+  engine::require_known(c);
   const host::Registry registry = options.registry();
-  run::Assembly a = run::assemble(config::read_case(options.text("CASE.yaml"), options.list("set")), registry);
+  run::Assembly a = run::assemble(c, registry);
   const std::string folder = options.text("output");
   const engine::liggghts::Exported done = engine::liggghts::export_case(a, registry, folder);
   fmt::print("wrote {}: {} beads, {} meshes of {} triangles, {} steps; {}/README.md says how to run it\n", folder, done.beads, done.meshes,

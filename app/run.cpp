@@ -8,9 +8,11 @@
 #include "app/commands.hpp"
 #include "app/engines.hpp"
 #include "app/watching.hpp"
+#include "kernel/config/case.hpp"
 #include "kernel/output/summary.hpp"
 #include "kernel/run/doubts.hpp"
 #include "kernel/run/simulation.hpp"
+#include "studies/engine/engine.hpp"
 #include "studies/engine/liggghts/obstacles.hpp"
 
 namespace millscope::app {
@@ -39,7 +41,7 @@ void add_run_options(Options& options) {
 
 run::RunOptions run_options(const Options& options) {
   run::RunOptions r;
-  r.overrides = options.list("set");
+  r.overrides = settings_of(options);
   r.command_line = command_line;
   r.quiet = options.has("quiet");
   r.terminal = isatty(STDERR_FILENO) != 0;
@@ -60,10 +62,9 @@ int report(run::Outcome outcome, const run::RunOptions& options) {
 }
 
 /// Whether another engine can play the case, and what it will do differently.
-int check_for_engine(const Options& options) {
-  check_engine(options.text("engine"));
-  const host::Registry registry = options.registry();
-  const run::Assembly a = run::assemble(config::read_case(options.text("CASE.yaml"), options.list("set")), registry);
+int check_for_engine(const config::Case& c, const host::Registry& registry) {
+  engine::require_known(c);
+  const run::Assembly a = run::assemble(c, registry);
   engine::liggghts::require_playable(a, registry);
   fmt::print("LIGGGHTS can play this case: {} beads, {} steps of {:.4g} s\n", a.bead_count, a.end_step - a.first_step, a.time_step);
   for (const std::string& difference : engine::liggghts::differences_of(a)) fmt::print("differs: {}\n", difference);
@@ -87,15 +88,22 @@ int run(const Arguments& arguments) {
                 "directory to make; an existing run is never overwritten unless --force");
   options.add()("force", "overwrite an earlier run in OUT");
   options.add()("watch", "serve a page that follows the run, to this machine alone, and print its address");
+  add_engine(options);
+  options.add()("ranks", po::value<int>()->value_name("N"),
+                "with --engine: processes that share the mill, through mpirun (default 1, or run.ranks of the case)");
   add_run_options(options);
   if (!options.parse(arguments)) return kDone;
   run::RunOptions r = run_options(options);
   const std::string case_file = options.text("CASE.yaml");
   r.output = options.text("output");
   r.force = options.has("force");
+  for (const char* own : {"threads", "watch"}) {
+    if (options.has(own) && !config::read_case(case_file, r.overrides).run.engine.empty())
+      throw base::UserError(fmt::format("--{} is for runs of millscope itself; leave it out where another engine moves the beads", own));
+  }
   if (options.has("watch")) watch_beside(r.output, options);
   watch_signals();
-  return report(run::run_case(case_file, options.registry(), r), r);
+  return report(engine::run_case(case_file, options.registry(), r), r);
 }
 
 int resume(const Arguments& arguments) {
@@ -122,7 +130,8 @@ int check(const Arguments& arguments) {
   add_run_options(options);
   add_engine(options);
   if (!options.parse(arguments)) return kDone;
-  if (options.has("engine")) return check_for_engine(options);
+  const config::Case c = config::read_case(options.text("CASE.yaml"), settings_of(options));
+  if (!c.run.engine.empty()) return check_for_engine(c, options.registry());
   const run::Estimate e = run::estimate(options.text("CASE.yaml"), options.registry(), run_options(options));
   fmt::print("beads          {}  (spheres)\n", e.beads);
   fmt::print("time step      {:.4g} s, {:.0f} % of the Rayleigh time", e.time_step, 100 * e.rayleigh_fraction);

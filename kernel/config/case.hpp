@@ -204,6 +204,8 @@ struct RunCase {
   int partitions = 0;           ///< slabs, 1…4096: an input of the result's last bits; 0: as many as suit the number of beads
   double skin = 0.2;            ///< neighbour-list skin in largest bead diameters, 0 < … ≤ 2
   bool allow_unstable = false;  ///< run with a time step that the check refuses
+  std::string engine;           ///< another program that moves the beads; empty: this one
+  int ranks = 1;                ///< processes of that program
 };
 
 /// A whole case.

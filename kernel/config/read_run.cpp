@@ -139,7 +139,7 @@ OutputCase read_output(const std::optional<Node>& section, const TimeCase& time)
 }
 
 RunCase read_run(const Node& section) {
-  section.expect({"threads", "partitions", "skin", "allow_unstable"});
+  section.expect({"threads", "partitions", "skin", "allow_unstable", "engine", "ranks"});
   RunCase run;
   if (const auto node = section.find("threads")) {
     run.threads = static_cast<int>(read_integer(*node, between(0, 4096, "0 takes as many as the machine has")));
@@ -147,6 +147,11 @@ RunCase read_run(const Node& section) {
   if (const auto node = section.find("partitions")) run.partitions = static_cast<int>(read_integer(*node, between(1, 4096)));
   run.skin = number_or(section, "skin", "1", {0, 2, true, false, "it is a part of the largest bead's diameter"}, run.skin);
   if (const auto node = section.find("allow_unstable")) run.allow_unstable = read_flag(*node);
+  if (const auto node = section.find("engine")) run.engine = node->text();
+  if (const auto node = section.find("ranks")) {
+    run.ranks = static_cast<int>(read_integer(*node, between(1, 100000, "processes of another engine")));
+    if (run.engine.empty()) node->fail("is for another engine; add 'engine: liggghts', or give threads");
+  }
   return run;
 }
 

@@ -204,7 +204,9 @@ json case_schema(std::span<const Descriptor* const> descriptors) {
   const json run = object({{"threads", integer("0: as many as the machine has")},
                            {"partitions", integer("slabs, default: by the number of beads")},
                            {"skin", quantity("of the largest bead's diameter, default 0.2")},
-                           {"allow_unstable", flag("run with a refused time step")}});
+                           {"allow_unstable", flag("run with a refused time step")},
+                           {"engine", text("another program that moves the beads: liggghts")},
+                           {"ranks", integer("processes of that program, default 1")}});
   json schema = object({{"schema_version", {{"const", kSchemaVersion}}},
                         {"include", {{"type", "array"}, {"items", {{"type", "string"}}}}},
                         {"name", text("title of the case")},

@@ -182,6 +182,8 @@ void write_run(Lines& out, const RunCase& run) {
   if (run.partitions > 0) out.value("partitions", run.partitions);
   out.value("skin", run.skin);
   out.value("allow_unstable", run.allow_unstable ? "true" : "false");
+  if (!run.engine.empty()) out.value("engine", run.engine);
+  if (!run.engine.empty()) out.value("ranks", run.ranks);
   out.close();
 }
 

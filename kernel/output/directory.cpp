@@ -27,8 +27,9 @@ namespace {
 constexpr const char* kLockName = ".lock";
 
 // What a run writes, and so what --force may remove.
-constexpr std::array<std::string_view, 9> kOwnNames{
-    "checkpoint.h5", "checkpoint.previous.h5", "frames.h5", "tracks.h5", "results.h5", "series.csv", kResolvedCase, "summary.json", "vtk"};
+constexpr std::array<std::string_view, 10> kOwnNames{
+    "checkpoint.h5", "checkpoint.previous.h5", "frames.h5", "tracks.h5", "results.h5", "series.csv",
+    kResolvedCase,   "summary.json",           "vtk",       "engine"};
 
 bool is_own(const fs::path& entry) {
   const fs::path name = entry.filename();

@@ -27,22 +27,6 @@ std::vector<std::uint32_t> followable(const Assembly& a) {
   return ids;
 }
 
-/// Which beads to follow: the user's ids, or a seeded draw.
-std::vector<std::uint32_t> tracked(const Assembly& a) {
-  const config::OutputCase::Tracks& t = *a.c.output.tracks;
-  std::vector<std::uint32_t> ids;
-  for (const std::uint64_t id : t.ids) ids.push_back(static_cast<std::uint32_t>(id));
-  if (!ids.empty()) return ids;
-  Random random(a.c.seed ^ 0x747261636b73ULL);  // another stream than the filling's
-  std::vector<std::uint32_t> all = followable(a);
-  for (std::size_t k = 0; k < t.count; ++k) {
-    std::swap(all[k], all[k + random.below(all.size() - k)]);
-    ids.push_back(all[k]);
-  }
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-
 /// How many may be followed at least, whatever the filling makes of fractions of a bead.
 std::uint64_t least_followable(const Assembly& a) {
   if (!a.c.has_tracers()) return a.bead_count;
@@ -61,6 +45,21 @@ void wrap(const dem::Settings& s, double* x) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> tracked_beads(const Assembly& a) {
+  const config::OutputCase::Tracks& t = *a.c.output.tracks;
+  std::vector<std::uint32_t> ids;
+  for (const std::uint64_t id : t.ids) ids.push_back(static_cast<std::uint32_t>(id));
+  if (!ids.empty()) return ids;
+  Random random(a.c.seed ^ 0x747261636b73ULL);  // another stream than the filling's
+  std::vector<std::uint32_t> all = followable(a);
+  for (std::size_t k = 0; k < t.count; ++k) {
+    std::swap(all[k], all[k + random.below(all.size() - k)]);
+    ids.push_back(all[k]);
+  }
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
 
 void Recorder::check(const Assembly& a) {
   if (!a.c.output.tracks) return;
@@ -137,7 +136,7 @@ void Recorder::open_frames(std::optional<double> resume_time) {
 
 void Recorder::open_tracks(std::optional<double> resume_time) {
   track_steps_ = steps_of(a_.c.output.tracks->every, a_.time_step);
-  track_ids_ = tracked(a_);
+  track_ids_ = tracked_beads(a_);
   std::vector<output::TrackInfo> infos;
   for (const std::uint32_t id : track_ids_) {
     const double volume = 4.0 / 3.0 * std::numbers::pi * radius_[id] * radius_[id] * radius_[id];

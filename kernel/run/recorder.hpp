@@ -14,6 +14,10 @@
 
 namespace millscope::run {
 
+/// Which beads are followed where the case has tracks, once they are in: the user's, or a seeded draw, in the order of their ids or as
+/// given.
+std::vector<std::uint32_t> tracked_beads(const Assembly& a);
+
 class Recorder {
  public:
   /// Throws UserError for outputs that this case cannot give, before anything is written.

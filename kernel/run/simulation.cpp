@@ -211,7 +211,7 @@ Outcome step_to_end(Session& s, const host::Registry& registry) {
       system.observe = nullptr;
     }
     advance(s);
-    if (stop_requested.load(std::memory_order_relaxed) && system.step() < s.assembly.end_step) {
+    if (is_stop_requested() && system.step() < s.assembly.end_step) {
       write_checkpoint(s);
       progress.finish("stopped; continue with: millscope resume " + s.directory.string());
       return Outcome::interrupted;
@@ -294,6 +294,7 @@ Outcome run_once(const std::string& case_file, const host::Registry& registry, c
 
 }  // namespace
 
+bool is_stop_requested() { return stop_requested.load(std::memory_order_relaxed); }
 void request_stop() { stop_requested.store(true, std::memory_order_relaxed); }
 
 Outcome run_case(const std::string& case_file, const host::Registry& registry, const RunOptions& options) {

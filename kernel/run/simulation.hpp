@@ -34,6 +34,7 @@ Outcome resume_run(const host::Registry& registry, const RunOptions& options);
 
 /// Asks the current run to write a checkpoint and stop (SIGINT, SIGTERM); safe in a signal handler.
 void request_stop();
+bool is_stop_requested();
 
 /// What `millscope check` predicts.
 struct Estimate {

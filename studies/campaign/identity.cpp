@@ -14,6 +14,7 @@
 #include "kernel/config/writer.hpp"
 #include "kernel/output/archive.hpp"
 #include "kernel/run/assembly.hpp"
+#include "studies/engine/engine.hpp"
 
 namespace millscope::campaign {
 namespace {
@@ -89,6 +90,7 @@ base::ProgramParts plugins_of(const config::Case& c, const host::Registry& regis
   each_plugin(c, [&](Kind kind, const std::string& name, const config::Node&, Scope) {
     parts[host::text(kind) + " " + name] = registry.find(kind, name).library->code_hash();
   });
+  if (!c.run.engine.empty()) parts["engine " + c.run.engine] = engine::version_of(c);
   return parts;
 }
 

@@ -8,9 +8,9 @@
 #include <map>
 #include <thread>
 
+#include "kernel/output/child.hpp"
 #include "kernel/output/file.hpp"
 #include "studies/campaign/board.hpp"
-#include "studies/campaign/child.hpp"
 #include "studies/campaign/memory.hpp"
 #include "studies/campaign/signals.hpp"
 #include "studies/campaign/task.hpp"
@@ -28,7 +28,7 @@ struct Running {
   Job job;
   std::unique_ptr<Lock> lock;
   std::int64_t checkpoint;  ///< when it was started
-  std::unique_ptr<Child> child;
+  std::unique_ptr<output::Child> child;
 };
 
 class Local {
@@ -58,7 +58,7 @@ class Local {
   void reap() {
     for (auto r = running_.begin(); r != running_.end();) {
       r->lock->keep_alive();
-      const std::optional<Ended> ended = r->child->poll();
+      const std::optional<output::Ended> ended = r->child->poll();
       if (!ended) {
         ++r;
         continue;
@@ -69,13 +69,13 @@ class Local {
     }
   }
 
-  void settle(Running& r, const Ended& ended) {
+  void settle(Running& r, const output::Ended& ended) {
     const std::optional<TaskRecord> record = board_.settled(r.job);
     if (record) return board_.finish(r.job, *record, false);
-    if (ended.signal == 0 && (ended.exit_code == output::kExitDisk || ended.exit_code == kCannotStart)) {
-      trouble_ = ended.exit_code == kCannotStart ? fmt::format("{}: cannot be started; give the millscope program", program())
-                                                 : last_line(r.job.entry.messages());
-      trouble_code_ = ended.exit_code == kCannotStart ? base::kExitBadInput : output::kExitDisk;
+    if (ended.signal == 0 && (ended.exit_code == output::kExitDisk || ended.exit_code == output::kCannotStart)) {
+      trouble_ = ended.exit_code == output::kCannotStart ? fmt::format("{}: cannot be started; give the millscope program", program())
+                                                         : last_line(r.job.entry.messages());
+      trouble_code_ = ended.exit_code == output::kCannotStart ? base::kExitBadInput : output::kExitDisk;
       return give_back(r.job, 0);
     }
     if (ended.signal == 0 && ended.exit_code == kBusy) return give_back(r.job, kLookEvery);
@@ -90,7 +90,7 @@ class Local {
     board_.fail(r.job, reason(r, ended));
   }
 
-  std::string reason(const Running& r, const Ended& ended) const {
+  std::string reason(const Running& r, const output::Ended& ended) const {
     const std::string said = last_line(r.job.entry.messages()), tail = said.empty() ? "" : fmt::format("; its last words: {}", said);
     if (ended.signal == SIGKILL) return "killed from outside (SIGKILL: out of memory?)" + tail;
     if (ended.signal != 0) return fmt::format("crashed: {}{}", ::strsignal(ended.signal), tail);
@@ -133,11 +133,11 @@ class Local {
     for (const std::filesystem::path& directory : board_.options().plugin_directories) {
       command.insert(command.end(), {"--plugin-dir", directory.string()});
     }
-    auto child = std::make_unique<Child>(command, job.entry.messages());
+    auto child = std::make_unique<output::Child>(command, job.entry.messages());
     running_.push_back({job, std::move(lock), job.entry.checkpoint_time(), std::move(child)});
   }
 
-  std::string program() const { return board_.options().program.empty() ? own_program() : board_.options().program.string(); }
+  std::string program() const { return board_.options().program.empty() ? output::own_program() : board_.options().program.string(); }
 
   /// One simulation always may run, however much it needs.
   bool fits(const Job& job) const {

@@ -9,15 +9,6 @@
 
 namespace millscope::campaign {
 
-/// A program that ended by itself.
-struct Answer {
-  int code = 0;
-  std::string text;  ///< what it printed, errors among it
-};
-
-/// Runs a program found in PATH to its end. Throws UserError when it is missing.
-Answer ask(const std::vector<std::string>& words);
-
 /// An array job: task i of it carries out entries[i].
 struct Batch {
   std::filesystem::path folder;                ///< CACHE/slurm/<name>

@@ -13,7 +13,7 @@
 #include "kernel/output/file.hpp"
 #include "kernel/run/simulation.hpp"
 #include "studies/campaign/cache.hpp"
-#include "studies/campaign/child.hpp"
+#include "studies/engine/engine.hpp"
 
 namespace millscope::campaign {
 namespace {
@@ -69,7 +69,7 @@ run::Outcome simulate(const Entry& entry, const host::Registry& registry) {
     return run::resume_run(registry, options);
   }
   options.command_line = {"millscope", "run", entry.case_file().string(), "-o", entry.run().string(), "--threads", "1"};
-  return run::run_case(entry.case_file().string(), registry, options);
+  return engine::run_case(entry.case_file().string(), registry, options);
 }
 
 int failed(const Entry& entry, TaskRecord record, const std::string& message) {

@@ -7,6 +7,8 @@
 
 namespace millscope::campaign {
 
+inline constexpr int kInterruptedCode = 3;  ///< of a simulation that was stopped and can be resumed
+
 /// Exit codes of `campaign-task` besides the program's own: 0 done, 2 failed and recorded, 3 stopped, 4 the disk is full.
 inline constexpr int kBusy = 75;  ///< another process writes this run
 

@@ -147,9 +147,15 @@ Challenge read_challenge(const fs::path& file, const std::vector<std::string>& o
   c.seed =
       static_cast<std::uint64_t>(config::read_integer(root.at("seed", "any number that those who diagnose do not know"), between(0, 9e15)));
   const Node truth = root.at("truth", "how the mill that makes the sets differs from the fitted one, e.g. {set: {stiffness_factor: 0.01}}");
-  truth.expect({"set"});
+  truth.expect({"set", "engine"});
   c.truth_where = truth.where();
-  c.truth = settings_of(truth.at("set", "settings of the case, e.g. {stiffness_factor: 0.01}"));
+  if (const auto engine = truth.find("engine")) {
+    // Another engine is another numerics by itself; settings may come beside it.
+    if (const auto set = truth.find("set")) c.truth = settings_of(*set);
+    c.truth.push_back("run.engine=" + engine->text());
+  } else {
+    c.truth = settings_of(truth.at("set", "settings of the case, e.g. {stiffness_factor: 0.01}"));
+  }
   if (const auto node = root.find("beads")) c.beads = static_cast<int>(config::read_integer(*node, between(1, kMostBeads)));
   if (const auto node = root.find("seconds")) c.seconds = config::read_number(*node, "s", config::positive());
   const Node sets = root.at("sets", "a list of what is made");

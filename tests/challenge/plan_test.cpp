@@ -57,6 +57,15 @@ TEST_CASE("a challenge reads as it is written") {
   CHECK(c.sets[3].settings == std::vector<std::string>{"pairs.glass~glass.restitution=0.3", "contact.law.cap=sum"});
 }
 
+TEST_CASE("another engine may play the truth, with settings or without") {
+  const testing::Scratch folder;
+  std::string text = kText;
+  text.replace(text.find("truth: {set: {stiffness_factor: 0.01, contact.law.cap: sum}}"), 60,
+               "truth: {engine: liggghts, set: {stiffness_factor: 0.01}}    ");
+  CHECK(read_challenge(write(folder, text), {}).truth == std::vector<std::string>{"stiffness_factor=0.01", "run.engine=liggghts"});
+  CHECK(begins(refused("truth: {set: {stiffness_factor: 0.01, contact.law.cap: sum}}", "truth: {machine: liggghts}"), "c.yaml:4: "));
+}
+
 TEST_CASE("challenges that cannot work are refused with their place") {
   CHECK(begins(refused("kind: none", "kind: nothing"), "c.yaml:8: 'sets.0.kind' "));
   CHECK(begins(refused("count: 3", "count: 0"), "c.yaml:8: "));

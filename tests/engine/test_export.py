@@ -58,7 +58,7 @@ class Export(CliTest):
         self.assertIn("can play this case", self.succeed("check", "case.yaml", "--engine", "liggghts").stdout)
 
     def test_bad_words(self):
-        self.assert_one_line(self.millscope("export", "case.yaml", "-o", "out", "--engine", "ligghts"), "'ligghts' is not known", "liggghts")
+        self.assert_one_line(self.millscope("export", "case.yaml", "-o", "out", "--engine", "ligghts"), "'ligghts' is no engine that is known", "liggghts")
         (self.folder / "out").mkdir()
         self.assert_one_line(self.millscope("export", "case.yaml", "-o", "out", "--engine", "liggghts"), "exists already")
 
@@ -69,16 +69,20 @@ class Import(CliTest):
     def setUp(self):
         super().setUp()
         self.succeed("export", "case.yaml", "-o", "theirs", "--engine", "liggghts", "--set", "mill.direction=clockwise", "--set",
-                     "time={end_s: 0.4, analyze_from_s: 0.2}", "--set", "output.frames={every_s: 0.1, from_s: 0.2}")
+                     "time={end_s: 0.4, analyze_from_s: 0.2}", "--set", "output.frames={every_s: 0.1, from_s: 0.2}", "--set", "output.tracks={beads: [3, 7], every_s: 0.1}")
         script = (self.folder / "theirs/in.liggghts").read_text(encoding="utf-8")
         self.step = float(words_of(script, "timestep")[0][0])
         self.beads = [line.split() for line in (self.folder / "theirs/beads.data").read_text().split("Atoms")[1].split("Velocities")[0].splitlines() if line]
-        self.often = int(words_of(script, "dump")[0][3])
+        dumps = {words[0]: words for words in words_of(script, "dump")}
+        self.often = int(dumps["frames"][3])
+        self.assertEqual(words_of(script, "group"), [["tracked", "id", "4", "8"]])
+        self.track_often = int(dumps["tracks"][3])
         runs = [int(words[0]) for words in words_of(script, "run")]
         self.zero, self.end = int(words_of(script, "reset_timestep")[0][0]) + runs[0], sum(runs[1:])
         self.row = next(int(words[5]) for words in words_of(script, "fix") if words[0] == "series")
         self.post = self.folder / "theirs/post"
         self.write_series()
+        self.write_tracks()
         for k in range(2, 1 + self.end // self.often):
             self.write_frame(k * self.often)
 
@@ -86,6 +90,13 @@ class Import(CliTest):
         steps = [self.row * (self.zero // self.row + 1 + k) for k in range(self.end // self.row)]
         lines = ["%d 1e-3 2e-3 0.01 -0.03 0.013 0 0 0.2" % step for k, step in enumerate(steps) if k not in leave_out]
         (self.post / "series.txt").write_text("# head\n# more\n" + "\n".join(lines) + "\n")
+
+    def write_tracks(self, beads=(3, 7)):
+        head = "ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%d\nITEM: BOX BOUNDS ff ff pp\n0 1\n0 1\n0 1\nITEM: ATOMS id x y z \n"
+        text = ""
+        for step in range(self.zero, self.zero + self.end + 1, self.track_often):
+            text += head % (step, len(beads)) + "".join("%d 0.01 -0.02 %g\n" % (b + 1, -0.001) for b in beads)
+        (self.post / "tracks.txt").write_text(text)
 
     def write_frame(self, step, beads=None):
         head = ("ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%d\nITEM: BOX BOUNDS ff ff pp\n0 1\n0 1\n0 1\n"
@@ -95,7 +106,7 @@ class Import(CliTest):
 
     def test_files_as_of_a_run(self):
         self.succeed("import", "theirs", "-o", "out")
-        self.assertEqual(sorted(tree_of(self.folder / "out")), ["case.resolved.yaml", "frames.h5", "series.csv", "summary.json"])
+        self.assertEqual(sorted(tree_of(self.folder / "out")), ["case.resolved.yaml", "frames.h5", "series.csv", "summary.json", "tracks.h5"])
         summary = self.summary("out")
         speed = summary["mill_speed_rad_per_s"]
         self.assertLess(speed, 0)
@@ -110,6 +121,10 @@ class Import(CliTest):
             self.assertAlmostEqual(f.read("position")[1], float(self.beads[0][5]), places=6)
             self.assertAlmostEqual(f.read("wall_angle")[0], speed * 2 * self.often * self.step)
             self.assertEqual(f.read("spin")[:3], [0, 0, 1])
+        with Hdf5(self.folder / "out/tracks.h5") as f:
+            self.assertEqual(sorted(f.names()), ["bead_3", "bead_7"])
+            self.assertAlmostEqual(f.read("bead_7/t")[1], self.track_often * self.step, places=9)
+            self.assertAlmostEqual(f.read("bead_7/position")[2], 0.025)  # -1 mm, in a slice of 26 mm that repeats
 
     def refused(self, *parts):
         self.assert_one_line(self.millscope("import", "theirs", "-o", "out"), *parts)
@@ -126,6 +141,15 @@ class Import(CliTest):
         self.refused("frame_[0-9]+.txt:4: holds [0-9]+ beads of [0-9]+: LIGGGHTS has lost the others")
         self.write_frame(3 * self.often, self.beads[1:] + self.beads[:1])
         self.refused("frame_[0-9]+.txt:10: bead 2 stands where 1 is expected")
+
+    def test_tracks_that_are_cut_short_or_of_other_beads(self):
+        text = (self.post / "tracks.txt").read_text()
+        (self.post / "tracks.txt").write_text(text[:-40])
+        self.refused("tracks.txt:[0-9]+: the tracks are cut short")
+        (self.post / "tracks.txt").write_text(text[::-1].replace("8", "9", 1)[::-1])
+        self.refused("tracks.txt:[0-9]+: bead 9 stands where another is expected")
+        (self.post / "tracks.txt").unlink()
+        self.refused("tracks.txt: cannot be read")
 
     def test_frames_that_are_missing_cut_short_or_blown_up(self):
         frame = self.post / ("frame_%d.txt" % (self.zero + 3 * self.often))

@@ -11,6 +11,7 @@
 #include "kernel/output/file.hpp"
 #include "kernel/output/new_folder.hpp"
 #include "kernel/output/stl.hpp"
+#include "kernel/run/recorder.hpp"
 #include "studies/engine/liggghts/obstacles.hpp"
 #include "studies/engine/liggghts/script.hpp"
 
@@ -64,6 +65,7 @@ Up to step {} the charge falls with the walls at rest; the case's own time begin
 
 Exported export_case(run::Assembly& a, const host::Registry& registry, const fs::path& folder) {
   require_playable(a, registry);
+  run::Recorder::check(a);
   output::NewFolder aside(folder);
   run::insert_beads(a);
   Exported exported;

@@ -2,24 +2,24 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/hash.hpp"
+#include "kernel/base/text.hpp"
 #include "kernel/config/case.hpp"
 #include "kernel/config/writer.hpp"
 #include "kernel/output/directory.hpp"
 #include "kernel/output/file.hpp"
-#include "kernel/output/frames.hpp"
 #include "kernel/output/new_folder.hpp"
 #include "kernel/output/series.hpp"
 #include "kernel/output/summary.hpp"
 #include "kernel/run/statistics.hpp"
 #include "kernel/run/window.hpp"
-#include "studies/engine/liggghts/folder.hpp"
+#include "studies/engine/liggghts/dumps.hpp"
 #include "studies/engine/liggghts/obstacles.hpp"
 #include "studies/engine/liggghts/script.hpp"
 
@@ -29,46 +29,6 @@ namespace {
 namespace fs = std::filesystem;
 using base::UserError;
 
-/// A text file, line by line, with its place for messages.
-class TextFile {
- public:
-  explicit TextFile(const fs::path& file) : file_(file), in_(file) {
-    if (!in_) throw UserError(fmt::format("{}: cannot be read; run 'liggghts -in in.liggghts' in that folder first", file.string()));
-  }
-  /// The next line that is whole; false at the end.
-  bool next() {
-    ++line_;
-    return static_cast<bool>(std::getline(in_, text_)) && !in_.eof();
-  }
-  const std::string& text() const { return text_; }
-  [[noreturn]] void fail(const std::string& what) const { throw UserError(fmt::format("{}:{}: {}", file_.string(), line_, what)); }
-
-  /// The numbers of the line, exactly so many, all finite.
-  std::vector<double> numbers(std::size_t count) const {
-    std::vector<double> all;
-    const char *at = text_.data(), *const end = at + text_.size();
-    for (;;) {
-      while (at < end && (*at == ' ' || *at == '\t' || *at == '\r')) ++at;
-      if (at == end) break;
-      double value = 0;
-      const auto [behind, error] = std::from_chars(at, end, value);
-      if (error != std::errc{} || !std::isfinite(value))
-        fail(fmt::format("'{}' holds what is no finite number; the run has blown up, or the file is damaged", text_.substr(0, 60)));
-      all.push_back(value);
-      at = behind;
-    }
-    if (all.size() != count)
-      fail(fmt::format("holds {} numbers, {} are expected; it belongs to another case, or is damaged", all.size(), count));
-    return all;
-  }
-
- private:
-  fs::path file_;
-  std::ifstream in_;
-  std::string text_;
-  int line_ = 0;
-};
-
 /// A row of series.txt: means over about 10 ms.
 struct Span {
   double begin = 0, time = 0, end = 0;   ///< s, of the case; `time`: the middle
@@ -77,6 +37,12 @@ struct Span {
   double torque = 0;                     ///< on the turning walls about their axes, N m
   double power = 0;                      ///< that turns them, W
 };
+
+double charge_mass(const std::vector<DataBead>& beads) {
+  double mass = 0;
+  for (const DataBead& bead : beads) mass += bead.density * config::sphere_volume(bead.diameter);
+  return mass;
+}
 
 constexpr std::size_t kBeforeTorques = 6;  // step, two energies, three coordinates
 
@@ -119,97 +85,6 @@ std::vector<Span> series_of(const fs::path& file, const run::Assembly& a, const 
                     "time.end_s",
                     file.string(), last, a.c.time.end));
   return all;
-}
-
-/// The beads of one frame, by number.
-struct Frame {
-  std::int64_t step = 0;
-  std::vector<double> position, velocity, spin, radius, mass;
-  std::vector<std::uint32_t> id, material;
-};
-
-constexpr const char* kFrameColumns = "ITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz radius density";
-
-void add_bead(const TextFile& in, const run::Assembly& a, Frame& frame) {
-  const std::vector<double> row = in.numbers(13);
-  if (row[0] != static_cast<double>(frame.id.size() + 1))
-    in.fail(fmt::format("bead {} stands where {} is expected; beads must stand in the order of their numbers, without a gap", row[0],
-                        frame.id.size() + 1));
-  if (!(row[1] >= 1 && row[1] <= static_cast<double>(a.materials.size()) && row[1] == std::floor(row[1])))
-    in.fail(fmt::format("type {} is none of the {} of the case", row[1], a.materials.size()));
-  frame.id.push_back(static_cast<std::uint32_t>(frame.id.size()));
-  frame.material.push_back(static_cast<std::uint32_t>(row[1]) - 1);
-  frame.position.insert(frame.position.end(), row.begin() + 2, row.begin() + 5);
-  frame.velocity.insert(frame.velocity.end(), row.begin() + 5, row.begin() + 8);
-  frame.spin.insert(frame.spin.end(), row.begin() + 8, row.begin() + 11);
-  frame.radius.push_back(row[11]);
-  frame.mass.push_back(row[12] * config::sphere_volume(2 * row[11]));
-}
-
-Frame read_frame(const fs::path& file, const run::Assembly& a) {
-  TextFile in(file);
-  Frame frame;
-  for (int line = 1; line <= 9; ++line) {
-    if (!in.next()) in.fail("the frame is cut short; let LIGGGHTS run again");
-    if (line == 2) frame.step = std::llround(in.numbers(1)[0]);
-    if (line == 4 && in.numbers(1)[0] != static_cast<double>(a.bead_count))
-      in.fail(fmt::format("holds {} beads of {}: LIGGGHTS has lost the others; take a smaller time step", in.text(), a.bead_count));
-    if (line == 9 && in.text().substr(0, in.text().find_last_not_of(" \r") + 1) != kFrameColumns)
-      in.fail("the columns are others than in.liggghts asks for");
-  }
-  while (in.next()) add_bead(in, a, frame);
-  if (frame.id.size() != a.bead_count)
-    in.fail(fmt::format("the frame is cut short after {} beads of {}; let LIGGGHTS run again", frame.id.size(), a.bead_count));
-  return frame;
-}
-
-/// The steps of the frames that the case asks for.
-std::vector<std::int64_t> steps_of_frames(const run::Assembly& a) {
-  std::vector<std::int64_t> steps;
-  if (!a.c.output.frames) return steps;
-  const std::int64_t zero = zero_step(a), every = frame_every(a);
-  for (std::int64_t step = (zero + frames_from(a) + every - 1) / every * every; step <= zero + a.end_step; step += every)
-    steps.push_back(step);
-  return steps;
-}
-
-/// frames.h5. Returns how many.
-std::size_t write_frames(const fs::path& folder, const run::Assembly& a, const fs::path& to) {
-  std::optional<output::FrameWriter> writer;
-  const std::vector<std::int64_t> steps = steps_of_frames(a);
-  for (const std::int64_t step : steps) {
-    const fs::path file = folder / fmt::format("frame_{}.txt", step);
-    const Frame frame = read_frame(file, a);
-    if (frame.step != step) throw UserError(fmt::format("{}:2: is of step {}; let LIGGGHTS run again", file.string(), frame.step));
-    if (!writer) writer = output::FrameWriter::create(to, {frame.id, frame.radius, frame.mass, frame.material, a.materials, {}, {}});
-    output::FrameView view;
-    view.time = static_cast<double>(frame.step - zero_step(a)) * a.time_step;
-    if (const auto body = a.wall_body_of_mill()) {
-      const dem::Motion& motion = a.system->bodies[static_cast<std::size_t>(*body)].motion;
-      view.wall_angle = dem::pose_at(motion, view.time).angle;
-      view.angular_velocity = dem::angular_speed(motion, view.time);
-    }
-    view.position = frame.position;
-    view.velocity = frame.velocity;
-    view.spin = frame.spin;
-    writer->append(view);
-  }
-  if (writer) writer->close();
-  return steps.size();
-}
-
-/// Of the beads in beads.data, kg.
-double charge_mass(const fs::path& file) {
-  TextFile in(file);
-  double mass = 0;
-  while (in.next() && in.text() != "Atoms") {
-  }
-  in.next();
-  while (in.next() && !in.text().empty()) {
-    const std::vector<double> row = in.numbers(7);
-    mass += row[3] * config::sphere_volume(row[2]);
-  }
-  return mass;
 }
 
 /// Whether the power by centre of mass is known: along a periodic axis LIGGGHTS follows beads from image to image.
@@ -291,22 +166,31 @@ std::string version_in(const fs::path& log) {
 
 }  // namespace
 
-Imported import_case(const fs::path& folder, const fs::path& out, const host::Registry& registry,
-                     const std::vector<std::string>& command_line) {
+Imported read_results(const fs::path& folder, const fs::path& out, const host::Registry& registry, const HowRun& how) {
   const fs::path case_file = folder / output::kResolvedCase;
   if (!fs::exists(case_file))
     throw UserError(fmt::format("{}: there is none; give a folder that 'millscope export' has made", case_file.string()));
   const run::Assembly a = run::assemble(config::read_case(case_file.string()), registry);
   const std::vector<Span> series = series_of(folder / "post" / "series.txt", a, meshes_of(a));
-  const double mass = charge_mass(folder / "beads.data");
+  const double mass = charge_mass(beads_in(folder / "beads.data"));
   nlohmann::ordered_json j = summary_of(series, a, mass);
-  output::NewFolder aside(out);
-  Imported imported{a.bead_count, write_frames(folder / "post", a, aside.path() / "frames.h5"), series.back().end};
-  write_series(series, a, mass, aside.path() / "series.csv");
-  output::write_file(aside.path() / output::kResolvedCase, config::resolved_yaml(a.c, registry.descriptors()));
+  const Imported imported{a.bead_count, write_frames(folder / "post", a, out / "frames.h5"), series.back().end};
+  if (a.c.output.tracks) write_tracks(folder, a, out / "tracks.h5");
+  write_series(series, a, mass, out / "series.csv");
+  output::write_file(out / output::kResolvedCase, config::resolved_yaml(a.c, registry.descriptors()));
   j["engine"]["version"] = version_in(folder / "log.liggghts");
-  j["provenance"] = output::provenance(command_line, {});
-  output::write_json(aside.path() / "summary.json", j);
+  j["engine"]["script"] = base::Hash().add(base::text_of(folder / "in.liggghts")).text();
+  if (how.ranks > 0) j["engine"]["ranks"] = how.ranks;
+  if (how.wall > 0) j["wall_s"] = how.wall;
+  j["provenance"] = output::provenance(how.command_line, {});
+  output::write_json(out / "summary.json", j);
+  return imported;
+}
+
+Imported import_case(const fs::path& folder, const fs::path& out, const host::Registry& registry,
+                     const std::vector<std::string>& command_line) {
+  output::NewFolder aside(out);
+  const Imported imported = read_results(folder, aside.path(), registry, {command_line});
   aside.publish();
   return imported;
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "kernel/base/program.hpp"
+#include "kernel/run/recorder.hpp"
 
 namespace millscope::engine::liggghts {
 namespace {
@@ -106,13 +107,24 @@ void add_output(const run::Assembly& a, const std::vector<MeshFile>& meshes, Lin
                         often, kSeriesValues, kSeriesValues * often, torques));
   lines.add("thermo_style", "custom step time atoms ke");
   lines.add("thermo", fmt::format("{}", std::max<std::int64_t>(1, (a.end_step - a.first_step) / 200)));
-  lines.add("thermo_modify", "lost error norm no");
+  lines.add("thermo_modify", "lost error norm no flush yes");
   lines.add("restart", fmt::format("{} post/restart.1 post/restart.2", std::max<std::int64_t>(1000, (a.end_step - a.first_step) / 20)));
 }
 
 /// The case's own time, with frames from where the case wants them.
 void add_runs(const run::Assembly& a, Lines& lines) {
   std::int64_t from = 0;
+  if (a.c.output.tracks) {
+    const std::vector<std::uint32_t> ids = run::tracked_beads(a);
+    constexpr std::size_t kOfOneLine = 100;  // LIGGGHTS reads no line of more than 2 kB
+    for (std::size_t i = 0; i < ids.size(); i += kOfOneLine) {
+      std::string words;
+      for (std::size_t k = i; k < std::min(ids.size(), i + kOfOneLine); ++k) words += fmt::format(" {}", ids[k] + 1);
+      lines.add("group", "tracked id" + words);
+    }
+    lines.add("dump", fmt::format("tracks tracked custom {} post/tracks.txt id x y z", steps_of(a, a.c.output.tracks->every)));
+    lines.add("dump_modify", "tracks sort id format \"%d %.9g %.9g %.9g\"");
+  }
   if (a.c.output.frames) {
     from = frames_from(a);
     if (from > 0) lines.add("run", fmt::format("{}", from));
@@ -193,6 +205,8 @@ std::string script_of(const run::Assembly& a, const Physics& physics, const std:
   lines.say(fmt::format("{}: made by millscope {} for LIGGGHTS 3.8", a.c.name, base::version()));
   lines.add("units", "si");
   lines.add("atom_style", "granular");
+  for (const char* axis : {"x", "y", "z"}) lines.add("variable", fmt::format("p{} index *", axis));  // -var pz 4: ranks along each
+  lines.add("processors", "${px} ${py} ${pz}");
   lines.add("atom_modify", "map array sort 1000 0");
   lines.add("communicate", "single vel yes");
   lines.add("soft_particles", "yes");  // Young's moduli below 5 MPa and above 1 GPa are refused without

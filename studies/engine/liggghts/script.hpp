@@ -8,6 +8,11 @@
 
 namespace millscope::engine::liggghts {
 
+/// Where a run of LIGGGHTS lies in the folder of results.
+inline constexpr const char* kFolder = "engine";
+/// Words of a line that tells how far it is: step, time, atoms, energy.
+inline constexpr std::size_t kThermoWords = 4;
+
 /// What a geometry has of one material, an STL file.
 struct MeshFile {
   std::string id;  ///< of the fix

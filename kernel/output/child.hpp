@@ -1,4 +1,4 @@
-// A simulation as a process of its own.
+// Other programs: one that runs beside this one, one that is asked and answers.
 #pragma once
 
 #include <sys/types.h>
@@ -10,10 +10,9 @@
 #include <string>
 #include <vector>
 
-namespace millscope::campaign {
+namespace millscope::output {
 
-inline constexpr int kInterruptedCode = 3;  ///< exit code of a simulation that was stopped and can be resumed
-inline constexpr int kCannotStart = 127;    ///< exit code where the program cannot be started, as of a shell
+inline constexpr int kCannotStart = 127;  ///< exit code where the program cannot be started, as of a shell
 
 /// How a process ended.
 struct Ended {
@@ -21,12 +20,21 @@ struct Ended {
   int signal = 0;     ///< 0: it ended by itself
 };
 
+/// A program that ended by itself.
+struct Answer {
+  int code = 0;      ///< kCannotStart: it was not started, and the text is the reason
+  std::string text;  ///< what it printed, errors among it, in one line
+};
+
+/// Runs a program, found as a shell finds it, to its end.
+Answer ask(const std::vector<std::string>& words);
+
 /// A process in a group of its own, so that a terminal's Ctrl-C reaches only its head; it gets SIGTERM when its head dies. Its output goes
 /// to a file.
 class Child {
  public:
-  /// Throws UserError when no process can be started.
-  Child(const std::vector<std::string>& command, const std::filesystem::path& messages);
+  /// `directory`: where it works; empty: where this program does. Throws UserError when no process can be started.
+  Child(const std::vector<std::string>& command, const std::filesystem::path& messages, const std::filesystem::path& directory = {});
   /// Asks it to stop and waits, when it still runs.
   ~Child();
   Child(const Child&) = delete;
@@ -50,4 +58,4 @@ class Child {
 /// The program that runs now, as a path that can be started.
 std::string own_program();
 
-}  // namespace millscope::campaign
+}  // namespace millscope::output

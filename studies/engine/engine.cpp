@@ -1,0 +1,32 @@
+#include "studies/engine/engine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "kernel/base/nearest.hpp"
+#include "studies/engine/liggghts/play.hpp"
+
+namespace millscope::engine {
+
+std::vector<std::string> names() { return {"liggghts"}; }
+
+void require_known(const config::Case& c) {
+  const std::vector<std::string> known = names();
+  if (c.run.engine.empty() || std::find(known.begin(), known.end(), c.run.engine) != known.end()) return;
+  c.root.at("run").at("engine").fail(
+      fmt::format("'{}' is no engine that is known; {}", c.run.engine, base::suggestion(c.run.engine, known)));
+}
+
+std::string version_of(const config::Case& c) {
+  require_known(c);
+  return liggghts::installed_version();
+}
+
+run::Outcome run_case(const std::string& case_file, const host::Registry& registry, const run::RunOptions& options) {
+  const config::Case c = config::read_case(case_file, options.overrides);
+  require_known(c);
+  return c.run.engine.empty() ? run::run_case(case_file, registry, options) : liggghts::play_case(case_file, registry, options);
+}
+
+}  // namespace millscope::engine

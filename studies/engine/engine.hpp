@@ -1,0 +1,25 @@
+// A case played by the engine that it names. Each engine has a folder of its own here.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kernel/config/case.hpp"
+#include "kernel/host/registry.hpp"
+#include "kernel/run/simulation.hpp"
+
+namespace millscope::engine {
+
+/// Engines that a case may name in run.engine, beside none: this program.
+std::vector<std::string> names();
+
+/// Throws base::UserError for a case that names no engine that is known.
+void require_known(const config::Case& c);
+
+/// The version of the engine that a case names, as the engine itself tells it. Throws base::UserError where it is not installed.
+std::string version_of(const config::Case& c);
+
+/// Runs a case from its start, by the engine that it names. Throws base::UserError.
+run::Outcome run_case(const std::string& case_file, const host::Registry& registry, const run::RunOptions& options);
+
+}  // namespace millscope::engine

@@ -1,0 +1,179 @@
+#include "studies/engine/liggghts/play.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "kernel/base/error.hpp"
+#include "kernel/base/text.hpp"
+#include "kernel/config/case.hpp"
+#include "kernel/output/child.hpp"
+#include "kernel/output/directory.hpp"
+#include "kernel/output/file.hpp"
+#include "kernel/run/progress.hpp"
+#include "studies/engine/liggghts/folder.hpp"
+#include "studies/engine/liggghts/obstacles.hpp"
+#include "studies/engine/liggghts/results.hpp"
+#include "studies/engine/liggghts/script.hpp"
+
+namespace millscope::engine::liggghts {
+namespace {
+
+namespace fs = std::filesystem;
+using base::UserError;
+using output::Child;
+using output::Ended;
+
+constexpr const char* kLog = "log.liggghts";
+constexpr const char* kMessages = "messages.txt";
+
+/// What a program says. Throws where it is not installed, or, `version` not being "", another version of it.
+std::string require_program(const std::vector<std::string>& question, const std::string& package, const std::string& version) {
+  const output::Answer answer = output::ask(question);
+  if (answer.code == output::kCannotStart)
+    throw UserError(
+        fmt::format("{}: not found on this machine ({}); install it (Debian: apt install {})", question[0], answer.text, package));
+  if (answer.text.find(version) == std::string::npos)
+    throw UserError(fmt::format("{}: '{}', but version {} is needed (Debian: apt install {})", question[0], answer.text.substr(0, 80),
+                                version, package));
+  return answer.text;
+}
+
+/// One line for a bead that got lost, and what helps.
+std::string remedy_for(const std::string& error) {
+  for (const char* sign : {"Lost atoms", "Non-numeric", "non-numeric", "out of range", "bad atom"}) {
+    if (error.find(sign) != std::string::npos) return "beads ran away; take a smaller time step (--set time.step_fraction=…)";
+  }
+  if (error.find("Processor") != std::string::npos || error.find("rocessor grid") != std::string::npos) return "give fewer --ranks";
+  return "the file says more";
+}
+
+/// The last bytes of a file that another process writes; "" where there is none yet.
+std::string end_of(const fs::path& file) {
+  constexpr std::streamoff kBytes = 1 << 14;
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (!in) return {};
+  const std::streamoff size = in.tellg();
+  in.seekg(std::max<std::streamoff>(0, size - kBytes));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What to start, in the folder of the case.
+std::vector<std::string> command_for(const run::Assembly& a) {
+  const int ranks = a.c.run.ranks;
+  std::vector<std::string> words;
+  if (ranks > 1) {
+    words = {"mpirun", "-np", std::to_string(ranks), "--oversubscribe"};
+    if (::geteuid() == 0) words.emplace_back("--allow-run-as-root");
+  }
+  const Bounds z = bounds_of(a, 2);
+  const RankGrid grid = rank_grid(ranks, z.high - z.low, a.c.largest_diameter());
+  words.insert(words.end(), {"liggghts", "-in", "in.liggghts"});
+  for (const auto& [name, count] : {std::pair("px", grid.x), std::pair("py", grid.y), std::pair("pz", grid.z)})
+    words.insert(words.end(), {"-var", name, std::to_string(count)});
+  return words;
+}
+
+/// Throws with what LIGGGHTS said where it did not come to its end.
+void require_success(const Ended& ended, const fs::path& folder, std::int64_t steps_done, std::int64_t steps) {
+  for (const char* name : {kLog, kMessages}) {
+    const std::string error = state_of_log(base::text_if_readable(folder / name).value_or("")).error;
+    if (!error.empty()) throw UserError(fmt::format("{}: {}; {}", (folder / name).string(), error, remedy_for(error)));
+  }
+  if (ended.signal == 0 && ended.exit_code == 0) return;
+  if (output::free_bytes(folder) < 1'000'000)
+    throw UserError(fmt::format("{}: the disk is full; make room", folder.string()), output::kExitDisk);
+  const std::string how =
+      ended.signal != 0 ? fmt::format("was ended by signal {}", ended.signal) : fmt::format("ended with code {}", ended.exit_code);
+  throw UserError(fmt::format(
+      "LIGGGHTS {} after step {} of {}, without an error of its own; {} may say more. Out of memory? Start it again with --force", how,
+      steps_done, steps, (folder / kMessages).string()));
+}
+
+/// Lets it run to its end, or until a stop is asked for.
+run::Outcome wait(const run::Assembly& a, const run::RunOptions& options, const fs::path& folder) {
+  run::Progress progress(a, options.quiet, options.terminal);
+  Child child(command_for(a), folder / kMessages, folder);
+  std::int64_t step = a.first_step;
+  for (;;) {
+    const std::optional<Ended> ended = child.poll();
+    if (const auto told = state_of_log(end_of(folder / kLog)).step) step = *told - zero_step(a);
+    if (ended) {
+      progress.finish("");
+      require_success(*ended, folder, step - a.first_step, a.end_step - a.first_step);
+      return run::Outcome::finished;
+    }
+    if (run::is_stop_requested()) {
+      progress.finish(fmt::format("stopped at {:.4g} s; LIGGGHTS keeps no state to go on from: start it again with --force",
+                                  static_cast<double>(step) * a.time_step));
+      return run::Outcome::interrupted;
+    }
+    progress.update(step, a.first_step);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
+}  // namespace
+
+RankGrid rank_grid(int ranks, double length, double largest_diameter) {
+  RankGrid grid;
+  for (int z = 1; z <= ranks; ++z) {
+    if (ranks % z == 0 && length / z >= 4 * largest_diameter) grid.z = z;
+  }
+  grid.x = ranks / grid.z;
+  return grid;
+}
+
+LogState state_of_log(const std::string& text) {
+  LogState state;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = text.find('\n', begin);
+    if (end == std::string::npos) break;  // not whole yet
+    const std::string line = base::trimmed(std::string_view(text).substr(begin, end - begin), " \t\r");
+    begin = end + 1;
+    if (state.error.empty() && line.starts_with("ERROR")) state.error = line;
+    std::int64_t step = 0;
+    std::size_t words = 1;
+    for (std::size_t i = 1; i < line.size(); ++i) words += line[i] != ' ' && line[i - 1] == ' ';
+    const auto [behind, failed] = std::from_chars(line.data(), line.data() + line.size(), step);
+    if (failed == std::errc{} && words == kThermoWords && behind != line.data() + line.size() && *behind == ' ') state.step = step;
+  }
+  return state;
+}
+
+std::string installed_version() {
+  const std::string said = require_program({"liggghts", "-h"}, "liggghts", "LIGGGHTS-PUBLIC 3.8");
+  return said.substr(0, said.find(';'));
+}
+
+run::Outcome play_case(const std::string& case_file, const host::Registry& registry, const run::RunOptions& options) {
+  run::Assembly a = run::assemble(config::read_case(case_file, options.overrides), registry);
+  require_playable(a, registry);
+  installed_version();
+  const int ranks = a.c.run.ranks;
+  if (ranks > 1) require_program({"mpirun", "--version"}, "openmpi-bin", "");
+  output::OutputDirectory directory(options.output, options.force ? output::Mode::overwrite : output::Mode::fresh);
+  directory.start();
+  const fs::path folder = directory.path() / kFolder;
+  try {
+    export_case(a, registry, folder);
+  } catch (...) {
+    directory.undo();
+    throw;
+  }
+  const auto started = std::chrono::steady_clock::now();
+  if (wait(a, options, folder) == run::Outcome::interrupted) return run::Outcome::interrupted;
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  read_results(folder, directory.path(), registry, {options.command_line, ranks, wall});
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder / "post")) {
+    if (entry.path().filename().string().starts_with("frame_") || entry.path().filename() == "tracks.txt")
+      fs::remove(entry);  // frames.h5 and tracks.h5 have them
+  }
+  return run::Outcome::finished;
+}
+
+}  // namespace millscope::engine::liggghts

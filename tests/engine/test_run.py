@@ -1,0 +1,108 @@
+"""`millscope run --engine liggghts`: another engine moves the beads, the files are those of a run; and what is said where it does not."""
+import os
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from support import COMMAND, PATIENCE, CliTest, tree_of
+
+SHORT = ["--set", "fill.settle_s=0.01", "--set", "time={end_s: 0.15, analyze_from_s: 0.05}", "--set", "output.frames={every_s: 0.02, from_s: 0.05}"]
+
+
+class Made(CliTest):
+    """An engine that is a few lines of shell, found before any that is installed."""
+
+    def engine(self, text, name="liggghts", version="3.8.0"):
+        folder = self.folder / "bin"
+        folder.mkdir(exist_ok=True)
+        greeting = "case $1 in -h|--version) echo 'LIGGGHTS (Version LIGGGHTS-PUBLIC %s)'; exit;; esac\n" % version
+        (folder / name).write_text("#!/bin/sh\n" + greeting + text)
+        (folder / name).chmod(0o755)
+        self.addCleanup(os.environ.__setitem__, "PATH", os.environ["PATH"])
+        os.environ["PATH"] = "%s:%s" % (folder, os.environ["PATH"])
+
+    def refused(self, *parts, words=()):
+        done = self.millscope("run", "case.yaml", "-o", "out", "-q", "--engine", "liggghts", *words, *SHORT)
+        self.assert_one_line(done, *parts)
+        return done
+
+    def test_lost_beads(self):
+        self.engine("echo 'ERROR: Lost atoms: original 324 current 323 (thermo.cpp:438)' >> log.liggghts; exit 1\n")
+        self.refused("engine/log.liggghts: ERROR: Lost atoms: original 324 current 323", "take a smaller time step")
+
+    def test_a_rank_that_is_killed(self):
+        self.engine("printf '    Step  Time  Atoms  KinEng\\n     200 0.01 324 0.1\\n' > log.liggghts; kill -9 $$\n")
+        self.refused("ended by signal 9 after step [0-9]+ of [0-9]+", "messages.txt")
+        self.engine("echo 'mpirun noticed that process rank 1 exited on signal 9'; exit 137\n", "mpirun")
+        self.refused("ended with code 137", words=["--ranks", "2", "--force"])
+
+    def test_an_engine_that_leaves_nothing(self):
+        self.engine("exit 0\n")
+        self.refused("series.txt: cannot be read")
+        self.assertFalse((self.folder / "out/summary.json").exists())
+
+    def test_none_is_installed(self):
+        self.addCleanup(os.environ.__setitem__, "PATH", os.environ["PATH"])
+        os.environ["PATH"] = str(self.folder)
+        self.refused("liggghts: not found on this machine", "apt install liggghts")
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_another_version(self):
+        self.engine("exit 0\n", version="2.3.2")
+        self.refused("LIGGGHTS-PUBLIC 2.3.2", "3.8 is needed")
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_ctrl_c_stops_it_too(self):
+        self.engine("echo $$ > pid; exec sleep 1000\n")
+        run = subprocess.Popen([COMMAND, "run", "case.yaml", "-o", "out", "--engine", "liggghts", *SHORT], cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        started = time.monotonic()
+        pid = self.folder / "out/engine/pid"
+        while not (pid.exists() and pid.read_text().strip()) and time.monotonic() - started < PATIENCE:
+            time.sleep(0.05)
+        run.send_signal(signal.SIGINT)
+        self.assertIn("start it again with --force", run.communicate(timeout=PATIENCE)[1])
+        self.assertEqual(run.returncode, 3)
+        with self.assertRaises(ProcessLookupError):
+            os.kill(int(pid.read_text()), 0)
+        self.assertFalse((self.folder / "out/summary.json").exists())
+
+    def test_words_that_do_not_go_together(self):
+        for words, part in ((["--ranks", "2"], "is for another engine; add 'engine: liggghts'"), (["--engine", "liggghts", "--threads", "2"], "--threads is for runs of millscope"),
+                            (["--engine", "liggghts", "--ranks", "0"], "run.ranks")):
+            self.assert_one_line(self.millscope("run", "case.yaml", "-o", "out", *words), part)
+        self.refused("cap is 'sum'", words=["--set", "contact.law.cap=sum"])
+        self.assertFalse((self.folder / "out").exists())
+
+
+@unittest.skipUnless(shutil.which("liggghts"), "liggghts is not installed")
+class Real(CliTest):
+    def test_the_files_of_a_run(self):
+        done = self.succeed("run", "case.yaml", "-o", "out", "--engine", "liggghts", *SHORT)
+        self.assertIn("done; see out/summary.json", done.stdout)
+        self.assertEqual(sorted(n for n in tree_of(self.folder / "out") if "/" not in n), ["case.resolved.yaml", "engine", "frames.h5", "series.csv", "summary.json", "tracks.h5"])
+        summary = self.summary("out")
+        self.assertIn("3.8", summary["engine"]["version"])
+        self.assertEqual(summary["engine"]["ranks"], 1)
+        self.assertGreater(summary["power_W"]["torque"], 0)
+        self.assertGreater(summary["wall_s"], 0)
+        self.succeed("report", "out", "-o", "page.html")
+        self.assertIn("LIGGGHTS", (self.folder / "page.html").read_text())
+        self.assert_one_line(self.millscope("run", "case.yaml", "-o", "out", "--engine", "liggghts"), "is not empty and is not overwritten")
+        self.succeed("run", "case.yaml", "-o", "out", "--force", "-q", "--engine", "liggghts", *SHORT)
+
+    @unittest.skipUnless(shutil.which("mpirun"), "mpirun is not installed")
+    def test_two_ranks(self):
+        wide = ["--set", "geometry.liner.length=52 mm", "--set", "fill.vessel.length=52 mm", "--set", "domain.periodic.z=[0, 52 mm]"]
+        wide += ["--set", "beads.glass8.diameter=6 mm"]
+        for ranks in ("1", "2"):
+            self.succeed("run", "case.yaml", "-o", "out" + ranks, "-q", "--engine", "liggghts", "--ranks", ranks, *wide, *SHORT)
+        one, two = self.summary("out1"), self.summary("out2")
+        self.assertEqual(two["engine"]["ranks"], 2)
+        self.assertIn("1 by 1 by 2 MPI processor grid", (self.folder / "out2/engine/log.liggghts").read_text())
+        self.assertAlmostEqual(one["kinetic_energy_J"], two["kinetic_energy_J"], delta=0.1 * one["kinetic_energy_J"])
+
+
+if __name__ == "__main__":
+    unittest.main()
