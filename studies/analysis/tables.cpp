@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "kernel/config/units.hpp"
 #include "kernel/output/csv.hpp"
@@ -48,6 +47,7 @@ void write_numbers(const fs::path& file, const ResultSet& results) {
 
 /// Results of one analyzer over the same cells.
 struct Table {
+  std::string name;
   std::vector<const ResultArray*> columns;
 };
 
@@ -55,6 +55,24 @@ std::string table_name(const ResultArray& a) {
   std::string name = a.analyzer;
   for (std::size_t d = 0; d < a.shape.size(); ++d) name += "." + (a.axes[d].empty() ? fmt::format("{}", a.shape[d]) : a.axes[d]);
   return name;
+}
+
+/// What lies between the edges of an axis and what lies on them has the same axis, but other cells: the second table is called after its
+/// first result, too.
+std::vector<Table> tables_of(const ResultSet& results) {
+  std::vector<Table> tables;
+  for (const ResultArray& a : results.arrays) {
+    if (a.is_axis || a.shape.empty() || a.size() == 0) continue;
+    const std::string name = table_name(a);
+    const auto alike = [&](const Table& t) { return table_name(*t.columns.front()) == name && t.columns.front()->shape == a.shape; };
+    auto table = std::find_if(tables.begin(), tables.end(), alike);
+    if (table == tables.end()) {
+      const bool taken = std::any_of(tables.begin(), tables.end(), [&](const Table& t) { return t.name == name; });
+      table = tables.insert(tables.end(), {taken ? name + "." + a.name : name, {}});
+    }
+    table->columns.push_back(&a);
+  }
+  return tables;
 }
 
 std::string head(const ResultSet& results, const Table& table) {
@@ -134,17 +152,9 @@ std::string flag_text(std::uint8_t flags) {
 std::vector<fs::path> write_tables(const fs::path& directory, const ResultSet& results) {
   std::vector<fs::path> files{directory / "numbers.csv"};
   write_numbers(files.front(), results);
-  std::vector<std::string> order;
-  std::map<std::string, Table> tables;
-  for (const ResultArray& a : results.arrays) {
-    if (a.is_axis || a.shape.empty() || a.size() == 0) continue;
-    const std::string name = table_name(a);
-    if (tables.find(name) == tables.end()) order.push_back(name);
-    tables[name].columns.push_back(&a);
-  }
-  for (const std::string& name : order) {
-    files.push_back(directory / (name + ".csv"));
-    write_table(files.back(), results, tables[name]);
+  for (const Table& table : tables_of(results)) {
+    files.push_back(directory / (table.name + ".csv"));
+    write_table(files.back(), results, table);
   }
   return files;
 }

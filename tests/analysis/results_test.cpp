@@ -170,3 +170,24 @@ TEST_CASE("tables hold every value with the bounds of its cell") {
   CHECK(json["blocks"] == 3);
   CHECK_THAT(analysis::number_table(some_results(), 5), Contains("+- 0.3") && Contains("[29.3, 30.3]"));
 }
+
+TEST_CASE("what lies between edges and what lies on them stand in two tables") {
+  const Scratch scratch;
+  analysis::ResultSet r = some_results();
+  const auto curve = [](const char* name, std::vector<double> value) {
+    const std::size_t n = value.size();
+    const std::vector<double> some(n, 0.5);
+    return analysis::ResultArray{
+        "b_grid", name, "1", "", {n}, {"edges"}, false, std::move(value), some, some, some, some, std::vector<std::uint8_t>(n), {}, 0};
+  };
+  r.arrays.push_back(curve("survival", {3, 2, 1}));
+  r.arrays.push_back(curve("density", {7, 8}));
+  r.arrays.push_back(curve("hazard", {5, 6}));
+  REQUIRE(analysis::write_tables(scratch.path, r).size() == 4);
+  CHECK(base::text_of(scratch / "b_grid.edges.csv") ==
+        "edges [m],survival [1],survival_sem,survival_low,survival_high\n"
+        "0,3,0.5,0.5,0.5\n0.5,2,0.5,0.5,0.5\n1,1,0.5,0.5,0.5\n");
+  CHECK(base::text_of(scratch / "b_grid.edges.density.csv") ==
+        "edges_from [m],edges_to [m],density [1],density_sem,density_low,density_high,hazard [1],hazard_sem,hazard_low,hazard_high\n"
+        "0,0.5,7,0.5,0.5,0.5,5,0.5,0.5,0.5\n0.5,1,8,0.5,0.5,0.5,6,0.5,0.5,0.5\n");
+}

@@ -31,7 +31,8 @@ TEST_CASE("the pictures have the agreed colours") {
 }
 
 TEST_CASE("a map's scale ends where it is agreed to") {
-  for (const json& one : agreed().at("scales")) {
+  const json colours = agreed();
+  for (const json& one : colours.at("scales")) {
     CAPTURE(one.at("what"));
     picture::MapPicture picture;
     picture.value.values = one.at("values").get<std::vector<double>>();
