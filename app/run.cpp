@@ -118,7 +118,7 @@ int resume(const Arguments& arguments) {
   r.output = options.text("OUT");
   if (options.has("watch")) watch_beside(r.output, options);
   watch_signals();
-  return report(run::resume_run(options.registry(), r), r);
+  return report(engine::resume_run(options.registry(), r), r);
 }
 
 int check(const Arguments& arguments) {

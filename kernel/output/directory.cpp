@@ -28,8 +28,8 @@ constexpr const char* kLockName = ".lock";
 
 // What a run writes, and so what --force may remove.
 constexpr std::array<std::string_view, 10> kOwnNames{
-    "checkpoint.h5", "checkpoint.previous.h5", "frames.h5", "tracks.h5", "results.h5", "series.csv",
-    kResolvedCase,   "summary.json",           "vtk",       "engine"};
+    "checkpoint.h5", "checkpoint.previous.h5", "frames.h5", "tracks.h5",  "results.h5", "series.csv",
+    kResolvedCase,   "summary.json",           "vtk",       kEngineFolder};
 
 bool is_own(const fs::path& entry) {
   const fs::path name = entry.filename();
@@ -50,7 +50,7 @@ void check_contents(const fs::path& path, Mode mode) {
   const std::string name = path.string();
   if (mode == Mode::resume) {
     if (!fs::is_directory(path)) throw UserError(fmt::format("{}: no such directory; give the -o of the run to resume", name));
-    newest_checkpoint(path);
+    if (!fs::is_directory(path / kEngineFolder)) newest_checkpoint(path);
     return;
   }
   if (!fs::exists(path)) return;

@@ -11,6 +11,9 @@ namespace millscope::output {
 /// In the directory of a run: the case with all its values.
 inline constexpr const char* kResolvedCase = "case.resolved.yaml";
 
+/// In the directory of a run that another engine makes: its script, its log, its state.
+inline constexpr const char* kEngineFolder = "engine";
+
 /// The path without slashes at its end ("out/"), so that its last name is the folder's.
 std::filesystem::path without_end_slash(std::filesystem::path path);
 

@@ -64,9 +64,9 @@ run::Outcome simulate(const Entry& entry, const host::Registry& registry) {
   options.threads = 1;
   options.quiet = true;
   options.force = true;  // what a run left that was killed before its first checkpoint
-  if (has_checkpoint(entry.run())) {
+  if (engine::is_run(entry.run()) || has_checkpoint(entry.run())) {
     options.command_line = {"millscope", "resume", entry.run().string(), "--threads", "1"};
-    return run::resume_run(registry, options);
+    return engine::resume_run(registry, options);
   }
   options.command_line = {"millscope", "run", entry.case_file().string(), "-o", entry.run().string(), "--threads", "1"};
   return engine::run_case(entry.case_file().string(), registry, options);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "kernel/base/nearest.hpp"
+#include "kernel/output/directory.hpp"
 #include "studies/engine/liggghts/play.hpp"
 
 namespace millscope::engine {
@@ -27,6 +28,12 @@ run::Outcome run_case(const std::string& case_file, const host::Registry& regist
   const config::Case c = config::read_case(case_file, options.overrides);
   require_known(c);
   return c.run.engine.empty() ? run::run_case(case_file, registry, options) : liggghts::play_case(case_file, registry, options);
+}
+
+bool is_run(const std::filesystem::path& out) { return std::filesystem::exists(out / output::kEngineFolder / output::kResolvedCase); }
+
+run::Outcome resume_run(const host::Registry& registry, const run::RunOptions& options) {
+  return is_run(options.output) ? liggghts::resume_case(registry, options) : run::resume_run(registry, options);
 }
 
 }  // namespace millscope::engine

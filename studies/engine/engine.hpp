@@ -22,4 +22,10 @@ std::string version_of(const config::Case& c);
 /// Runs a case from its start, by the engine that it names. Throws base::UserError.
 run::Outcome run_case(const std::string& case_file, const host::Registry& registry, const run::RunOptions& options);
 
+/// Whether a folder is one in which another engine runs or ran.
+bool is_run(const std::filesystem::path& out);
+
+/// Continues the run of `options.output`, whoever makes it. Throws base::UserError.
+run::Outcome resume_run(const host::Registry& registry, const run::RunOptions& options);
+
 }  // namespace millscope::engine

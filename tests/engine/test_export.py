@@ -30,7 +30,7 @@ class Export(CliTest):
         self.assertEqual(len(fixes["coefficientRestitution"]), 3 + 2 + 4)
         self.assertIn("wall0", fixes["walls"])
         self.assertEqual(fixes["turn_wall0"][3:5], ["wall0", "rotate"])
-        steps = [int(words[0]) for words in words_of(script, "run")]
+        steps = [int(words[0]) - int(words_of(script, "reset_timestep")[0][0]) for words in words_of(script, "run")]
         step = float(words_of(script, "timestep")[0][0])
         self.assertAlmostEqual(steps[0] * step, 0.02, delta=step)  # settle_s
 
@@ -78,7 +78,7 @@ class Import(CliTest):
         self.assertEqual(words_of(script, "group"), [["tracked", "id", "4", "8"]])
         self.track_often = int(dumps["tracks"][3])
         runs = [int(words[0]) for words in words_of(script, "run")]
-        self.zero, self.end = int(words_of(script, "reset_timestep")[0][0]) + runs[0], sum(runs[1:])
+        self.zero, self.end = runs[0], runs[-1] - runs[0]
         self.row = next(int(words[5]) for words in words_of(script, "fix") if words[0] == "series")
         self.post = self.folder / "theirs/post"
         self.write_series()

@@ -6,7 +6,7 @@ import subprocess
 import time
 import unittest
 
-from support import COMMAND, PATIENCE, CliTest, tree_of
+from support import COMMAND, PATIENCE, CliTest, Hdf5, tree_of
 
 SHORT = ["--set", "fill.settle_s=0.01", "--set", "time={end_s: 0.15, analyze_from_s: 0.05}", "--set", "output.frames={every_s: 0.02, from_s: 0.05}"]
 
@@ -62,7 +62,7 @@ class Made(CliTest):
         while not (pid.exists() and pid.read_text().strip()) and time.monotonic() - started < PATIENCE:
             time.sleep(0.05)
         run.send_signal(signal.SIGINT)
-        self.assertIn("start it again with --force", run.communicate(timeout=PATIENCE)[1])
+        self.assertIn("continue with: millscope resume out", run.communicate(timeout=PATIENCE)[1])
         self.assertEqual(run.returncode, 3)
         with self.assertRaises(ProcessLookupError):
             os.kill(int(pid.read_text()), 0)
@@ -91,6 +91,28 @@ class Real(CliTest):
         self.assertIn("LIGGGHTS", (self.folder / "page.html").read_text())
         self.assert_one_line(self.millscope("run", "case.yaml", "-o", "out", "--engine", "liggghts"), "is not empty and is not overwritten")
         self.succeed("run", "case.yaml", "-o", "out", "--force", "-q", "--engine", "liggghts", *SHORT)
+
+    def test_a_killed_run_goes_on(self):
+        words = ["--set", "fill.settle_s=0.01", "--set", "time={end_s: 0.6, analyze_from_s: 0.1}", "--set", "output.frames={every_s: 0.05, from_s: 0.1}"]
+        run = subprocess.Popen([COMMAND, "run", "case.yaml", "-o", "out", "-q", "--engine", "liggghts", *words], cwd=self.folder)
+        post, started = self.folder / "out/engine/post", time.monotonic()
+        while len(list(post.glob("restart.*"))) < 2 and time.monotonic() - started < PATIENCE:
+            time.sleep(0.01)
+        run.kill()
+        run.wait()
+        self.assertFalse((self.folder / "out/summary.json").exists())
+        self.assert_one_line(self.millscope("resume", "out", "--set", "time.end_s=9"), "leave --set out")
+        self.succeed("resume", "out", "-q")
+        summary = self.summary("out")
+        self.assertAlmostEqual(summary["simulated_s"], 0.6, delta=0.02)
+        self.assertEqual(len(list(post.glob("series*.txt"))), 2)
+        times = [float(line.split(",")[0]) for line in (self.folder / "out/series.csv").read_text().splitlines()[1:]]
+        steps = [b - a for a, b in zip(times, times[1:])]
+        self.assertLess(max(steps) - min(steps), 1e-9)
+        with Hdf5(self.folder / "out/tracks.h5") as f:
+            t = f.read(f.names()[0] + "/t")
+            self.assertTrue(all(0 < b - a < 0.0011 for a, b in zip(t, t[1:])))
+        self.assert_one_line(self.millscope("resume", "out"), "is finished")
 
     @unittest.skipUnless(shutil.which("mpirun"), "mpirun is not installed")
     def test_two_ranks(self):

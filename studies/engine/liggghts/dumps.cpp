@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -168,29 +169,37 @@ std::size_t write_frames(const fs::path& folder, const run::Assembly& a, const f
 void write_tracks(const fs::path& folder, const run::Assembly& a, const fs::path& to) {
   std::map<std::uint32_t, DataBead> of_id;
   for (const DataBead& bead : beads_in(folder / "beads.data")) of_id[bead.id] = bead;
-  TextFile in(folder / "post" / "tracks.txt");
   std::vector<TrackRow> rows;
   std::optional<output::TrackWriter> writer;
   std::vector<std::uint32_t> ids;
-  while (const std::optional<std::int64_t> step = next_instant(in, rows)) {
-    if (!writer) {
-      std::vector<output::TrackInfo> infos;
-      for (const TrackRow& row : rows) {
-        ids.push_back(row.id);
-        infos.push_back({fmt::format("bead_{}", row.id), row.id, of_id[row.id].diameter, of_id[row.id].density, "simulation"});
+  const auto add = [&](TextFile in, std::int64_t after, std::int64_t until) {
+    while (const std::optional<std::int64_t> step = next_instant(in, rows)) {
+      if (*step <= after || *step > until) continue;
+      if (!writer) {
+        std::vector<output::TrackInfo> infos;
+        for (const TrackRow& row : rows) {
+          ids.push_back(row.id);
+          infos.push_back({fmt::format("bead_{}", row.id), row.id, of_id[row.id].diameter, of_id[row.id].density, "simulation"});
+        }
+        writer = output::TrackWriter::create(to, infos);
       }
-      writer = output::TrackWriter::create(to, infos);
+      std::vector<double> places;
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (i >= ids.size() || rows[i].id != ids[i])
+          in.fail(fmt::format("bead {} stands where another is expected; let LIGGGHTS run again", rows[i].id + 1));
+        for (int axis = 0; axis < 3; ++axis)
+          places.push_back(dem::wrapped(a.system->settings(), axis, rows[i].place[static_cast<std::size_t>(axis)]));
+      }
+      if (rows.size() != ids.size())
+        in.fail(fmt::format("{} beads of {}: LIGGGHTS has lost the others; take a smaller time step", rows.size(), ids.size()));
+      writer->append(static_cast<double>(*step - zero_step(a)) * a.time_step, places);
     }
-    std::vector<double> places;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (i >= ids.size() || rows[i].id != ids[i])
-        in.fail(fmt::format("bead {} stands where another is expected; let LIGGGHTS run again", rows[i].id + 1));
-      for (int axis = 0; axis < 3; ++axis)
-        places.push_back(dem::wrapped(a.system->settings(), axis, rows[i].place[static_cast<std::size_t>(axis)]));
-    }
-    if (rows.size() != ids.size())
-      in.fail(fmt::format("{} beads of {}: LIGGGHTS has lost the others; take a smaller time step", rows.size(), ids.size()));
-    writer->append(static_cast<double>(*step - zero_step(a)) * a.time_step, places);
+  };
+  const std::vector<std::int64_t> restarts = steps_of_files(folder / "post", "tracks");
+  constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
+  for (std::size_t k = 0; k <= restarts.size(); ++k) {
+    const std::optional<std::int64_t> begin = k > 0 ? std::optional(restarts[k - 1]) : std::nullopt;
+    add(TextFile(folder / "post" / name_of_session("tracks", begin)), begin.value_or(-1), k < restarts.size() ? restarts[k] : kNone);
   }
   if (!writer) throw UserError(fmt::format("{}: holds no track; let LIGGGHTS run again", (folder / "post" / "tracks.txt").string()));
   writer->close();

@@ -63,7 +63,7 @@ std::string end_of(const fs::path& file) {
 }
 
 /// What to start, in the folder of the case.
-std::vector<std::string> command_for(const run::Assembly& a) {
+std::vector<std::string> command_for(const run::Assembly& a, const std::string& script) {
   const int ranks = a.c.run.ranks;
   std::vector<std::string> words;
   if (ranks > 1) {
@@ -72,7 +72,7 @@ std::vector<std::string> command_for(const run::Assembly& a) {
   }
   const Bounds z = bounds_of(a, 2);
   const RankGrid grid = rank_grid(ranks, z.high - z.low, a.c.largest_diameter());
-  words.insert(words.end(), {"liggghts", "-in", "in.liggghts"});
+  words.insert(words.end(), {"liggghts", "-in", script});
   for (const auto& [name, count] : {std::pair("px", grid.x), std::pair("py", grid.y), std::pair("pz", grid.z)})
     words.insert(words.end(), {"-var", name, std::to_string(count)});
   return words;
@@ -90,15 +90,39 @@ void require_success(const Ended& ended, const fs::path& folder, std::int64_t st
   const std::string how =
       ended.signal != 0 ? fmt::format("was ended by signal {}", ended.signal) : fmt::format("ended with code {}", ended.exit_code);
   throw UserError(fmt::format(
-      "LIGGGHTS {} after step {} of {}, without an error of its own; {} may say more. Out of memory? Start it again with --force", how,
-      steps_done, steps, (folder / kMessages).string()));
+      "LIGGGHTS {} after step {} of {}, without an error of its own; {} may say more. Out of memory? 'millscope resume {}' lets it go on",
+      how, steps_done, steps, (folder / kMessages).string(), folder.parent_path().string()));
+}
+
+/// Where LIGGGHTS begins: its script, and the case's step.
+struct Begin {
+  std::string script;
+  std::int64_t step = 0;
+};
+
+fs::path restart_file(const fs::path& post, std::int64_t step) { return post / fmt::format("restart.{}", step); }
+
+/// All but the last two: the last may be half written.
+void drop_old_restarts(const fs::path& post) {
+  const std::vector<std::int64_t> steps = steps_of_files(post, "restart");
+  for (std::size_t k = 0; k + 2 < steps.size(); ++k) fs::remove(restart_file(post, steps[k]));
+}
+
+/// The newest that is whole: LIGGGHTS has told of a later step, or has written another behind it.
+std::optional<std::int64_t> sound_restart(const fs::path& folder) {
+  const std::vector<std::int64_t> steps = steps_of_files(folder / "post", "restart");
+  if (steps.empty()) return {};
+  const auto told = state_of_log(base::text_if_readable(folder / kLog).value_or("")).step;
+  if (told && *told > steps.back()) return steps.back();
+  return steps.size() > 1 ? std::optional(steps[steps.size() - 2]) : std::nullopt;
 }
 
 /// Lets it run to its end, or until a stop is asked for.
-run::Outcome wait(const run::Assembly& a, const run::RunOptions& options, const fs::path& folder) {
+run::Outcome wait(const run::Assembly& a, const run::RunOptions& options, const fs::path& folder, const Begin& begin) {
   run::Progress progress(a, options.quiet, options.terminal);
-  Child child(command_for(a), folder / kMessages, folder);
-  std::int64_t step = a.first_step;
+  fs::remove(folder / kLog);
+  Child child(command_for(a, begin.script), folder / kMessages, folder);
+  std::int64_t step = begin.step;
   for (;;) {
     const std::optional<Ended> ended = child.poll();
     if (const auto told = state_of_log(end_of(folder / kLog)).step) step = *told - zero_step(a);
@@ -108,13 +132,29 @@ run::Outcome wait(const run::Assembly& a, const run::RunOptions& options, const 
       return run::Outcome::finished;
     }
     if (run::is_stop_requested()) {
-      progress.finish(fmt::format("stopped at {:.4g} s; LIGGGHTS keeps no state to go on from: start it again with --force",
-                                  static_cast<double>(step) * a.time_step));
+      progress.finish("stopped; continue with: millscope resume " + folder.parent_path().string());
       return run::Outcome::interrupted;
     }
-    progress.update(step, a.first_step);
+    progress.update(step, begin.step);
+    drop_old_restarts(folder / "post");
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
+}
+
+/// From where it begins to the files of a run.
+run::Outcome finish(const run::Assembly& a, const host::Registry& registry, const run::RunOptions& options, const Begin& begin) {
+  const fs::path out = output::without_end_slash(options.output), folder = out / output::kEngineFolder;
+  const auto started = std::chrono::steady_clock::now();
+  if (wait(a, options, folder, begin) == run::Outcome::interrupted) return run::Outcome::interrupted;
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  read_results(folder, out, registry, {options.command_line, a.c.run.ranks, wall});
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder / "post")) {
+    // frames.h5 and tracks.h5 have them; there is nothing to go on to.
+    for (const char* name : {"frame_", "tracks.", "restart."}) {
+      if (entry.path().filename().string().starts_with(name)) fs::remove(entry);
+    }
+  }
+  return run::Outcome::finished;
 }
 
 }  // namespace
@@ -158,22 +198,35 @@ run::Outcome play_case(const std::string& case_file, const host::Registry& regis
   if (ranks > 1) require_program({"mpirun", "--version"}, "openmpi-bin", "");
   output::OutputDirectory directory(options.output, options.force ? output::Mode::overwrite : output::Mode::fresh);
   directory.start();
-  const fs::path folder = directory.path() / kFolder;
+  const fs::path folder = directory.path() / output::kEngineFolder;
   try {
     export_case(a, registry, folder);
   } catch (...) {
     directory.undo();
     throw;
   }
-  const auto started = std::chrono::steady_clock::now();
-  if (wait(a, options, folder) == run::Outcome::interrupted) return run::Outcome::interrupted;
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  read_results(folder, directory.path(), registry, {options.command_line, ranks, wall});
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder / "post")) {
-    if (entry.path().filename().string().starts_with("frame_") || entry.path().filename() == "tracks.txt")
-      fs::remove(entry);  // frames.h5 and tracks.h5 have them
+  return finish(a, registry, options, {"in.liggghts", a.first_step});
+}
+
+run::Outcome resume_case(const host::Registry& registry, const run::RunOptions& options) {
+  const fs::path out = output::without_end_slash(options.output), folder = out / output::kEngineFolder;
+  if (fs::exists(out / "summary.json")) throw UserError(fmt::format("{}: is finished; there is nothing to continue", out.string()));
+  if (!options.overrides.empty()) throw UserError("resume: a run of another engine goes on as it is; leave --set out");
+  run::Assembly a = run::assemble(config::read_case((folder / output::kResolvedCase).string()), registry);
+  installed_version();
+  output::OutputDirectory directory(out, output::Mode::resume);
+  directory.start();
+  const std::optional<std::int64_t> restart = sound_restart(folder);
+  if (!restart) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder / "post")) fs::remove_all(entry);
+    return finish(a, registry, options, {"in.liggghts", a.first_step});
   }
-  return run::Outcome::finished;
+  for (const std::int64_t later : steps_of_files(folder / "post", "restart")) {
+    if (later > *restart) fs::remove(restart_file(folder / "post", later));
+  }
+  run::insert_beads(a);  // which of them are followed
+  output::write_file(folder / "in.resume", script_of(a, physics_of(a, registry), meshes_of(a), restart));
+  return finish(a, registry, options, {"in.resume", *restart - zero_step(a)});
 }
 
 }  // namespace millscope::engine::liggghts

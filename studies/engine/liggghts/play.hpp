@@ -13,6 +13,10 @@ namespace millscope::engine::liggghts {
 /// LIGGGHTS is not installed or another version, where it cannot play the case, and with what it said where it stopped.
 run::Outcome play_case(const std::string& case_file, const host::Registry& registry, const run::RunOptions& options);
 
+/// Lets a run that was stopped or killed go on from its newest sound restart file, from its start where it has none. Bits differ from those
+/// of a run in one go; no time is missing. Throws base::UserError, also for a run that is finished.
+run::Outcome resume_case(const host::Registry& registry, const run::RunOptions& options);
+
 /// The first line that LIGGGHTS prints. Throws base::UserError where it is not installed, or is not version 3.8.
 std::string installed_version();
 

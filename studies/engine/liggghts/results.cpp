@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -64,26 +65,38 @@ Span span_of(const std::vector<double>& row, const run::Assembly& a, const std::
   return s;
 }
 
-/// Those of the case's own time, without a gap, up to its end.
-std::vector<Span> series_of(const fs::path& file, const run::Assembly& a, const std::vector<MeshFile>& meshes) {
+/// Adds the rows of one file up to a step.
+void add_series(const fs::path& file, const run::Assembly& a, const std::vector<MeshFile>& meshes, std::int64_t end,
+                std::vector<Span>& all) {
   TextFile in(file);
-  std::vector<Span> all;
   const double row = static_cast<double>(kSeriesValues * series_every(a)) * a.time_step;
   while (in.next()) {
     if (in.text().empty() || in.text()[0] == '#') continue;
-    const Span s = span_of(in.numbers(kBeforeTorques + 3 * meshes.size()), a, meshes);
-    if (s.begin < -1e-9) continue;
+    const std::vector<double> numbers = in.numbers(kBeforeTorques + 3 * meshes.size());
+    const Span s = span_of(numbers, a, meshes);
+    if (s.begin < -1e-9 || numbers[0] > static_cast<double>(end)) continue;
     if (s.begin - (all.empty() ? 0.0 : all.back().end) > row + 1e-9)
       in.fail(
           fmt::format("nothing stands from {:.4g} s to {:.4g} s; let LIGGGHTS run in one go", all.empty() ? 0.0 : all.back().end, s.begin));
     all.push_back(s);
   }
-  const double last = all.empty() ? 0 : all.back().end;
+}
+
+/// Those of the case's own time, without a gap, up to its end. A file ends, for this purpose, where a run went on from.
+std::vector<Span> series_of(const fs::path& post, const run::Assembly& a, const std::vector<MeshFile>& meshes) {
+  std::vector<Span> all;
+  const std::vector<std::int64_t> restarts = steps_of_files(post, "series");
+  for (std::size_t k = 0; k <= restarts.size(); ++k) {
+    const std::optional<std::int64_t> begin = k > 0 ? std::optional(restarts[k - 1]) : std::nullopt;
+    const std::int64_t end = k < restarts.size() ? restarts[k] : std::numeric_limits<std::int64_t>::max();
+    add_series(post / name_of_session("series", begin), a, meshes, end, all);
+  }
+  const double row = static_cast<double>(kSeriesValues * series_every(a)) * a.time_step, last = all.empty() ? 0 : all.back().end;
   if (last + row < a.c.time.end)
     throw UserError(
         fmt::format("{}: ends at {:.4g} s of {:.4g} s; let LIGGGHTS run to its end (README.md), or export the case again with --set "
                     "time.end_s",
-                    file.string(), last, a.c.time.end));
+                    (post / name_of_session("series", {})).string(), last, a.c.time.end));
   return all;
 }
 
@@ -171,7 +184,7 @@ Imported read_results(const fs::path& folder, const fs::path& out, const host::R
   if (!fs::exists(case_file))
     throw UserError(fmt::format("{}: there is none; give a folder that 'millscope export' has made", case_file.string()));
   const run::Assembly a = run::assemble(config::read_case(case_file.string()), registry);
-  const std::vector<Span> series = series_of(folder / "post" / "series.txt", a, meshes_of(a));
+  const std::vector<Span> series = series_of(folder / "post", a, meshes_of(a));
   const double mass = charge_mass(beads_in(folder / "beads.data"));
   nlohmann::ordered_json j = summary_of(series, a, mass);
   const Imported imported{a.bead_count, write_frames(folder / "post", a, out / "frames.h5"), series.back().end};

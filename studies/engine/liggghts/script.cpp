@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -94,7 +95,7 @@ void add_motion(const run::Assembly& a, const std::vector<MeshFile>& meshes, Lin
   }
 }
 
-void add_output(const run::Assembly& a, const std::vector<MeshFile>& meshes, Lines& lines) {
+void add_output(const run::Assembly& a, const std::vector<MeshFile>& meshes, std::optional<std::int64_t> restart, Lines& lines) {
   lines.say("what is kept: energies, J; centre of mass, m; torque on each wall, N m; restart files");
   lines.add("compute", "translation all ke");
   lines.add("compute", "rotation all erotate/sphere");
@@ -102,18 +103,23 @@ void add_output(const run::Assembly& a, const std::vector<MeshFile>& meshes, Lin
   std::string torques;
   for (const MeshFile& mesh : meshes) torques += fmt::format(" f_{0}[4] f_{0}[5] f_{0}[6]", mesh.id);
   const std::int64_t often = series_every(a);
-  lines.add("fix",
-            fmt::format("series all ave/time {} {} {} c_translation c_rotation v_centre_x v_centre_y v_centre_z{} file post/series.txt",
-                        often, kSeriesValues, kSeriesValues * often, torques));
+  lines.add("fix", fmt::format("series all ave/time {} {} {} c_translation c_rotation v_centre_x v_centre_y v_centre_z{} file post/{}",
+                               often, kSeriesValues, kSeriesValues * often, torques, name_of_session("series", restart)));
   lines.add("thermo_style", "custom step time atoms ke");
   lines.add("thermo", fmt::format("{}", std::max<std::int64_t>(1, (a.end_step - a.first_step) / 200)));
   lines.add("thermo_modify", "lost error norm no flush yes");
-  lines.add("restart", fmt::format("{} post/restart.1 post/restart.2", std::max<std::int64_t>(1000, (a.end_step - a.first_step) / 20)));
+  const std::int64_t row = kSeriesValues * often, far = std::max<std::int64_t>(1000, (a.end_step - a.first_step) / 20);
+  lines.add("restart", fmt::format("{} post/restart.*", (far + row - 1) / row * row));  // so that no row is cut in two
+}
+
+/// Up to a step of the case, unless the run goes on from beyond it.
+void add_run(const run::Assembly& a, std::int64_t step, std::optional<std::int64_t> restart, Lines& lines) {
+  const std::int64_t end = zero_step(a) + step;
+  if (end > restart.value_or(zero_step(a) + a.first_step)) lines.add("run", fmt::format("{} upto", end));
 }
 
 /// The case's own time, with frames from where the case wants them.
-void add_runs(const run::Assembly& a, Lines& lines) {
-  std::int64_t from = 0;
+void add_runs(const run::Assembly& a, std::optional<std::int64_t> restart, Lines& lines) {
   if (a.c.output.tracks) {
     const std::vector<std::uint32_t> ids = run::tracked_beads(a);
     constexpr std::size_t kOfOneLine = 100;  // LIGGGHTS reads no line of more than 2 kB
@@ -122,17 +128,17 @@ void add_runs(const run::Assembly& a, Lines& lines) {
       for (std::size_t k = i; k < std::min(ids.size(), i + kOfOneLine); ++k) words += fmt::format(" {}", ids[k] + 1);
       lines.add("group", "tracked id" + words);
     }
-    lines.add("dump", fmt::format("tracks tracked custom {} post/tracks.txt id x y z", steps_of(a, a.c.output.tracks->every)));
+    lines.add("dump", fmt::format("tracks tracked custom {} post/{} id x y z", steps_of(a, a.c.output.tracks->every),
+                                  name_of_session("tracks", restart)));
     lines.add("dump_modify", "tracks sort id format \"%d %.9g %.9g %.9g\"");
   }
   if (a.c.output.frames) {
-    from = frames_from(a);
-    if (from > 0) lines.add("run", fmt::format("{}", from));
+    add_run(a, frames_from(a), restart, lines);
     lines.add("dump", fmt::format("frames all custom {} post/frame_*.txt id type x y z vx vy vz omegax omegay omegaz radius density",
                                   frame_every(a)));
     lines.add("dump_modify", "frames sort id format \"%d %d %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g\"");
   }
-  lines.add("run", fmt::format("{}", a.end_step - from));
+  add_run(a, a.end_step, restart, lines);
 }
 
 }  // namespace
@@ -200,7 +206,27 @@ std::string data_of(const run::Assembly& a) {
   return text + velocities;
 }
 
-std::string script_of(const run::Assembly& a, const Physics& physics, const std::vector<MeshFile>& meshes) {
+std::string name_of_session(const std::string& what, std::optional<std::int64_t> restart) {
+  return restart ? fmt::format("{}.{}.txt", what, *restart) : what + ".txt";
+}
+
+std::vector<std::int64_t> steps_of_files(const std::filesystem::path& folder, const std::string& what) {
+  std::vector<std::int64_t> steps;
+  if (!std::filesystem::is_directory(folder)) return steps;
+  for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(what + ".")) continue;
+    std::int64_t step = 0;
+    const char *first = name.data() + what.size() + 1, *last = name.data() + name.size();
+    const auto [behind, failed] = std::from_chars(first, last, step);
+    if (failed == std::errc{} && (behind == last || std::string_view(behind, last) == ".txt")) steps.push_back(step);
+  }
+  std::sort(steps.begin(), steps.end());
+  return steps;
+}
+
+std::string script_of(const run::Assembly& a, const Physics& physics, const std::vector<MeshFile>& meshes,
+                      std::optional<std::int64_t> restart) {
   Lines lines;
   lines.say(fmt::format("{}: made by millscope {} for LIGGGHTS 3.8", a.c.name, base::version()));
   lines.add("units", "si");
@@ -215,19 +241,23 @@ std::string script_of(const run::Assembly& a, const Physics& physics, const std:
   for (std::size_t axis = 0; axis < 3; ++axis) boundary += a.system->settings().periodic.length[axis] > 0 ? " p" : " f";
   lines.add("boundary", boundary.substr(1));
   lines.add("newton", "off");
-  lines.add("read_data", "beads.data");
-  lines.add("reset_timestep", fmt::format("{}", zero_step(a) + a.first_step));
+  if (restart) {
+    lines.add("read_restart", fmt::format("post/restart.{}", *restart));
+  } else {
+    lines.add("read_data", "beads.data");
+    lines.add("reset_timestep", fmt::format("{}", zero_step(a) + a.first_step));
+  }
   lines.add("neighbor", fmt::format("{:.6g} bin", 0.3 * a.c.smallest_diameter()));
   lines.add("neigh_modify", "delay 0");
   add_physics(a, physics, lines);
   add_walls(a, physics, meshes, lines);
   lines.add("timestep", fmt::format("{}", a.time_step));
   lines.add("fix", "move all nve/sphere");
-  add_output(a, meshes, lines);
+  add_output(a, meshes, restart, lines);
   lines.say(fmt::format("the charge falls with the walls at rest, up to t = 0, which is step {}", zero_step(a)));
-  lines.add("run", fmt::format("{}", -a.first_step));
+  add_run(a, 0, restart, lines);
   add_motion(a, meshes, lines);
-  add_runs(a, lines);
+  add_runs(a, restart, lines);
   return lines.take().substr(1);
 }
 

@@ -1,6 +1,8 @@
 // A case as an input script of LIGGGHTS and what it reads.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,8 +10,6 @@
 
 namespace millscope::engine::liggghts {
 
-/// Where a run of LIGGGHTS lies in the folder of results.
-inline constexpr const char* kFolder = "engine";
 /// Words of a line that tells how far it is: step, time, atoms, energy.
 inline constexpr std::size_t kThermoWords = 4;
 
@@ -43,7 +43,15 @@ std::int64_t zero_step(const run::Assembly& a);
 /// The beads where they are now, at rest or not: file of `read_data`.
 std::string data_of(const run::Assembly& a);
 
-/// The script: settling with the walls at rest, then the case's own time. `meshes` lie in `meshes/`, results go to `post/`.
-std::string script_of(const run::Assembly& a, const Physics& physics, const std::vector<MeshFile>& meshes);
+/// The script: settling with the walls at rest, then the case's own time. `meshes` lie in `meshes/`, results go to `post/`. `restart`: the
+/// step of the file post/restart.STEP from which a run goes on; what it writes then is `name_of_session(…, restart)`.
+std::string script_of(const run::Assembly& a, const Physics& physics, const std::vector<MeshFile>& meshes,
+                      std::optional<std::int64_t> restart = {});
+
+/// "series.txt", of a run that went on from a step "series.1000.txt".
+std::string name_of_session(const std::string& what, std::optional<std::int64_t> restart);
+
+/// Steps of the files that `what` stands before in a folder ("restart" → restart.1000), in order.
+std::vector<std::int64_t> steps_of_files(const std::filesystem::path& folder, const std::string& what);
 
 }  // namespace millscope::engine::liggghts
