@@ -8,7 +8,7 @@ import slurm_machine
 from campaigns import PATIENCE, CampaignTest
 
 THREE = {name: [f"seed={seed}"] for seed, name in enumerate(("a", "b", "c"), 1)}
-END = 1.0  # s of simulated time: about a second of computing each
+END = 2.0  # s of simulated time: about a second of computing each
 
 LACKING = slurm_machine.lacking()
 

@@ -62,8 +62,8 @@ class Watch(unittest.TestCase):
 
     def test_beside_a_run(self):
         process, address = self.started("run", str(CONFIGS / "demo.yaml"), "-o", "out", "-q", *SMALL, "--set", "time.end_s=60", "--watch", stream="stderr")
-        seen = []
-        for _ in range(60):
+        seen, started = [], time.monotonic()
+        while time.monotonic() - started < PATIENCE:
             sections = json.loads(fetch(address.replace("/?", "/data.json?")))["sections"]
             if sections and sections[0]["progress"]:
                 seen.append(sections[0]["progress"]["time_s"])
