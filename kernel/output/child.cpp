@@ -21,13 +21,14 @@ extern char** environ;
 namespace millscope::output {
 namespace {
 
-/// Between fork and exec: only calls that are safe there.
-[[noreturn]] void become(char* const* words, int output, pid_t head, const char* directory) {
+/// Between fork and exec: only calls that are safe there. The two signals are blocked until they mean what they should.
+[[noreturn]] void become(char* const* words, int output, pid_t head, const char* directory, const sigset_t* signals) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (::getppid() != head) ::_exit(kCannotStart);  // the head died before the line above
   ::signal(SIGINT, SIG_DFL);
   ::signal(SIGTERM, SIG_DFL);
+  ::sigprocmask(SIG_SETMASK, signals, nullptr);
   const int nothing = ::open("/dev/null", O_RDONLY);
   if (nothing >= 0) ::dup2(nothing, STDIN_FILENO);
   ::dup2(output, STDOUT_FILENO);
@@ -98,8 +99,15 @@ Child::Child(const std::vector<std::string>& command, const std::filesystem::pat
   for (std::string& word : copy) words.push_back(word.data());
   words.push_back(nullptr);
   const pid_t head = ::getpid();
+  // A stop that comes before exec must not be taken by this program's handler in the copy, and so be lost.
+  sigset_t stops, before;
+  ::sigemptyset(&stops);
+  ::sigaddset(&stops, SIGINT);
+  ::sigaddset(&stops, SIGTERM);
+  ::pthread_sigmask(SIG_BLOCK, &stops, &before);
   process_ = ::fork();
-  if (process_ == 0) become(words.data(), output.descriptor(), head, directory.c_str());
+  if (process_ == 0) become(words.data(), output.descriptor(), head, directory.c_str(), &before);
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (process_ < 0) {
     throw base::UserError(fmt::format("no process can be started for a simulation ({}); give fewer --slots or raise the limit (ulimit -u)",
                                       std::strerror(errno)));

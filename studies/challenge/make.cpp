@@ -6,6 +6,7 @@
 #include "studies/challenge/answer.hpp"
 #include "studies/challenge/draw.hpp"
 #include "studies/challenge/record.hpp"
+#include "studies/engine/engine.hpp"
 
 namespace millscope::challenge {
 namespace {
@@ -86,6 +87,10 @@ void make(const Challenge& challenge, const diagnose::Question& question, const 
     for (std::size_t c = 0; c < conditions; ++c)
       simulations.push_back(
           simulation_of(challenge, question, truths[t], c, fmt::format("{}, {}", set_name(t), question.study.conditions[c].name)));
+  }
+  for (const campaign::Simulation& s : simulations) {
+    const config::Case c = config::read_case(s.case_file.string(), s.settings);
+    if (!c.run.engine.empty()) engine::require_playable(c, registry);
   }
   fs::create_directories(options.output / "answers");
   if (options.campaign.cache.empty()) options.campaign.cache = options.output / "answers" / "cache";

@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "kernel/base/nearest.hpp"
+#include "kernel/base/program.hpp"
 #include "kernel/output/directory.hpp"
+#include "studies/engine/liggghts/obstacles.hpp"
 #include "studies/engine/liggghts/play.hpp"
 
 namespace millscope::engine {
@@ -19,9 +21,17 @@ void require_known(const config::Case& c) {
       fmt::format("'{}' is no engine that is known; {}", c.run.engine, base::suggestion(c.run.engine, known)));
 }
 
+void require_playable(const config::Case& c, const host::Registry& registry) {
+  require_known(c);
+  if (c.run.engine.empty()) return;
+  liggghts::installed_version();
+  liggghts::require_playable(run::assemble(c, registry), registry);
+}
+
 std::string version_of(const config::Case& c) {
   require_known(c);
-  return liggghts::installed_version();
+  const std::vector<std::string> here{"studies/engine"};
+  return liggghts::installed_version() + " " + base::program_parts(here).at("code");
 }
 
 run::Outcome run_case(const std::string& case_file, const host::Registry& registry, const run::RunOptions& options) {

@@ -16,7 +16,11 @@ std::vector<std::string> names();
 /// Throws base::UserError for a case that names no engine that is known.
 void require_known(const config::Case& c);
 
-/// The version of the engine that a case names, as the engine itself tells it. Throws base::UserError where it is not installed.
+/// Throws base::UserError, a line for each obstacle, where the engine that a case names cannot play it, or is not installed.
+void require_playable(const config::Case& c, const host::Registry& registry);
+
+/// The version of the engine that a case names, as the engine itself tells it, and of what translates for it here. Throws base::UserError
+/// where it is not installed.
 std::string version_of(const config::Case& c);
 
 /// Runs a case from its start, by the engine that it names. Throws base::UserError.

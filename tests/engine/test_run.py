@@ -40,7 +40,7 @@ class Made(CliTest):
 
     def test_an_engine_that_leaves_nothing(self):
         self.engine("exit 0\n")
-        self.refused("series.txt: cannot be read")
+        self.refused("ended with code 0 after step 0 of [0-9]+")
         self.assertFalse((self.folder / "out/summary.json").exists())
 
     def test_none_is_installed(self):
@@ -113,6 +113,39 @@ class Real(CliTest):
             t = f.read(f.names()[0] + "/t")
             self.assertTrue(all(0 < b - a < 0.0011 for a, b in zip(t, t[1:])))
         self.assert_one_line(self.millscope("resume", "out"), "is finished")
+        self.assertEqual(len(summary["engine"]["resumed_at_s"]), 1)
+
+    def killed(self, words, ready):
+        """A run whose millscope and engine are killed as soon as `ready` holds."""
+        run = subprocess.Popen([COMMAND, *words], cwd=self.folder)
+        started = time.monotonic()
+        while not ready() and run.poll() is None and time.monotonic() - started < PATIENCE:
+            time.sleep(0.005)
+        run.kill()
+        run.wait()
+        time.sleep(0.5)  # the engine hears of it
+
+    def test_killed_while_settling_and_again_after_the_resume(self):
+        words = ["--set", "fill.settle_s=0.3", "--set", "time={end_s: 0.3, analyze_from_s: 0.1}", "--set", "output.frames=~"]
+        post = self.folder / "out/engine/post"
+        self.killed(["run", "case.yaml", "-o", "out", "-q", "--engine", "liggghts", *words], lambda: len(list(post.glob("restart.*"))) > 1)
+        self.killed(["resume", "out", "-q"], lambda: any(f.stat().st_size > 500 for f in post.glob("series.*.txt")))
+        self.succeed("resume", "out", "-q")
+        with Hdf5(self.folder / "out/tracks.h5") as f:
+            t = f.read(f.names()[0] + "/t")
+        self.assertAlmostEqual(t[0], 0, places=9)
+        self.assertLess(max(b - a for a, b in zip(t, t[1:])) - min(b - a for a, b in zip(t, t[1:])), 1e-9)
+        self.assertAlmostEqual(t[-1], 0.3, delta=0.002)
+
+    def test_stopped_from_outside(self):
+        words = ["--set", "fill.settle_s=0.01", "--set", "time={end_s: 5, analyze_from_s: 0.1}", "--set", "output.frames=~"]
+        for delay in (0.1, 0.6):  # while it prepares, while the engine runs
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
+            run = subprocess.Popen([COMMAND, "run", "case.yaml", "-o", "out", "-q", "--engine", "liggghts", *words], cwd=self.folder)
+            time.sleep(delay)
+            run.send_signal(signal.SIGINT)
+            self.assertEqual(run.wait(PATIENCE), 3)
+            self.assertFalse((self.folder / "out/summary.json").exists())
 
     @unittest.skipUnless(shutil.which("mpirun"), "mpirun is not installed")
     def test_two_ranks(self):

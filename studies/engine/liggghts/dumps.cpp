@@ -78,14 +78,16 @@ struct TrackRow {
   std::array<double, 3> place{};
 };
 
-/// The next instant of tracks.txt: rows by number; the step, or nothing at the end of the file.
-std::optional<std::int64_t> next_instant(TextFile& in, std::vector<TrackRow>& rows) {
+/// The next instant of tracks.txt up to a step: rows by number; the step, or nothing at the end. What a killed run left half written lies
+/// beyond that step.
+std::optional<std::int64_t> next_instant(TextFile& in, std::int64_t until, std::vector<TrackRow>& rows) {
   if (!in.next()) return {};
   const auto line = [&] {
     if (!in.next()) in.fail("the tracks are cut short; let LIGGGHTS run again");
   };
   line();
   const std::int64_t step = std::llround(in.numbers(1)[0]);
+  if (step > until) return {};
   line(), line();
   const auto count = static_cast<std::size_t>(in.numbers(1)[0]);
   for (int skipped = 0; skipped < 5; ++skipped) line();
@@ -172,9 +174,13 @@ void write_tracks(const fs::path& folder, const run::Assembly& a, const fs::path
   std::vector<TrackRow> rows;
   std::optional<output::TrackWriter> writer;
   std::vector<std::uint32_t> ids;
+  const std::int64_t every = track_every(a);
+  std::int64_t last = zero_step(a) - every;
   const auto add = [&](TextFile in, std::int64_t after, std::int64_t until) {
-    while (const std::optional<std::int64_t> step = next_instant(in, rows)) {
-      if (*step <= after || *step > until) continue;
+    while (const std::optional<std::int64_t> step = next_instant(in, until, rows)) {
+      if (*step <= after) continue;
+      if (*step - last > every) in.fail(fmt::format("no track stands from step {} to {}; let LIGGGHTS run in one go", last, *step));
+      last = *step;
       if (!writer) {
         std::vector<output::TrackInfo> infos;
         for (const TrackRow& row : rows) {
@@ -199,7 +205,10 @@ void write_tracks(const fs::path& folder, const run::Assembly& a, const fs::path
   constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
   for (std::size_t k = 0; k <= restarts.size(); ++k) {
     const std::optional<std::int64_t> begin = k > 0 ? std::optional(restarts[k - 1]) : std::nullopt;
-    add(TextFile(folder / "post" / name_of_session("tracks", begin)), begin.value_or(-1), k < restarts.size() ? restarts[k] : kNone);
+    const fs::path file = folder / "post" / name_of_session("tracks", begin);
+    // A run that was killed while the charge settled had no tracks yet.
+    if (k == 0 && !restarts.empty() && restarts[0] <= zero_step(a) && !fs::exists(file)) continue;
+    add(TextFile(file), begin.value_or(-1), k < restarts.size() ? restarts[k] : kNone);
   }
   if (!writer) throw UserError(fmt::format("{}: holds no track; let LIGGGHTS run again", (folder / "post" / "tracks.txt").string()));
   writer->close();

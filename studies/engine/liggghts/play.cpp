@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <fstream>
@@ -43,6 +44,11 @@ std::string require_program(const std::vector<std::string>& question, const std:
   return answer.text;
 }
 
+void require_programs(const run::Assembly& a) {
+  installed_version();
+  if (a.c.run.ranks > 1) require_program({"mpirun", "--version"}, "openmpi-bin", "");
+}
+
 /// One line for a bead that got lost, and what helps.
 std::string remedy_for(const std::string& error) {
   for (const char* sign : {"Lost atoms", "Non-numeric", "non-numeric", "out of range", "bad atom"}) {
@@ -67,7 +73,7 @@ std::vector<std::string> command_for(const run::Assembly& a, const std::string& 
   const int ranks = a.c.run.ranks;
   std::vector<std::string> words;
   if (ranks > 1) {
-    words = {"mpirun", "-np", std::to_string(ranks), "--oversubscribe"};
+    words = {"mpirun", "-np", std::to_string(ranks), "--oversubscribe", "--bind-to", "none"};  // runs beside each other share all cores
     if (::geteuid() == 0) words.emplace_back("--allow-run-as-root");
   }
   const Bounds z = bounds_of(a, 2);
@@ -84,7 +90,10 @@ void require_success(const Ended& ended, const fs::path& folder, std::int64_t st
     const std::string error = state_of_log(base::text_if_readable(folder / name).value_or("")).error;
     if (!error.empty()) throw UserError(fmt::format("{}: {}; {}", (folder / name).string(), error, remedy_for(error)));
   }
-  if (ended.signal == 0 && ended.exit_code == 0) return;
+  if (ended.signal == 0 && ended.exit_code == 0 && steps_done >= steps) return;
+  if (ended.signal == 0 && ended.exit_code == 0 && steps_done > 0)
+    throw UserError(fmt::format("LIGGGHTS was stopped from outside after step {} of {}; 'millscope resume {}' lets it go on", steps_done,
+                                steps, folder.parent_path().string()));
   if (output::free_bytes(folder) < 1'000'000)
     throw UserError(fmt::format("{}: the disk is full; make room", folder.string()), output::kExitDisk);
   const std::string how =
@@ -98,6 +107,7 @@ void require_success(const Ended& ended, const fs::path& folder, std::int64_t st
 struct Begin {
   std::string script;
   std::int64_t step = 0;
+  std::optional<std::int64_t> restart = {};  ///< the file that it reads
 };
 
 fs::path restart_file(const fs::path& post, std::int64_t step) { return post / fmt::format("restart.{}", step); }
@@ -108,31 +118,41 @@ void drop_old_restarts(const fs::path& post) {
   for (std::size_t k = 0; k + 2 < steps.size(); ++k) fs::remove(restart_file(post, steps[k]));
 }
 
-/// The newest that is whole: LIGGGHTS has told of a later step, or has written another behind it.
+/// The newest that is whole: LIGGGHTS has told of that step or a later one, which it does when the file is written; has written another
+/// behind it; or has begun from it before.
 std::optional<std::int64_t> sound_restart(const fs::path& folder) {
   const std::vector<std::int64_t> steps = steps_of_files(folder / "post", "restart");
   if (steps.empty()) return {};
   const auto told = state_of_log(base::text_if_readable(folder / kLog).value_or("")).step;
-  if (told && *told > steps.back()) return steps.back();
+  const bool begun = fs::exists(folder / "post" / name_of_session("series", steps.back()));
+  if (begun || (told && *told >= steps.back())) return steps.back();
   return steps.size() > 1 ? std::optional(steps[steps.size() - 2]) : std::nullopt;
 }
 
 /// Lets it run to its end, or until a stop is asked for.
 run::Outcome wait(const run::Assembly& a, const run::RunOptions& options, const fs::path& folder, const Begin& begin) {
+  const std::string stopped = "stopped; continue with: millscope resume " + folder.parent_path().string();
   run::Progress progress(a, options.quiet, options.terminal);
+  if (run::is_stop_requested()) {
+    progress.finish(stopped);
+    return run::Outcome::interrupted;
+  }
   fs::remove(folder / kLog);
   Child child(command_for(a, begin.script), folder / kMessages, folder);
   std::int64_t step = begin.step;
+  bool has_told = false;
   for (;;) {
     const std::optional<Ended> ended = child.poll();
-    if (const auto told = state_of_log(end_of(folder / kLog)).step) step = *told - zero_step(a);
+    if (const auto told = state_of_log(end_of(folder / kLog)).step) step = std::max(begin.step, *told - zero_step(a)), has_told = true;
     if (ended) {
       progress.finish("");
+      // A restart file that cannot be read: the next resume takes the one before.
+      if (begin.restart && !has_told) fs::remove(restart_file(folder / "post", *begin.restart));
       require_success(*ended, folder, step - a.first_step, a.end_step - a.first_step);
       return run::Outcome::finished;
     }
     if (run::is_stop_requested()) {
-      progress.finish("stopped; continue with: millscope resume " + folder.parent_path().string());
+      progress.finish(stopped);
       return run::Outcome::interrupted;
     }
     progress.update(step, begin.step);
@@ -186,16 +206,18 @@ LogState state_of_log(const std::string& text) {
 }
 
 std::string installed_version() {
-  const std::string said = require_program({"liggghts", "-h"}, "liggghts", "LIGGGHTS-PUBLIC 3.8");
-  return said.substr(0, said.find(';'));
+  static const std::string version = [] {
+    const std::string said = require_program({"liggghts", "-h"}, "liggghts", "LIGGGHTS-PUBLIC 3.8");
+    const std::size_t begin = std::min(said.size(), said.find("LIGGGHTS (Version"));
+    return said.substr(begin, said.find(';', begin) - begin);
+  }();
+  return version;
 }
 
 run::Outcome play_case(const std::string& case_file, const host::Registry& registry, const run::RunOptions& options) {
   run::Assembly a = run::assemble(config::read_case(case_file, options.overrides), registry);
   require_playable(a, registry);
-  installed_version();
-  const int ranks = a.c.run.ranks;
-  if (ranks > 1) require_program({"mpirun", "--version"}, "openmpi-bin", "");
+  require_programs(a);
   output::OutputDirectory directory(options.output, options.force ? output::Mode::overwrite : output::Mode::fresh);
   directory.start();
   const fs::path folder = directory.path() / output::kEngineFolder;
@@ -213,7 +235,8 @@ run::Outcome resume_case(const host::Registry& registry, const run::RunOptions& 
   if (fs::exists(out / "summary.json")) throw UserError(fmt::format("{}: is finished; there is nothing to continue", out.string()));
   if (!options.overrides.empty()) throw UserError("resume: a run of another engine goes on as it is; leave --set out");
   run::Assembly a = run::assemble(config::read_case((folder / output::kResolvedCase).string()), registry);
-  installed_version();
+  if (options.threads > 0) throw UserError("resume: --threads is for runs of millscope itself; leave it out");
+  require_programs(a);
   output::OutputDirectory directory(out, output::Mode::resume);
   directory.start();
   const std::optional<std::int64_t> restart = sound_restart(folder);
@@ -224,9 +247,14 @@ run::Outcome resume_case(const host::Registry& registry, const run::RunOptions& 
   for (const std::int64_t later : steps_of_files(folder / "post", "restart")) {
     if (later > *restart) fs::remove(restart_file(folder / "post", later));
   }
+  for (const char* what : {"series", "tracks"}) {
+    for (const std::int64_t later : steps_of_files(folder / "post", what)) {
+      if (later > *restart) fs::remove(folder / "post" / name_of_session(what, later));
+    }
+  }
   run::insert_beads(a);  // which of them are followed
   output::write_file(folder / "in.resume", script_of(a, physics_of(a, registry), meshes_of(a), restart));
-  return finish(a, registry, options, {"in.resume", *restart - zero_step(a)});
+  return finish(a, registry, options, {"in.resume", *restart - zero_step(a), restart});
 }
 
 }  // namespace millscope::engine::liggghts

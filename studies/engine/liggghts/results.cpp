@@ -75,7 +75,7 @@ void add_series(const fs::path& file, const run::Assembly& a, const std::vector<
     const std::vector<double> numbers = in.numbers(kBeforeTorques + 3 * meshes.size());
     const Span s = span_of(numbers, a, meshes);
     if (s.begin < -1e-9 || numbers[0] > static_cast<double>(end)) continue;
-    if (s.begin - (all.empty() ? 0.0 : all.back().end) > row + 1e-9)
+    if (s.begin - (all.empty() ? 0.0 : all.back().end) > (all.empty() ? row : 0.5 * a.time_step) + 1e-9)
       in.fail(
           fmt::format("nothing stands from {:.4g} s to {:.4g} s; let LIGGGHTS run in one go", all.empty() ? 0.0 : all.back().end, s.begin));
     all.push_back(s);
@@ -122,7 +122,7 @@ void write_series(const std::vector<Span>& series, const run::Assembly& a, doubl
 }
 
 nlohmann::ordered_json summary_of(const std::vector<Span>& series, const run::Assembly& a, double mass) {
-  constexpr std::size_t kFewest = 9;
+  constexpr std::size_t kFewestRows = 9;  // that a mean with an error needs
   std::vector<double> torque, centre, kinetic;
   std::array<std::vector<double>, 3> place;
   double from = 0;
@@ -134,12 +134,6 @@ nlohmann::ordered_json summary_of(const std::vector<Span>& series, const run::As
     kinetic.push_back(s.translation + s.rotation);
     for (std::size_t axis = 0; axis < 3; ++axis) place[axis].push_back(s.centre[axis]);
   }
-  if (torque.size() < kFewest)
-    throw UserError(
-        fmt::format("the analysed window holds {} means of 10 ms, at least {} are needed; export the case again with a later "
-                    "time.end_s or an earlier time.analyze_from_s",
-                    torque.size(), kFewest));
-  const run::Mean pt = run::correlated_mean(torque), pc = run::correlated_mean(centre), ke = run::correlated_mean(kinetic);
   nlohmann::ordered_json j;
   j["schema_version"] = 1;
   j["name"] = a.c.name;
@@ -152,17 +146,20 @@ nlohmann::ordered_json summary_of(const std::vector<Span>& series, const run::As
   j["settle_s"] = static_cast<double>(-a.first_step) * a.time_step;
   j["mill_speed_rad_per_s"] = a.mill_speed;
   j["stiffness_factor"] = a.c.stiffness_factor;
-  j["window_s"] = {from, series.back().end};
-  j["power_W"] = {{"torque", pt.value}, {"torque_sem", pt.standard_error}};
-  if (knows_centre(a)) j["power_W"].update({{"com", pc.value}, {"com_sem", pc.standard_error}});
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const run::Mean m = run::correlated_mean(place[axis]);
-    const bool repeats = a.c.domain.periodic[axis];
-    j["com_m"].push_back(repeats ? nlohmann::ordered_json() : nlohmann::ordered_json(m.value));
-    j["com_m_sem"].push_back(repeats ? nlohmann::ordered_json() : nlohmann::ordered_json(m.standard_error));
+  if (torque.size() >= kFewestRows) {
+    const run::Mean pt = run::correlated_mean(torque), pc = run::correlated_mean(centre), ke = run::correlated_mean(kinetic);
+    j["window_s"] = {from, series.back().end};
+    j["power_W"] = {{"torque", pt.value}, {"torque_sem", pt.standard_error}};
+    if (knows_centre(a)) j["power_W"].update({{"com", pc.value}, {"com_sem", pc.standard_error}});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const run::Mean m = run::correlated_mean(place[axis]);
+      const bool repeats = a.c.domain.periodic[axis];
+      j["com_m"].push_back(repeats ? nlohmann::ordered_json() : nlohmann::ordered_json(m.value));
+      j["com_m_sem"].push_back(repeats ? nlohmann::ordered_json() : nlohmann::ordered_json(m.standard_error));
+    }
+    j["kinetic_energy_J"] = ke.value;
+    j["kinetic_energy_J_sem"] = ke.standard_error;
   }
-  j["kinetic_energy_J"] = ke.value;
-  j["kinetic_energy_J_sem"] = ke.standard_error;
   j["engine"] = {{"name", "liggghts"}, {"differs", differences_of(a)}};
   return j;
 }
@@ -194,7 +191,9 @@ Imported read_results(const fs::path& folder, const fs::path& out, const host::R
   j["engine"]["version"] = version_in(folder / "log.liggghts");
   j["engine"]["script"] = base::Hash().add(base::text_of(folder / "in.liggghts")).text();
   if (how.ranks > 0) j["engine"]["ranks"] = how.ranks;
-  if (how.wall > 0) j["wall_s"] = how.wall;
+  for (const std::int64_t step : steps_of_files(folder / "post", "series"))
+    j["engine"]["resumed_at_s"].push_back(static_cast<double>(step - zero_step(a)) * a.time_step);
+  if (how.wall > 0 && !j["engine"].contains("resumed_at_s")) j["wall_s"] = how.wall;
   j["provenance"] = output::provenance(how.command_line, {});
   output::write_json(out / "summary.json", j);
   return imported;

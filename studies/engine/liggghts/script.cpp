@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "kernel/base/program.hpp"
 #include "kernel/run/recorder.hpp"
@@ -128,8 +129,7 @@ void add_runs(const run::Assembly& a, std::optional<std::int64_t> restart, Lines
       for (std::size_t k = i; k < std::min(ids.size(), i + kOfOneLine); ++k) words += fmt::format(" {}", ids[k] + 1);
       lines.add("group", "tracked id" + words);
     }
-    lines.add("dump", fmt::format("tracks tracked custom {} post/{} id x y z", steps_of(a, a.c.output.tracks->every),
-                                  name_of_session("tracks", restart)));
+    lines.add("dump", fmt::format("tracks tracked custom {} post/{} id x y z", track_every(a), name_of_session("tracks", restart)));
     lines.add("dump_modify", "tracks sort id format \"%d %.9g %.9g %.9g\"");
   }
   if (a.c.output.frames) {
@@ -153,12 +153,14 @@ std::int64_t series_every(const run::Assembly& a) { return std::max<std::int64_t
 
 std::int64_t frame_every(const run::Assembly& a) { return steps_of(a, a.c.output.frames->every); }
 
+std::int64_t track_every(const run::Assembly& a) { return steps_of(a, a.c.output.tracks->every); }
+
 std::int64_t frames_from(const run::Assembly& a) {
   return std::min(a.end_step, static_cast<std::int64_t>(std::llround(std::min(a.c.output.frames->from, a.c.time.end) / a.time_step)));
 }
 
 std::int64_t zero_step(const run::Assembly& a) {
-  const std::int64_t often = a.c.output.frames ? frame_every(a) : 1;
+  const std::int64_t often = std::lcm(a.c.output.frames ? frame_every(a) : 1, a.c.output.tracks ? track_every(a) : 1);
   return (-a.first_step + often - 1) / often * often;
 }
 
