@@ -57,6 +57,8 @@ void find_places(const fs::path& folder, int depth, std::vector<Place>& places) 
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, fs::directory_options::skip_permission_denied)) {
     const std::string name = entry.path().filename();
     if (!entry.is_directory() || entry.is_symlink() || name == "cache" || name.starts_with('.')) continue;
+    // What another engine was given is no run of its own.
+    if (name == output::kEngineFolder && fs::exists(folder / output::kResolvedCase)) continue;
     find_places(entry.path(), depth + 1, places);
   }
 }

@@ -1,5 +1,7 @@
 """`millscope run --engine liggghts`: another engine moves the beads, the files are those of a run; and what is said where it does not."""
+import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -88,7 +90,10 @@ class Real(CliTest):
         self.assertGreater(summary["power_W"]["torque"], 0)
         self.assertGreater(summary["wall_s"], 0)
         self.succeed("report", "out", "-o", "page.html")
-        self.assertIn("LIGGGHTS", (self.folder / "page.html").read_text())
+        page = (self.folder / "page.html").read_text()
+        data = json.loads(re.search(r'<script type="application/json" id="millscope-data">(.*?)</script>', page, re.S).group(1))
+        self.assertEqual([s["kind"] for s in data["sections"]], ["run"])  # the engine's folder is no second one
+        self.assertEqual(data["sections"][0]["summary"]["engine"]["name"], "liggghts")
         self.assert_one_line(self.millscope("run", "case.yaml", "-o", "out", "--engine", "liggghts"), "is not empty and is not overwritten")
         self.succeed("run", "case.yaml", "-o", "out", "--force", "-q", "--engine", "liggghts", *SHORT)
 

@@ -36,7 +36,7 @@ function headline({ summary, series, mill, progress, state }) {
   return [
     power && ["Power, by the torque", withError(power.torque, power.torque_sem, "W"), "mean ± standard error"],
     power && ["Power, by the charge's place", withError(power.com, power.com_sem, "W"), "weight × lever arm × speed"],
-    power && ["Power, by the losses", withError(power.dissipation, power.dissipation_sem, "W"), null],
+    power && isNumber(power.dissipation) && ["Power, by the losses", withError(power.dissipation, power.dissipation_sem, "W"), null],
     !summary && ["Power now, by the charge's place", quantity(last("power_com_W"), "W"), "one instant, no mean yet"],
     isNumber(speed) && speed !== 0 && ["Speed", quantity(Math.abs(speed), "rad/s"), sense],
     summary && ["Charge", `${number(summary.particles, 7)} beads`, quantity(summary.charge_mass_kg, "kg")],
@@ -50,8 +50,9 @@ function headline({ summary, series, mill, progress, state }) {
 
 function sentence({ summary, state, progress }) {
   if (summary?.power_W && isNumber(summary.power_W.torque)) {
-    const steady = summary.steady ? "" : " The mill is not steady: do not trust the mean.";
-    return `The mill draws ${withError(summary.power_W.torque, summary.power_W.torque_sem, "W")}.${steady}`;
+    const steady = summary.steady === false ? " The mill is not steady: do not trust the mean." : "";
+    const engine = summary.engine ? ` Another engine moved the beads: ${summary.engine.name}.` : "";
+    return `The mill draws ${withError(summary.power_W.torque, summary.power_W.torque_sem, "W")}.${steady}${engine}`;
   }
   if (state === "running") return progress ? `The run has come to ${number(progress.time_s, 3)} s of ${number(progress.end_s, 3)} s.` : "The run goes on.";
   return state === "stopped" ? "The run was stopped before its end: there are no means." : "The run is finished.";
@@ -63,10 +64,12 @@ function provenance(summary, key) {
   const seed = /--seed[= ](\S+)/.exec((from.command_line ?? []).join(" "));
   return [
     facts([["millscope", from.commit ? `${from.version}, commit ${from.commit}` : from.version, from.compiler], ["Made", moment(from.date_utc), null], ["Machine", from.host, `${from.processor ?? ""}, ${number(from.cores)} cores`],
-      ["State hash", element("code", null, summary.state_hash), "equal where two runs are equal to the bit"], seed && ["Seed", seed[1], null],
+      summary.engine && ["Engine", summary.engine.version, isNumber(summary.engine.ranks) ? `${number(summary.engine.ranks)} processes` : null],
+      summary.state_hash && ["State hash", element("code", null, summary.state_hash), "equal where two runs are equal to the bit"], seed && ["Seed", seed[1], null],
       ["Time step", quantity(summary.dt_s, "s"), `${percent(summary.dt_rayleigh_fraction)} of the Rayleigh time`],
       ["Stiffness", `× ${number(summary.stiffness_factor)}`, "of the real materials"],
-      ["Computed in", `${number(summary.wall_s, 3)} s`, `${number(summary.particle_steps_per_s / 1e6, 3)} million bead steps per second`]]),
+      isNumber(summary.wall_s) && ["Computed in", `${number(summary.wall_s, 3)} s`,
+        isNumber(summary.particle_steps_per_s) ? `${number(summary.particle_steps_per_s / 1e6, 3)} million bead steps per second` : null]]),
     element("p", null, "Command: ", element("code", null, (from.command_line ?? []).join(" "))),
     disclosure(`${key}-plugins`, `Plugins (${(from.plugins ?? []).length}) with their hashes`, () => table({ caption: "Plugins that were loaded", rows: from.plugins ?? [],
       columns: [{ label: "name", value: (row) => row.name }, { label: "version", value: (row) => row.version },
