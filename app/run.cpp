@@ -61,6 +61,14 @@ int report(run::Outcome outcome, const run::RunOptions& options) {
   return kDone;
 }
 
+/// Throws base::UserError for what only this program knows, where another engine moves the beads.
+void refuse_own_options(const Options& options) {
+  for (const char* own : {"threads", "watch"}) {
+    if (options.has(own))
+      throw base::UserError(fmt::format("--{} is for runs of millscope itself; leave it out where another engine moves the beads", own));
+  }
+}
+
 /// Whether another engine can play the case, and what it will do differently.
 int check_for_engine(const config::Case& c, const host::Registry& registry) {
   engine::require_known(c);
@@ -97,10 +105,7 @@ int run(const Arguments& arguments) {
   const std::string case_file = options.text("CASE.yaml");
   r.output = options.text("output");
   r.force = options.has("force");
-  for (const char* own : {"threads", "watch"}) {
-    if (options.has(own) && !config::read_case(case_file, r.overrides).run.engine.empty())
-      throw base::UserError(fmt::format("--{} is for runs of millscope itself; leave it out where another engine moves the beads", own));
-  }
+  if (!config::read_case(case_file, r.overrides).run.engine.empty()) refuse_own_options(options);
   if (options.has("watch")) watch_beside(r.output, options);
   watch_signals();
   return report(engine::run_case(case_file, options.registry(), r), r);
@@ -116,6 +121,7 @@ int resume(const Arguments& arguments) {
   if (!options.parse(arguments)) return kDone;
   run::RunOptions r = run_options(options);
   r.output = options.text("OUT");
+  if (engine::is_run(r.output)) refuse_own_options(options);
   if (options.has("watch")) watch_beside(r.output, options);
   watch_signals();
   return report(engine::resume_run(options.registry(), r), r);

@@ -88,10 +88,7 @@ void make(const Challenge& challenge, const diagnose::Question& question, const 
       simulations.push_back(
           simulation_of(challenge, question, truths[t], c, fmt::format("{}, {}", set_name(t), question.study.conditions[c].name)));
   }
-  for (const campaign::Simulation& s : simulations) {
-    const config::Case c = config::read_case(s.case_file.string(), s.settings);
-    if (!c.run.engine.empty()) engine::require_playable(c, registry);
-  }
+  for (const campaign::Simulation& s : simulations) engine::require_playable(config::read_case(s.case_file.string(), s.settings), registry);
   fs::create_directories(options.output / "answers");
   if (options.campaign.cache.empty()) options.campaign.cache = options.output / "answers" / "cache";
   say(fmt::format("{} sets of {} conditions, {:.4g} s each", truths.size(), conditions, challenge.seconds));

@@ -12,7 +12,12 @@
 
 namespace millscope::engine {
 
+namespace {
+
+/// Engines that a case may name in run.engine, beside none: this program.
 std::vector<std::string> names() { return {"liggghts"}; }
+
+}  // namespace
 
 void require_known(const config::Case& c) {
   const std::vector<std::string> known = names();

@@ -10,9 +10,6 @@
 
 namespace millscope::engine {
 
-/// Engines that a case may name in run.engine, beside none: this program.
-std::vector<std::string> names();
-
 /// Throws base::UserError for a case that names no engine that is known.
 void require_known(const config::Case& c);
 

@@ -77,12 +77,20 @@ class Made(CliTest):
         self.refused("cap is 'sum'", words=["--set", "contact.law.cap=sum"])
         self.assertFalse((self.folder / "out").exists())
 
+    def test_an_earlier_run_stays_where_the_new_one_is_refused(self):
+        self.engine("exit 0\n")
+        self.refused("ended with code 0")
+        for words in (["output.tracks={beads: 9999}"], ["fill.filling=99 %"], ["contact.law.cap=sum"]):
+            self.assertEqual(self.millscope("run", "case.yaml", "-o", "out", "--force", "-q", "--engine", "liggghts", "--set", *words).returncode, 2)
+            self.assertTrue((self.folder / "out/engine/messages.txt").exists())
+
 
 @unittest.skipUnless(shutil.which("liggghts"), "liggghts is not installed")
 class Real(CliTest):
     def test_the_files_of_a_run(self):
         done = self.succeed("run", "case.yaml", "-o", "out", "--engine", "liggghts", *SHORT)
         self.assertIn("done; see out/summary.json", done.stdout)
+        self.assertFalse((self.folder / "log.liggghts").exists())  # what is asked of the engine leaves nothing behind
         self.assertEqual(sorted(n for n in tree_of(self.folder / "out") if "/" not in n), ["case.resolved.yaml", "engine", "frames.h5", "series.csv", "summary.json", "tracks.h5"])
         summary = self.summary("out")
         self.assertIn("3.8", summary["engine"]["version"])
@@ -107,6 +115,7 @@ class Real(CliTest):
         run.wait()
         self.assertFalse((self.folder / "out/summary.json").exists())
         self.assert_one_line(self.millscope("resume", "out", "--set", "time.end_s=9"), "leave --set out")
+        self.assert_one_line(self.millscope("resume", "out", "--threads", "2"), "--threads is for runs of millscope")
         self.succeed("resume", "out", "-q")
         summary = self.summary("out")
         self.assertAlmostEqual(summary["simulated_s"], 0.6, delta=0.02)
@@ -119,6 +128,15 @@ class Real(CliTest):
             self.assertTrue(all(0 < b - a < 0.0011 for a, b in zip(t, t[1:])))
         self.assert_one_line(self.millscope("resume", "out"), "is finished")
         self.assertEqual(len(summary["engine"]["resumed_at_s"]), 1)
+
+    def test_a_campaigns_task_goes_on(self):
+        self.write("tasks.yaml", "schema_version: 1\ncase: case.yaml\nsimulations:\n  one: {set: [run.engine=liggghts, fill.settle_s=0.01, "
+                                 "time.end_s=0.6, time.analyze_from_s=0.1, output.frames=~]}\n")
+        runs = lambda pattern: list((self.folder / "out").rglob(pattern))  # noqa: E731
+        self.killed(["campaign", "tasks.yaml", "-o", "out", "-q"], lambda: len(runs("restart.*")) > 1)
+        self.succeed("campaign", "tasks.yaml", "-o", "out", "-q")
+        self.assertEqual(len(runs("series.*.txt")), 1)
+        self.assertEqual(len(runs("summary.json")), 1)
 
     def killed(self, words, ready):
         """A run whose millscope and engine are killed as soon as `ready` holds."""

@@ -4,7 +4,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 
@@ -201,14 +200,10 @@ void write_tracks(const fs::path& folder, const run::Assembly& a, const fs::path
       writer->append(static_cast<double>(*step - zero_step(a)) * a.time_step, places);
     }
   };
-  const std::vector<std::int64_t> restarts = steps_of_files(folder / "post", "tracks");
-  constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
-  for (std::size_t k = 0; k <= restarts.size(); ++k) {
-    const std::optional<std::int64_t> begin = k > 0 ? std::optional(restarts[k - 1]) : std::nullopt;
-    const fs::path file = folder / "post" / name_of_session("tracks", begin);
+  for (const Session& session : sessions_of(folder / "post", "tracks")) {
     // A run that was killed while the charge settled had no tracks yet.
-    if (k == 0 && !restarts.empty() && restarts[0] <= zero_step(a) && !fs::exists(file)) continue;
-    add(TextFile(file), begin.value_or(-1), k < restarts.size() ? restarts[k] : kNone);
+    if (session.until <= zero_step(a) && !fs::exists(session.file)) continue;
+    add(TextFile(session.file), session.after, session.until);
   }
   if (!writer) throw UserError(fmt::format("{}: holds no track; let LIGGGHTS run again", (folder / "post" / "tracks.txt").string()));
   writer->close();

@@ -11,7 +11,6 @@
 #include "kernel/output/file.hpp"
 #include "kernel/output/new_folder.hpp"
 #include "kernel/output/stl.hpp"
-#include "kernel/run/recorder.hpp"
 #include "studies/engine/liggghts/obstacles.hpp"
 #include "studies/engine/liggghts/script.hpp"
 
@@ -63,11 +62,8 @@ Up to step {} the charge falls with the walls at rest; the case's own time begin
 
 }  // namespace
 
-Exported export_case(run::Assembly& a, const host::Registry& registry, const fs::path& folder) {
-  require_playable(a, registry);
-  run::Recorder::check(a);
+Exported write_case(const run::Assembly& a, const host::Registry& registry, const fs::path& folder) {
   output::NewFolder aside(folder);
-  run::insert_beads(a);
   Exported exported;
   exported.beads = static_cast<std::size_t>(a.system->particles.count());
   exported.steps = a.end_step - a.first_step;
@@ -81,6 +77,13 @@ Exported export_case(run::Assembly& a, const host::Registry& registry, const fs:
   output::write_file(aside.path() / "README.md", readme(a, exported));
   aside.publish();
   return exported;
+}
+
+Exported export_case(run::Assembly& a, const host::Registry& registry, const fs::path& folder) {
+  require_playable(a, registry);
+  output::refuse_folder(folder);
+  run::insert_beads(a);
+  return write_case(a, registry, folder);
 }
 
 }  // namespace millscope::engine::liggghts

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "kernel/run/recorder.hpp"
 #include "studies/engine/liggghts/physics.hpp"
 #include "studies/engine/liggghts/script.hpp"
 
@@ -127,6 +128,7 @@ std::vector<std::string> obstacles_of(const run::Assembly& a, const host::Regist
 }
 
 void require_playable(const run::Assembly& a, const host::Registry& registry) {
+  run::Recorder::check(a);
   const std::vector<std::string> obstacles = obstacles_of(a, registry);
   if (!obstacles.empty()) throw base::UserError(fmt::format("{}", fmt::join(obstacles, "\n")));
 }

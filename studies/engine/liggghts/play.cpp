@@ -143,7 +143,10 @@ run::Outcome wait(const run::Assembly& a, const run::RunOptions& options, const 
   bool has_told = false;
   for (;;) {
     const std::optional<Ended> ended = child.poll();
-    if (const auto told = state_of_log(end_of(folder / kLog)).step) step = std::max(begin.step, *told - zero_step(a)), has_told = true;
+    if (const auto told = state_of_log(end_of(folder / kLog)).step; told && !(has_told && *told - zero_step(a) == step)) {
+      step = std::max(begin.step, *told - zero_step(a)), has_told = true;
+      drop_old_restarts(folder / "post");  // a folder of many frames is not listed more often
+    }
     if (ended) {
       progress.finish("");
       // A restart file that cannot be read: the next resume takes the one before.
@@ -156,7 +159,6 @@ run::Outcome wait(const run::Assembly& a, const run::RunOptions& options, const 
       return run::Outcome::interrupted;
     }
     progress.update(step, begin.step);
-    drop_old_restarts(folder / "post");
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
 }
@@ -207,7 +209,7 @@ LogState state_of_log(const std::string& text) {
 
 std::string installed_version() {
   static const std::string version = [] {
-    const std::string said = require_program({"liggghts", "-h"}, "liggghts", "LIGGGHTS-PUBLIC 3.8");
+    const std::string said = require_program({"liggghts", "-h", "-log", "none"}, "liggghts", "LIGGGHTS-PUBLIC 3.8");
     const std::size_t begin = std::min(said.size(), said.find("LIGGGHTS (Version"));
     return said.substr(begin, said.find(';', begin) - begin);
   }();
@@ -218,11 +220,12 @@ run::Outcome play_case(const std::string& case_file, const host::Registry& regis
   run::Assembly a = run::assemble(config::read_case(case_file, options.overrides), registry);
   require_playable(a, registry);
   require_programs(a);
+  run::insert_beads(a);  // whether they fit is known before an earlier run is touched
   output::OutputDirectory directory(options.output, options.force ? output::Mode::overwrite : output::Mode::fresh);
   directory.start();
   const fs::path folder = directory.path() / output::kEngineFolder;
   try {
-    export_case(a, registry, folder);
+    write_case(a, registry, folder);
   } catch (...) {
     directory.undo();
     throw;
@@ -235,7 +238,6 @@ run::Outcome resume_case(const host::Registry& registry, const run::RunOptions& 
   if (fs::exists(out / "summary.json")) throw UserError(fmt::format("{}: is finished; there is nothing to continue", out.string()));
   if (!options.overrides.empty()) throw UserError("resume: a run of another engine goes on as it is; leave --set out");
   run::Assembly a = run::assemble(config::read_case((folder / output::kResolvedCase).string()), registry);
-  if (options.threads > 0) throw UserError("resume: --threads is for runs of millscope itself; leave it out");
   require_programs(a);
   output::OutputDirectory directory(out, output::Mode::resume);
   directory.start();

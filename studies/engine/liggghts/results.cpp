@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -85,12 +84,7 @@ void add_series(const fs::path& file, const run::Assembly& a, const std::vector<
 /// Those of the case's own time, without a gap, up to its end. A file ends, for this purpose, where a run went on from.
 std::vector<Span> series_of(const fs::path& post, const run::Assembly& a, const std::vector<MeshFile>& meshes) {
   std::vector<Span> all;
-  const std::vector<std::int64_t> restarts = steps_of_files(post, "series");
-  for (std::size_t k = 0; k <= restarts.size(); ++k) {
-    const std::optional<std::int64_t> begin = k > 0 ? std::optional(restarts[k - 1]) : std::nullopt;
-    const std::int64_t end = k < restarts.size() ? restarts[k] : std::numeric_limits<std::int64_t>::max();
-    add_series(post / name_of_session("series", begin), a, meshes, end, all);
-  }
+  for (const Session& session : sessions_of(post, "series")) add_series(session.file, a, meshes, session.until, all);
   const double row = static_cast<double>(kSeriesValues * series_every(a)) * a.time_step, last = all.empty() ? 0 : all.back().end;
   if (last + row < a.c.time.end)
     throw UserError(

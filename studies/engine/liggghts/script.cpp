@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -225,6 +226,16 @@ std::vector<std::int64_t> steps_of_files(const std::filesystem::path& folder, co
   }
   std::sort(steps.begin(), steps.end());
   return steps;
+}
+
+std::vector<Session> sessions_of(const std::filesystem::path& post, const std::string& what) {
+  constexpr std::int64_t kFirst = -1, kLast = std::numeric_limits<std::int64_t>::max();
+  std::vector<Session> sessions{{post / name_of_session(what, {}), kFirst, kLast}};
+  for (const std::int64_t step : steps_of_files(post, what)) {
+    sessions.back().until = step;
+    sessions.push_back({post / name_of_session(what, step), step, kLast});
+  }
+  return sessions;
 }
 
 std::string script_of(const run::Assembly& a, const Physics& physics, const std::vector<MeshFile>& meshes,

@@ -53,6 +53,14 @@ std::string script_of(const run::Assembly& a, const Physics& physics, const std:
 /// "series.txt", of a run that went on from a step "series.1000.txt".
 std::string name_of_session(const std::string& what, std::optional<std::int64_t> restart);
 
+/// A file of a run that was continued, and the steps that count in it.
+struct Session {
+  std::filesystem::path file;
+  std::int64_t after, until;
+};
+/// In their order: the first, and one for each step from which the run went on.
+std::vector<Session> sessions_of(const std::filesystem::path& post, const std::string& what);
+
 /// Steps of the files that `what` stands before in a folder ("restart" → restart.1000), in order.
 std::vector<std::int64_t> steps_of_files(const std::filesystem::path& folder, const std::string& what);
 
