@@ -53,10 +53,9 @@ int slots_of(const Options& options) {
   return options.integer("slots");
 }
 
-campaign::Options campaign_of(const Options& options) {
-  campaign::Options c;
+campaign::Options bank_campaign(const Options& options) {
+  campaign::Options c = campaign_of(study_session(options, ""));
   c.cache = cache_of(options);
-  for (const std::string& directory : options.list("plugin-dir")) c.plugin_directories.emplace_back(directory);
   return c;
 }
 
@@ -72,7 +71,7 @@ int status(const Arguments& arguments) {
                   "millscope bank status configs/mill10/diagnose.yaml --cache diagnosis/cache");
   add_bank_options(options);
   if (!options.parse(arguments)) return kDone;
-  const campaign::Options c = campaign_of(options);
+  const campaign::Options c = bank_campaign(options);
   const int slots = slots_of(options);
   const diagnose::Question question = question_of(options);
   fmt::print("{}", diagnose::status_text(question, diagnose::bank_status(question, c), slots));
@@ -90,14 +89,9 @@ int extend(const Arguments& arguments) {
   options.add()("retry-failed", "run again what failed");
   options.add()("quiet,q", "print nothing but errors");
   if (!options.parse(arguments)) return kDone;
-  campaign::Options c = campaign_of(options);
-  if (options.has("slots")) c.slots = slots_of(options);
+  campaign::Options c = bank_campaign(options);
   const diagnose::Question question = question_of(options);
-  c.runner = options.has("runner") ? options.text("runner") : question.study.runner;
-  c.slurm_options = words_of(options.list("slurm"));
-  c.quiet = options.has("quiet");
-  if (!c.quiet) c.say = print_line;
-  c.retry_failed = options.has("retry-failed");
+  if (!options.has("runner")) c.runner = question.study.runner;
   std::vector<campaign::Simulation> simulations;
   for (const diagnose::PlannedRun& run : diagnose::planned_runs(question)) simulations.push_back(run.simulation);
   std::size_t computed = 0, failed = 0;

@@ -18,27 +18,17 @@ namespace fs = std::filesystem;
 using base::UserError;
 
 campaign::Options campaign_options(const Options& options, const fs::path& output) {
-  campaign::Options c;
-  c.cache = options.has("cache") ? fs::path(options.text("cache")) : output / "cache";
-  if (options.has("runner")) c.runner = options.text("runner");
-  if (options.has("slots")) {
-    c.slots = options.integer("slots");
-    if (c.slots < 1) throw UserError(fmt::format("--slots {}: give 1 or more", c.slots));
-  }
+  campaign::Options c = campaign_of(study_session(options, output));
+  if (c.cache.empty()) c.cache = output / "cache";
   if (options.has("memory")) {
     const double gigabytes = options.number("memory");
     if (!(gigabytes > 0 && gigabytes < 1e9)) throw UserError(fmt::format("--memory {}: give GB, more than 0", gigabytes));
     c.memory_bytes = static_cast<std::uint64_t>(gigabytes * 1e9);
   }
-  for (const std::string& directory : options.list("plugin-dir")) c.plugin_directories.emplace_back(directory);
-  c.slurm_options = words_of(options.list("slurm"));
   if (options.has("poll")) {
     c.poll_s = options.number("poll");
     if (!(c.poll_s > 0)) throw UserError(fmt::format("--poll {}: give seconds, more than 0", c.poll_s));
   }
-  c.quiet = options.has("quiet");
-  if (!c.quiet) c.say = print_line;
-  c.retry_failed = options.has("retry-failed");
   return c;
 }
 
@@ -74,15 +64,9 @@ int run_campaign(const Arguments& arguments) {
       "millscope campaign configs/campaign.yaml -o campaign-out");
   options.positional("TASKS.yaml", "the simulations: cases with settings");
   options.add()("output,o", po::value<std::string>()->value_name("OUT"), "directory for campaign.csv and the cache; may exist");
-  options.add()("cache", po::value<std::string>()->value_name("DIR"), "where results are kept (default: OUT/cache)");
-  options.add()("runner", po::value<std::string>()->value_name("local|slurm"), "where simulations run (default: local)");
-  options.add()("slots", po::value<int>()->value_name("N"), "simulations at once (default: as many as there are cores; slurm: no limit)");
+  add_runner_options(options, "where results are kept (default: OUT/cache)");
   options.add()("memory", po::value<double>()->value_name("GB"), "that simulations may use together (default: what is free)");
-  options.add()("slurm", po::value<std::vector<std::string>>()->value_name("OPTIONS"),
-                "more options for sbatch, e.g. --slurm=\"--partition=long --time=2:00:00\"");
   options.add()("poll", po::value<double>()->value_name("S"), "seconds between two looks at Slurm's queue (default: 5)");
-  options.add()("retry-failed", "run again what failed");
-  options.add()("quiet,q", "print nothing but errors");
   options.add()("plugin-dir", po::value<std::vector<std::string>>()->value_name("DIR"),
                 "also load the plugins of this directory (may be repeated)");
   if (!options.parse(arguments)) return kDone;

@@ -20,27 +20,6 @@ namespace po = boost::program_options;
 namespace fs = std::filesystem;
 using base::UserError;
 
-void add_runner_options(Options& options, const char* cache) {
-  options.add()("cache", po::value<std::string>()->value_name("DIR"), cache);
-  options.add()("runner", po::value<std::string>()->value_name("local|slurm"), "where simulations run (default: local, or the study's)");
-  options.add()("slots", po::value<int>()->value_name("N"), "simulations at once (default: as many as cores); no influence on results");
-  options.add()("slurm", po::value<std::vector<std::string>>()->value_name("OPTIONS"), "more options for sbatch");
-  options.add()("retry-failed", "run again what failed");
-  options.add()("quiet,q", "print nothing but errors");
-}
-
-campaign::Options campaign_of(const calibrate::SessionOptions& s) {
-  campaign::Options c;
-  c.cache = s.cache;
-  if (!s.runner.empty()) c.runner = s.runner;
-  c.slots = s.slots;
-  c.plugin_directories = s.plugin_directories;
-  c.slurm_options = s.slurm_options;
-  c.quiet = s.quiet;
-  c.retry_failed = s.retry_failed;
-  return c;
-}
-
 /// As it was given, without the place of the program.
 std::string command_text() {
   std::string out = "millscope";

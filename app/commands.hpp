@@ -46,6 +46,7 @@ int resume(const Arguments& arguments);
 int check(const Arguments& arguments);
 int export_case(const Arguments& arguments);
 int import_case(const Arguments& arguments);
+int crosscheck_engines(const Arguments& arguments);
 int analyze(const Arguments& arguments);
 int compare(const Arguments& arguments);
 int report_page(const Arguments& arguments);

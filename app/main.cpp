@@ -24,6 +24,7 @@ constexpr Command kCommands[] = {
     {"check", "check a case and predict its cost", check},
     {"export", "a case for another engine", export_case},
     {"import", "what another engine made of it", import_case},
+    {"crosscheck", "whether another engine says the same", crosscheck_engines},
     {"calibrate", "contact parameters from recordings", calibrate_study},
     {"validate", "whether what was calibrated holds elsewhere", validate},
     {"diagnose", "which physics a base case has left out", diagnose_study},

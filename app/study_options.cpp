@@ -10,17 +10,35 @@ namespace po = boost::program_options;
 namespace fs = std::filesystem;
 using base::UserError;
 
+void add_runner_options(Options& options, const char* cache) {
+  options.add()("cache", po::value<std::string>()->value_name("DIR"), cache);
+  options.add()("runner", po::value<std::string>()->value_name("local|slurm"), "where simulations run (default: local, or the study's)");
+  options.add()("slots", po::value<int>()->value_name("N"), "simulations at once (default: as many as cores); no influence on results");
+  options.add()("slurm", po::value<std::vector<std::string>>()->value_name("OPTIONS"),
+                "more options for sbatch, e.g. --slurm=\"--partition=long --time=2:00:00\"");
+  options.add()("retry-failed", "run again what failed");
+  options.add()("quiet,q", "print nothing but errors");
+}
+
 void add_study_options(Options& options) {
   options.positional("STUDY.yaml", "base case, conditions with recordings, parameters, objective, method, budget");
   options.add()("output,o", po::value<std::string>()->value_name("OUT"), "directory for the results");
-  options.add()("cache", po::value<std::string>()->value_name("DIR"), "where simulations are kept, each once (default: OUT/cache)");
-  options.add()("runner", po::value<std::string>()->value_name("local|slurm"), "where simulations run (default: the study's)");
-  options.add()("slots", po::value<int>()->value_name("N"), "simulations at once (default: as many as cores); no influence on results");
-  options.add()("slurm", po::value<std::vector<std::string>>()->value_name("OPTIONS"), "more options for sbatch");
-  options.add()("retry-failed", "run again what failed");
-  options.add()("quiet,q", "print nothing but errors");
+  add_runner_options(options, "where simulations are kept, each once (default: OUT/cache)");
   options.with_overrides("replace a value of the study (may be repeated), e.g. --set budget.simulations=80");
   options.with_plugins();
+}
+
+campaign::Options campaign_of(const calibrate::SessionOptions& s) {
+  campaign::Options c;
+  c.cache = s.cache;
+  if (!s.runner.empty()) c.runner = s.runner;
+  c.slots = s.slots;
+  c.plugin_directories = s.plugin_directories;
+  c.slurm_options = s.slurm_options;
+  c.quiet = s.quiet;
+  c.retry_failed = s.retry_failed;
+  c.say = s.say;
+  return c;
 }
 
 std::vector<std::string> words_of(const std::vector<std::string>& texts) {

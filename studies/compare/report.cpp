@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/base/columns.hpp"
 #include "kernel/output/file.hpp"
 #include "studies/picture/results_pictures.hpp"
 #include "studies/picture/scale.hpp"
@@ -15,16 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string p_text(double p) { return p < 0.001 ? "<0.001" : fmt::format("{:.3f}", p); }
-
-/// Letters as a reader counts them: the bytes that begin one.
-std::size_t letters(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
-std::string padded(const std::string& text, std::size_t width) {
-  return text + std::string(width > letters(text) ? width - letters(text) : 0, ' ');
-}
 
 /// Values of one observable in one unit.
 class Numbers {
@@ -37,28 +28,11 @@ class Numbers {
   picture::DisplayUnit unit_;
 };
 
-using Row = std::vector<std::string>;
-
-Row row_of(const ComparedObservable& o, std::size_t rank, double level) {
+base::Row row_of(const ComparedObservable& o, std::size_t rank, double level) {
   const ComparedElement& e = o.elements[o.strongest];
   const Numbers shown(o.unit, std::max(std::abs(e.a), std::abs(e.b)));
   return {fmt::format("{}{}", rank, o.adjusted_p <= level ? " *" : ""),  o.name,       shown(e.a),           shown(e.b), shown(e.b - e.a),
           fmt::format("{} … {}", shown(e.test.low), shown(e.test.high)), shown.unit(), p_text(o.adjusted_p), e.where};
-}
-
-std::string aligned(const std::vector<Row>& rows) {
-  std::vector<std::size_t> width(rows.front().size(), 0);
-  for (const Row& row : rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) width[c] = std::max(width[c], letters(row[c]));
-  }
-  std::string text;
-  for (const Row& row : rows) {
-    std::string line;
-    for (std::size_t c = 0; c < row.size(); ++c) line += (c == 0 ? "" : "  ") + (c + 1 < row.size() ? padded(row[c], width[c]) : row[c]);
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
-  }
-  return text;
 }
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -109,12 +83,12 @@ std::string element_columns(const ComparedElement& e) {
 
 std::string comparison_table(const Comparison& comparison, std::size_t rows) {
   if (comparison.observables.empty()) return "";
-  std::vector<Row> table{{"rank", "observable", "A", "B", "B − A", fmt::format("{:.0f} % interval", 100 * comparison.options.confidence),
+  std::vector<base::Row> table{{"rank", "observable", "A", "B", "B − A", fmt::format("{:.0f} % interval", 100 * comparison.options.confidence),
                           "unit", "p adjusted", "where"}};
   for (std::size_t i = 0; i < std::min(rows, comparison.observables.size()); ++i) {
     table.push_back(row_of(comparison.observables[i], i + 1, comparison.options.level));
   }
-  std::string text = aligned(table);
+  std::string text = base::columns_to_left(table);
   if (comparison.observables.size() > rows) text += fmt::format("… and {} more\n", comparison.observables.size() - rows);
   return text;
 }

@@ -10,7 +10,7 @@
 #include "kernel/base/error.hpp"
 #include "kernel/base/nearest.hpp"
 #include "kernel/config/document.hpp"
-#include "studies/doe/columns.hpp"
+#include "kernel/base/columns.hpp"
 #include "studies/doe/least_squares.hpp"
 #include "studies/picture/scale.hpp"
 
@@ -153,7 +153,7 @@ nlohmann::ordered_json printed_json(const std::vector<PrintedFigure>& figures) {
 
 std::string printed_text(const std::vector<PrintedFigure>& figures) {
   const auto number = [](double value) { return picture::significant_text(value, 4); };
-  std::vector<Row> rows{{"response, term", "figure", "printed", "worked again", "", "p of the printed F"}};
+  std::vector<base::Row> rows{{"response, term", "figure", "printed", "worked again", "", "p of the printed F"}};
   std::size_t differ = 0, contradict = 0;
   for (const PrintedFigure& f : figures) {
     differ += f.differs ? 1 : 0;
@@ -163,7 +163,7 @@ std::string printed_text(const std::vector<PrintedFigure>& figures) {
   }
   return fmt::format(
       "printed figures against this table\n{}{} of {} differ by more than their last digit; {} printed p do not follow from their F\n",
-      aligned(rows), differ, figures.size(), contradict);
+      base::columns_of_numbers(rows), differ, figures.size(), contradict);
 }
 
 }  // namespace millscope::doe

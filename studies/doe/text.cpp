@@ -7,7 +7,7 @@
 
 #include "kernel/base/error.hpp"
 #include "studies/doe/analysis.hpp"
-#include "studies/doe/columns.hpp"
+#include "kernel/base/columns.hpp"
 #include "studies/picture/scale.hpp"
 
 namespace millscope::doe {
@@ -22,16 +22,16 @@ std::string p_text(double p) { return std::isnan(p) ? "" : p < 0.0001 ? "<0.0001
 std::string percent(double share) { return std::isnan(share) ? "" : fmt::format("{:.1f} %", 100 * share); }
 
 /// Mean square, F, p, confidence level.
-Row sum_row(Row before, const SumOfSquares& sum, bool tested) {
+base::Row sum_row(base::Row before, const SumOfSquares& sum, bool tested) {
   before.insert(before.end(), {number(sum.value), std::to_string(sum.df), blank_if_undefined(sum.mean_square())});
   if (tested) before.insert(before.end(), {blank_if_undefined(sum.F), p_text(sum.p), percent(sum.confidence())});
   return before;
 }
 
-void add_error_rows(std::vector<Row>& rows, const Row& blanks, const SumOfSquares& residual, const SumOfSquares& lack,
+void add_error_rows(std::vector<base::Row>& rows, const base::Row& blanks, const SumOfSquares& residual, const SumOfSquares& lack,
                     const SumOfSquares& pure) {
   const auto row = [&blanks](const char* name) {
-    Row begin{name};
+    base::Row begin{name};
     begin.insert(begin.end(), blanks.begin(), blanks.end());
     return begin;
   };
@@ -59,18 +59,18 @@ std::string descent_text(const Anova& anova, const Descent& descent) {
   } catch (const base::UserError& e) {
     return fmt::format("steepest descent: {}\n", e.what());
   }
-  std::vector<Row> rows{{"step"}};
+  std::vector<base::Row> rows{{"step"}};
   for (const Factor& f : anova.factors) rows[0].push_back(f.name);
   for (std::size_t step = 0; step < path.size(); ++step) {
     rows.push_back({std::to_string(step)});
     for (const double value : natural(anova.factors, path[step])) rows.back().push_back(number(value));
   }
   return fmt::format("steepest descent, to smaller values (factors with p > {:g} stay at their centre)\n{}", descent.largest_p,
-                     aligned(rows));
+                     base::columns_of_numbers(rows));
 }
 
 std::string text_of(const Anova& anova, const TableAnalysis& analysis) {
-  std::vector<Row> rows{{"source", "effect", "std. error", "SS", "df", "mean square", "F", "p", "significant at"}};
+  std::vector<base::Row> rows{{"source", "effect", "std. error", "SS", "df", "mean square", "F", "p", "significant at"}};
   for (const Effect& e : anova.effects) {
     if (!e.pooled) rows.push_back(sum_row({e.name + aliases_of(e), number(e.value), blank_if_undefined(e.standard_error)}, e.sum, true));
   }
@@ -79,7 +79,7 @@ std::string text_of(const Anova& anova, const TableAnalysis& analysis) {
   rows.push_back(sum_row({"total", "", ""}, anova.total, false));
   std::string text = fmt::format("{}, mean of the factorial runs {}\n{}{}",
                                  anova.model == TwoLevelModel::main_effects ? "main effects" : "main effects and interactions",
-                                 number(anova.mean), aligned(rows), pooled_text(anova));
+                                 number(anova.mean), base::columns_of_numbers(rows), pooled_text(anova));
   for (const std::string& note : anova.notes) text += "note: " + note + "\n";
   return text + descent_text(anova, analysis.descent);
 }
@@ -116,18 +116,18 @@ std::string stationary_text(const Surface& s) {
 }
 
 std::string text_of(const Surface& s, const TableAnalysis&) {
-  std::vector<Row> terms{{"term (coded)", "coefficient", "std. error", "partial SS", "sequential SS", "F", "p"}};
+  std::vector<base::Row> terms{{"term (coded)", "coefficient", "std. error", "partial SS", "sequential SS", "F", "p"}};
   for (const Coefficient& c : s.coefficients) {
     const bool mean = c.factors.empty();
     terms.push_back({c.name, number(c.value), blank_if_undefined(c.standard_error), mean ? "" : number(c.partial),
                      mean ? "" : number(c.sequential), mean ? "" : blank_if_undefined(c.F), mean ? "" : p_text(c.p)});
   }
-  std::vector<Row> sums{{"source", "SS", "df", "mean square", "F", "p", "significant at"}, sum_row({"model"}, s.model, true)};
+  std::vector<base::Row> sums{{"source", "SS", "df", "mean square", "F", "p", "significant at"}, sum_row({"model"}, s.model, true)};
   add_error_rows(sums, {}, s.residual, s.lack_of_fit, s.pure_error);
   sums.push_back(sum_row({"total"}, s.total, false));
   std::string text = fmt::format("second-order surface, R² {:.3f}{}\n{}\n{}{}\n", s.r_squared,
                                  std::isnan(s.adjusted_r_squared) ? "" : fmt::format(", adjusted {:.3f}", s.adjusted_r_squared),
-                                 aligned(terms), aligned(sums), s.lack_of_fit_sentence);
+                                 base::columns_of_numbers(terms), base::columns_of_numbers(sums), s.lack_of_fit_sentence);
   for (const std::string& note : s.notes) text += "note: " + note + "\n";
   return text + stationary_text(s);
 }
@@ -138,7 +138,7 @@ const std::vector<Residual>& residuals_of(const Result& result) {
 
 /// Every response's runs that stand out, in one place.
 std::string outlier_text(const TableAnalysis& analysis) {
-  std::vector<Row> rows{{"run", "response", "observed", "fitted", "studentised residual", "p of the largest of all"}};
+  std::vector<base::Row> rows{{"run", "response", "observed", "fitted", "studentised residual", "p of the largest of all"}};
   for (std::size_t r = 0; r < analysis.results.size(); ++r) {
     const auto& residuals = residuals_of(analysis.results[r]);
     for (std::size_t run = 0; run < residuals.size(); ++run) {
@@ -154,7 +154,7 @@ std::string outlier_text(const TableAnalysis& analysis) {
       "runs that stand out (externally studentised residual beyond ±{:g})\n{}Look at these runs before believing the fits: a small p "
       "speaks for a faulty "
       "run, a large one may also mean that the model bends where it should not.\n",
-      kStandsOut, aligned(rows));
+      kStandsOut, base::columns_of_numbers(rows));
 }
 
 }  // namespace
@@ -162,9 +162,9 @@ std::string outlier_text(const TableAnalysis& analysis) {
 std::string analysis_text(const TableAnalysis& analysis) {
   const RecognisedTable& t = analysis.table;
   std::string text = fmt::format("{}: {}\n", analysis.file, t.description);
-  std::vector<Row> levels{{"factor", "centre", "step (coded 1)"}};
+  std::vector<base::Row> levels{{"factor", "centre", "step (coded 1)"}};
   for (const Factor& f : t.design.factors) levels.push_back({f.name, number(f.centre), number(f.step)});
-  text += aligned(levels);
+  text += base::columns_of_numbers(levels);
   if (!t.generators.empty()) text += fmt::format("defining relation: {}\n", fmt::join(t.generators, ", "));
   if (!t.design.aliases.empty()) text += fmt::format("aliases, up to two factors: {}\n", fmt::join(t.design.aliases, "; "));
   for (const std::string& note : t.notes) text += "note: " + note + "\n";

@@ -95,6 +95,8 @@ Json comparison_section(const fs::path& folder) {
   return section;
 }
 
+Json crosscheck_section(const fs::path& folder) { return from_file("crosscheck", "crosscheck.json", folder); }
+
 Json calibration_section(const fs::path& folder) {
   Json section = from_file("calibration", "calibration.json", folder);
   section["runs"] = fs::exists(folder / "runs.csv") ? table_json(folder / "runs.csv") : Json(nullptr);

@@ -18,6 +18,7 @@ Json json_object_of(const std::filesystem::path& file);
 Json run_section(const std::filesystem::path& folder, const host::Registry& registry, const SectionOptions& options);
 Json analysis_section(const std::filesystem::path& folder, const host::Registry& registry);
 Json comparison_section(const std::filesystem::path& folder);
+Json crosscheck_section(const std::filesystem::path& folder);
 /// Of a folder with the cache of a study or a campaign.
 Json campaign_section(const std::filesystem::path& folder);
 Json calibration_section(const std::filesystem::path& folder);

@@ -22,12 +22,13 @@ struct Kind {
   std::function<Json(const fs::path&, const host::Registry&, const SectionOptions&)> make;
 };
 
-const std::array<Kind, 8>& kinds() {
-  static const std::array<Kind, 8> all{{
+const std::array<Kind, 9>& kinds() {
+  static const std::array<Kind, 9> all{{
       {output::kResolvedCase, run_section},
       {"results.h5",
        [](const fs::path& folder, const host::Registry& registry, const SectionOptions&) { return analysis_section(folder, registry); }},
       {"comparison.json", [](const fs::path& folder, const host::Registry&, const SectionOptions&) { return comparison_section(folder); }},
+      {"crosscheck.json", [](const fs::path& folder, const host::Registry&, const SectionOptions&) { return crosscheck_section(folder); }},
       {"cache", [](const fs::path& folder, const host::Registry&, const SectionOptions&) { return campaign_section(folder); }},
       {"calibration.json",
        [](const fs::path& folder, const host::Registry&, const SectionOptions&) { return calibration_section(folder); }},

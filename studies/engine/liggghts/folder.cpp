@@ -21,12 +21,7 @@ namespace fs = std::filesystem;
 
 std::size_t write_mesh(const run::Assembly& a, const MeshFile& mesh, const fs::path& folder) {
   const Surface& all = a.geometries[mesh.body].surface;
-  std::vector<std::uint32_t> corners;
-  for (std::uint64_t t = 0; t < all.triangle_count; ++t) {
-    const std::uint32_t slot = all.triangle_materials == nullptr ? 0 : all.triangle_materials[t];
-    if (std::find(mesh.slots.begin(), mesh.slots.end(), slot) == mesh.slots.end()) continue;
-    corners.insert(corners.end(), all.triangles + 3 * t, all.triangles + 3 * t + 3);
-  }
+  const std::vector<std::uint32_t> corners = corners_of(a, mesh);
   const std::vector<std::uint32_t> slots(corners.size() / 3, 0);
   const std::vector<std::string> names{a.c.geometry[mesh.body].plugin.name};
   output::write_stl(folder / mesh.file, {all.vertex_count, all.vertices, slots.size(), corners.data(), slots.data()}, names);

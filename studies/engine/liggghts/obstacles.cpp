@@ -136,10 +136,14 @@ void require_playable(const run::Assembly& a, const host::Registry& registry) {
 std::vector<std::string> differences_of(const run::Assembly& a) {
   std::vector<std::string> all{
       "LIGGGHTS books no energy by kind: neither dissipation nor a balance",
-      "in LIGGGHTS a bead that sinks deep into a soft wall of small triangles touches several of them, each of which pushes; here it "
-      "touches "
-      "the wall once. Stiffer walls or a larger facet bring both together",
       "where damping pulls parting bodies, friction in LIGGGHTS is limited by the size of that force; here there is none"};
+  for (const MeshFile& mesh : meshes_of(a)) {
+    const double smooth = smooth_degrees(a.geometries[mesh.body].surface, corners_of(a, mesh), a.system->bodies[mesh.body].motion);
+    if (smooth < kSmoothDegrees)
+      all.push_back(fmt::format(
+          "faces of '{}' that turn by more than {:.2g}° are one by one in LIGGGHTS: a bead that sinks in there is pushed by several",
+          a.c.geometry[mesh.body].plugin.name, smooth));
+  }
   bool turns = false, rolling = false;
   for (const config::GeometryCase& geometry : a.c.geometry) {
     turns = turns || geometry.motion.rotation.has_value();

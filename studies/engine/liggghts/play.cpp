@@ -78,7 +78,8 @@ std::vector<std::string> command_for(const run::Assembly& a, const std::string& 
   }
   const Bounds z = bounds_of(a, 2);
   const RankGrid grid = rank_grid(ranks, z.high - z.low, a.c.largest_diameter());
-  words.insert(words.end(), {"liggghts", "-in", script});
+  // By lines: before it aborts it does not write out what it holds back, its error among it.
+  words.insert(words.end(), {"stdbuf", "-oL", "liggghts", "-in", script});
   for (const auto& [name, count] : {std::pair("px", grid.x), std::pair("py", grid.y), std::pair("pz", grid.z)})
     words.insert(words.end(), {"-var", name, std::to_string(count)});
   return words;

@@ -58,8 +58,10 @@ void add_walls(const run::Assembly& a, const Physics& physics, const std::vector
   std::string names;
   for (const MeshFile& mesh : meshes) {
     const dem::Motion& motion = a.system->bodies[mesh.body].motion;
-    lines.add("fix", fmt::format("{} all mesh/surface/stress file {} type {} stress on reference_point {}", mesh.id, mesh.file, mesh.type,
-                                 triple(motion.point)));
+    lines.add("fix",
+              fmt::format("{} all mesh/surface/stress file {} type {} curvature {:.6g} curvature_tolerant yes stress on reference_point {}",
+                          mesh.id, mesh.file, mesh.type, smooth_degrees(a.geometries[mesh.body].surface, corners_of(a, mesh), motion),
+                          triple(motion.point)));
     names += " " + mesh.id;
   }
   lines.add("fix",
@@ -163,25 +165,6 @@ std::int64_t frames_from(const run::Assembly& a) {
 std::int64_t zero_step(const run::Assembly& a) {
   const std::int64_t often = std::lcm(a.c.output.frames ? frame_every(a) : 1, a.c.output.tracks ? track_every(a) : 1);
   return (-a.first_step + often - 1) / often * often;
-}
-
-std::vector<MeshFile> meshes_of(const run::Assembly& a) {
-  std::vector<MeshFile> all;
-  for (std::size_t g = 0; g < a.geometries.size(); ++g) {
-    const run::GeometryUse& use = a.geometries[g];
-    const std::size_t first = all.size();
-    for (std::size_t slot = 0; slot < use.slots.size(); ++slot) {
-      const int type = a.index_of_material(a.c.geometry[g].material_of(use.slots[slot])) + 1;
-      const auto same =
-          std::find_if(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(), [&](const MeshFile& m) { return m.type == type; });
-      if (same == all.end())
-        all.push_back(
-            {fmt::format("wall{}", all.size()), fmt::format("meshes/wall{}.stl", all.size()), g, type, {static_cast<std::uint32_t>(slot)}});
-      else
-        same->slots.push_back(static_cast<std::uint32_t>(slot));
-    }
-  }
-  return all;
 }
 
 std::string data_of(const run::Assembly& a) {

@@ -7,21 +7,12 @@
 #include <vector>
 
 #include "studies/engine/liggghts/physics.hpp"
+#include "studies/engine/liggghts/walls.hpp"
 
 namespace millscope::engine::liggghts {
 
 /// Words of a line that tells how far it is: step, time, atoms, energy.
 inline constexpr std::size_t kThermoWords = 4;
-
-/// What a geometry has of one material, an STL file.
-struct MeshFile {
-  std::string id;  ///< of the fix
-  std::string file;
-  std::size_t body = 0;
-  int type = 0;  ///< of LIGGGHTS
-  std::vector<std::uint32_t> slots;
-};
-std::vector<MeshFile> meshes_of(const run::Assembly& a);
 
 /// What holds all beads on their way, m.
 struct Bounds {

@@ -9,11 +9,12 @@ import { calibration } from "./sections/calibration.js";
 import { campaign } from "./sections/campaign.js";
 import { challenge } from "./sections/challenge.js";
 import { comparison } from "./sections/comparison.js";
+import { crosscheck } from "./sections/crosscheck.js";
 import { diagnosis } from "./sections/diagnosis.js";
 import { run } from "./sections/run.js";
 import { validation } from "./sections/validation.js";
 
-const KINDS = { run, analysis, comparison, campaign, calibration, validation, diagnosis, challenge };
+const KINDS = { run, analysis, comparison, campaign, calibration, validation, diagnosis, challenge, crosscheck };
 
 const byId = (id) => document.getElementById(id);
 const shown = []; // what stands in the page: {text, element}

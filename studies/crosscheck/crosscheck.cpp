@@ -1,0 +1,109 @@
+#include "studies/crosscheck/crosscheck.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "kernel/base/parallel.hpp"
+#include "kernel/output/summary.hpp"
+#include "kernel/run/assembly.hpp"
+#include "studies/crosscheck/common_case.hpp"
+#include "studies/engine/engine.hpp"
+
+namespace millscope::crosscheck {
+namespace {
+
+namespace fs = std::filesystem;
+using base::UserError;
+
+constexpr int kFewestSeeds = 3, kMostSeeds = 1000;
+
+std::vector<std::string> together(std::vector<std::string> first, const std::vector<std::string>& then) {
+  first.insert(first.end(), then.begin(), then.end());
+  return first;
+}
+
+std::vector<std::string> of_engine(const Request& r) { return {"run.engine=" + r.engine, fmt::format("run.ranks={}", r.ranks)}; }
+
+/// One who plays: the name that people read, and what is laid on the common case.
+struct Player {
+  std::string name;
+  std::vector<std::string> settings;
+};
+
+std::vector<Player> players_of(const Request& r) {
+  std::vector<Player> all{{r.engine, of_engine(r)}, {"millscope", {}}};  // the slower one first
+  for (const std::string& setting : r.switches) all.push_back({"millscope, " + setting, {setting}});
+  return all;
+}
+
+/// All runs of one seed behind each other, as `players_of` orders them.
+std::vector<campaign::Simulation> simulations_of(const Request& r, const std::vector<Player>& players, const fs::path& case_file,
+                                                 std::uint64_t first_seed) {
+  std::vector<campaign::Simulation> all;
+  for (int s = 0; s < r.seeds; ++s) {
+    const std::uint64_t seed = first_seed + static_cast<std::uint64_t>(s);
+    for (const Player& player : players)
+      all.push_back({case_file, together({fmt::format("seed={}", seed)}, player.settings), fmt::format("{}, seed {}", player.name, seed)});
+  }
+  return all;
+}
+
+void require_all(const std::vector<campaign::Simulation>& simulations, const std::vector<campaign::Outcome>& outcomes) {
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    if (outcomes[i].state == campaign::State::failed)
+      throw UserError(
+          fmt::format("{}: {}; what is finished is kept, and --retry-failed tries again", simulations[i].label, outcomes[i].message));
+  }
+}
+
+void tell_engine(Found& found, const fs::path& run) {
+  const nlohmann::ordered_json summary = output::read_json(run / "summary.json");
+  const auto engine = summary.is_object() ? summary.value("engine", nlohmann::ordered_json()) : nlohmann::ordered_json();
+  if (!engine.is_object()) return;
+  found.engine_version = engine.value("version", "");
+  if (engine.contains("differs")) found.differs = engine["differs"].get<std::vector<std::string>>();
+}
+
+void check(const Request& r) {
+  if (r.engine.empty()) throw UserError("crosscheck: against which engine? Add --engine liggghts");
+  if (r.seeds < kFewestSeeds || r.seeds > kMostSeeds)
+    throw UserError(fmt::format("--seeds {}: give {} to {}; the error of a difference comes from them", r.seeds, kFewestSeeds, kMostSeeds));
+}
+
+}  // namespace
+
+Found crosscheck(const Request& request, const host::Registry& registry) {
+  check(request);
+  config::Case c = config::read_case(request.case_file, together(request.settings, of_engine(request)));
+  engine::require_playable(c, registry);
+  const run::Assembly a = run::assemble(std::move(c), registry);
+  fs::create_directories(request.output);
+  const fs::path case_file = write_common_case(a, registry, request.output);
+  const std::vector<Player> players = players_of(request);
+  for (const Player& player : players) run::assemble(config::read_case(case_file.string(), player.settings), registry);
+  const std::vector<campaign::Simulation> simulations = simulations_of(request, players, case_file, a.c.seed);
+  campaign::Options options = request.campaign;
+  if (options.cache.empty()) options.cache = request.output / "cache";
+  const std::vector<campaign::Outcome> outcomes = campaign::run(simulations, options);
+  require_all(simulations, outcomes);
+
+  std::vector<std::vector<std::vector<Quantity>>> told(players.size(),
+                                                       std::vector<std::vector<Quantity>>(static_cast<std::size_t>(request.seeds)));
+  base::for_each_item(outcomes.size(), base::worker_count(0, outcomes.size()), [&](std::size_t i, std::size_t) {
+    told[i % players.size()][i / players.size()] = measure(outcomes[i].folder, registry);
+  });
+  Found found;
+  found.name = a.c.name, found.engine = request.engine, found.seeds = static_cast<std::size_t>(request.seeds);
+  found.window_s = a.c.time.end - a.c.time.analyze_from, found.limits = request.limits;
+  tell_engine(found, outcomes[0].folder);
+  found.quantities = agreement(told[1], told[0], request.limits, found.left_out);
+  std::vector<std::string> known;  // what is left out of a switched run is left out above
+  for (std::size_t k = 2; k < players.size(); ++k)
+    found.switches.push_back(
+        {request.switches[k - 2], agreement(told[1], told[k], request.limits, known), agreement(told[k], told[0], request.limits, known)});
+  for (std::size_t i = 0; i < outcomes.size(); ++i) found.runs.push_back({simulations[i].label, outcomes[i].folder, outcomes[i].wall_s});
+  return found;
+}
+
+}  // namespace millscope::crosscheck
