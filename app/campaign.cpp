@@ -57,11 +57,11 @@ int finish(const std::vector<campaign::Simulation>& simulations, const std::vect
 }  // namespace
 
 int run_campaign(const Arguments& arguments) {
-  Options options(
-      "campaign TASKS.yaml -o OUT",
-      "Runs many simulations, one core each, and keeps their results: what has been computed once is not computed again, what was "
-      "interrupted goes on, what failed is noted in campaign.csv. Particles are spheres.",
-      "millscope campaign configs/campaign.yaml -o campaign-out");
+  Options options("campaign TASKS.yaml -o OUT",
+                  "Runs many simulations, one core each (another engine: run.ranks of them), and keeps their results: what has been "
+                  "computed once is not computed again, what was "
+                  "interrupted goes on, what failed is noted in campaign.csv. Particles are spheres.",
+                  "millscope campaign configs/campaign.yaml -o campaign-out");
   options.positional("TASKS.yaml", "the simulations: cases with settings");
   options.add()("output,o", po::value<std::string>()->value_name("OUT"), "directory for campaign.csv and the cache; may exist");
   add_runner_options(options, "where results are kept (default: OUT/cache)");

@@ -23,6 +23,7 @@ struct Job {
   double work = 1;                   ///< as Identity::work
   double end_s = 0;                  ///< s
   std::uint64_t memory = 0;          ///< predicted, bytes
+  int cores = 1;                     ///< as Identity::cores
   int attempts_before = 0;           ///< sessions before this call
   bool afresh = false;               ///< failed before and is to be tried again from its start
   double next_look = 0;              ///< s on the runner's clock: when to ask again for a lock that another head holds

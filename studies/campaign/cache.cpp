@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include "kernel/config/writer.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
+#include "studies/engine/engine.hpp"
 
 namespace millscope::campaign {
 namespace {
@@ -129,9 +131,13 @@ void Entry::write(const TaskRecord& record) const {
 }
 
 std::int64_t Entry::checkpoint_time() const {
-  struct stat s {};
-  if (::stat((run() / "checkpoint.h5").c_str(), &s) != 0) return 0;
-  return static_cast<std::int64_t>(s.st_mtim.tv_sec) * 1'000'000'000 + s.st_mtim.tv_nsec;
+  std::int64_t newest = 0;
+  for (const fs::path& file : {run() / "checkpoint.h5", engine::restart_file(run())}) {
+    struct stat s {};
+    if (::stat(file.c_str(), &s) == 0)
+      newest = std::max(newest, static_cast<std::int64_t>(s.st_mtim.tv_sec) * 1'000'000'000 + s.st_mtim.tv_nsec);
+  }
+  return newest;
 }
 
 Outcome outcome_of(const Entry& entry, const TaskRecord& record) {

@@ -45,7 +45,7 @@ class Entry {
   TaskRecord read() const;
   void write(const TaskRecord& record) const;
 
-  /// Modification time of the newest checkpoint, ns; 0: none.
+  /// Modification time of the newest checkpoint, or of the newest restart file of another engine, ns; 0: none.
   std::int64_t checkpoint_time() const;
 
  private:

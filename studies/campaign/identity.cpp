@@ -208,6 +208,7 @@ Identity Identifier::identify(const Simulation& simulation) const {
   id.work = std::max(1.0, beads) * (c.time.end + (donor.simulation ? simulation.develop_s - c.time.analyze_from : c.fill.settle));
   id.end_s = c.time.end;
   id.memory = predicted_memory(beads, id.files);
+  id.cores = c.run.engine.empty() ? 1 : c.run.ranks;
   return id;
 }
 

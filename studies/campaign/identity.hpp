@@ -31,6 +31,7 @@ struct Identity {
   double work = 1;               ///< beads × simulated seconds: what its cost grows with
   double end_s = 0;              ///< s, time.end_s
   std::uint64_t memory = 0;      ///< predicted, bytes
+  int cores = 1;                 ///< run.ranks where another engine plays it
 };
 
 /// Reads simulations; holds the plugins that explain their parameters.

@@ -1,4 +1,4 @@
-// The simulations of a campaign on this machine: one process of one thread each.
+// The simulations of a campaign on this machine: one process of one thread each, or as many as another engine has ranks.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -105,7 +105,7 @@ class Local {
 
   void fill() {
     std::deque<Job>& open = board_.open();
-    for (auto job = open.begin(); job != open.end() && static_cast<int>(running_.size()) < slots_;) {
+    for (auto job = open.begin(); job != open.end() && cores_in_use() < slots_;) {
       if (job->next_look > now() || !board_.donor_of(*job)) {
         ++job;
         continue;
@@ -139,9 +139,16 @@ class Local {
 
   std::string program() const { return board_.options().program.empty() ? output::own_program() : board_.options().program.string(); }
 
+  int cores_in_use() const {
+    int cores = 0;
+    for (const Running& r : running_) cores += r.job.cores;
+    return cores;
+  }
+
   /// One simulation always may run, however much it needs.
   bool fits(const Job& job) const {
     if (running_.empty()) return true;
+    if (cores_in_use() + job.cores > slots_) return false;
     std::uint64_t promised = 0, all = job.memory;
     for (const Running& r : running_) {
       const std::uint64_t held = r.child->resident();

@@ -69,7 +69,7 @@ void Board::add(const Simulation& simulation, Identity id, std::optional<std::si
   }
   places_.emplace(id.key, open_.size());
   unsettled_.insert(id.key);
-  open_.push_back({entry, {}, id.donor, id.develop_s, id.work, id.end_s, id.memory, record.attempts, failed, 0});
+  open_.push_back({entry, {}, id.donor, id.develop_s, id.work, id.end_s, id.memory, id.cores, record.attempts, failed, 0});
   if (index) open_.back().indices.push_back(*index);
   missing_.push_back(std::move(id));
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <ctime>
 #include <list>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -111,20 +112,22 @@ class Slurm {
   }
 
   void hand_over() {
-    std::vector<Handed*> fresh;
+    std::map<int, std::vector<Handed*>> fresh;  // by cores: those of an array have as many each
     for (Handed& h : handed_) {
-      if (h.batch.empty()) fresh.push_back(&h);
+      if (h.batch.empty()) fresh[h.job.cores].push_back(&h);
     }
-    for (std::size_t from = 0; from < fresh.size(); from += kLargestArray) {
-      const std::size_t count = std::min(kLargestArray, fresh.size() - from);
-      hand_over({fresh.begin() + static_cast<std::ptrdiff_t>(from), fresh.begin() + static_cast<std::ptrdiff_t>(from + count)});
+    for (const auto& [cores, all] : fresh) {
+      for (std::size_t from = 0; from < all.size(); from += kLargestArray) {
+        const std::size_t count = std::min(kLargestArray, all.size() - from);
+        hand_over({all.begin() + static_cast<std::ptrdiff_t>(from), all.begin() + static_cast<std::ptrdiff_t>(from + count)});
+      }
     }
   }
 
   void hand_over(const std::vector<Handed*>& tasks) {
     const Options& options = board_.options();
     const std::string name = fmt::format("{}-{}-{}-{}", std::time(nullptr), host_name(), ::getpid(), ++batches_);
-    Batch batch{options.cache / "slurm" / name, {}, command(), {}};
+    Batch batch{options.cache / "slurm" / name, {}, command(), tasks[0]->job.cores, {}};
     std::uint64_t memory = 0;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
       Handed& h = *tasks[i];

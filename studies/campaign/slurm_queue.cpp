@@ -49,7 +49,7 @@ std::string submit(const Batch& batch) {
   std::vector<std::string> words{"sbatch",
                                  "--parsable",
                                  "--job-name=" + batch.job_name(),
-                                 "--ntasks=1",
+                                 fmt::format("--ntasks={}", batch.cores),
                                  "--cpus-per-task=1",
                                  "--no-requeue",
                                  "--chdir=" + batch.folder.string(),

@@ -14,6 +14,7 @@ struct Batch {
   std::filesystem::path folder;                ///< CACHE/slurm/<name>
   std::vector<std::filesystem::path> entries;  ///< CACHE/<key>
   std::vector<std::string> command;            ///< what a task runs; the entry's folder is appended
+  int cores = 1;                               ///< processes of each task, which its own mpirun starts in its allocation
   std::vector<std::string> sbatch_options;
 
   std::string job_name() const { return "millscope-" + folder.filename().string(); }

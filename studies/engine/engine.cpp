@@ -47,6 +47,10 @@ run::Outcome run_case(const std::string& case_file, const host::Registry& regist
 
 bool is_run(const std::filesystem::path& out) { return std::filesystem::exists(out / output::kEngineFolder / output::kResolvedCase); }
 
+std::filesystem::path restart_file(const std::filesystem::path& out) {
+  return is_run(out) ? liggghts::newest_restart(out / output::kEngineFolder) : std::filesystem::path();
+}
+
 run::Outcome resume_run(const host::Registry& registry, const run::RunOptions& options) {
   return is_run(options.output) ? liggghts::resume_case(registry, options) : run::resume_run(registry, options);
 }

@@ -1,6 +1,7 @@
 // A case played by the engine that it names. Each engine has a folder of its own here.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ run::Outcome run_case(const std::string& case_file, const host::Registry& regist
 
 /// Whether a folder is one in which another engine runs or ran.
 bool is_run(const std::filesystem::path& out);
+
+/// What a run of another engine goes on from at best; "": there is nothing.
+std::filesystem::path restart_file(const std::filesystem::path& out);
 
 /// Continues the run of `options.output`, whoever makes it. Throws base::UserError.
 run::Outcome resume_run(const host::Registry& registry, const run::RunOptions& options);

@@ -52,6 +52,29 @@ class Campaign(CampaignTest):
         self.assertIn("0 computed now, 3 failed", self.succeed("campaign", "tasks.yaml", "-o", "out").stdout)
         self.assertIn("2 computed now, 3 failed", self.succeed("campaign", "tasks.yaml", "-o", "out", "--retry-failed").stdout)
 
+    def at_once(self, slots):
+        """How many engines ran at once, at most: each is a few lines of shell, of two ranks."""
+        log, out = self.folder / f"log{slots}", f"out{slots}"
+        (self.folder / "bin").mkdir(exist_ok=True)
+        for name in ("liggghts", "mpirun"):
+            text = ("#!/bin/sh\ncase $1 in -h|--version) echo 'LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0)'; exit;; esac\n"
+                    f"echo begin >> {log}; sleep 0.5; echo end >> {log}; exit 1\n")
+            (self.folder / "bin" / name).write_text(text, encoding="utf-8")
+            (self.folder / "bin" / name).chmod(0o755)
+        self.tasks({name: [f"seed={seed}", "run.engine=liggghts", "run.ranks=2"] for seed, name in enumerate("abcd", 1)})
+        path = f"{self.folder / 'bin'}:{os.environ['PATH']}"
+        self.assert_one_line(self.millscope("campaign", "tasks.yaml", "-o", out, "-q", "--slots", slots, env=campaigns.environment(PATH=path)), "all simulations failed")
+        now = most = 0
+        for line in log.read_text(encoding="utf-8").split():
+            now += 1 if line == "begin" else -1
+            most = max(most, now)
+        return most
+
+    def test_an_engine_of_two_ranks_takes_two_slots(self):
+        self.assertEqual(self.at_once(4), 2)
+        self.assertEqual(self.at_once(3), 1)
+        self.assertEqual(self.at_once(1), 1)  # one is always let go
+
     def test_all_failed_is_an_error(self):
         self.tasks({"unstable": ["time.step_fraction=0.9"]})
         result = self.millscope("campaign", "tasks.yaml", "-o", "out", "-q")

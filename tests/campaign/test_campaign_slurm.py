@@ -1,6 +1,7 @@
 """Campaigns on a real Slurm of one node: tasks and heads are killed, the controller is restarted, and nothing is lost."""
 import os
 import pathlib
+import shutil
 import signal
 import unittest
 
@@ -75,6 +76,19 @@ class Slurm(CampaignTest):
         again = self.on_slurm()
         self.assertIn("0 computed now", again.stdout)
         self.assertEqual(len(self.batches()), 1)
+
+    @unittest.skipUnless(shutil.which("liggghts") and shutil.which("mpirun") and len(os.sched_getaffinity(0)) > 1, "no liggghts, mpirun or second core here")
+    def test_ranks_of_another_engine_are_tasks_of_slurm(self):
+        engine = ["run.engine=liggghts", "run.ranks=2"]
+        self.tasks({"theirs": engine, "ours": []}, 0.06)
+        result = self.on_slurm()
+        self.assertEqual(result.returncode, 0, result.stderr)
+        table = self.table()
+        self.assertEqual({row["state"] for row in table.values()}, {"done"}, table)
+        self.assertEqual(self.run_summary(table["theirs"]["folder"])["engine"]["ranks"], 2)
+        log = (pathlib.Path(table["theirs"]["folder"]) / "engine/log.liggghts").read_text(encoding="utf-8")
+        self.assertIn("2 by 1 by 1 MPI processor grid", log)
+        self.assertEqual(len(self.batches()), 2)  # those of an array have as many cores each
 
     def test_kill_a_task_and_the_head(self):
         head = self.on_slurm("-q", start=True)

@@ -208,6 +208,11 @@ LogState state_of_log(const std::string& text) {
   return state;
 }
 
+fs::path newest_restart(const fs::path& folder) {
+  const std::vector<std::int64_t> steps = steps_of_files(folder / "post", "restart");
+  return steps.empty() ? fs::path() : restart_file(folder / "post", steps.back());
+}
+
 std::string installed_version() {
   static const std::string version = [] {
     const std::string said = require_program({"liggghts", "-h", "-log", "none"}, "liggghts", "LIGGGHTS-PUBLIC 3.8");

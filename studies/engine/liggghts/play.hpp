@@ -1,6 +1,8 @@
 // LIGGGHTS at work: a case from its start to the files of a run.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "kernel/host/registry.hpp"
@@ -16,6 +18,9 @@ run::Outcome play_case(const std::string& case_file, const host::Registry& regis
 /// Lets a run that was stopped or killed go on from its newest sound restart file, from its start where it has none. Bits differ from those
 /// of a run in one go; no time is missing. Throws base::UserError, also for a run that is finished.
 run::Outcome resume_case(const host::Registry& registry, const run::RunOptions& options);
+
+/// The newest restart file in the folder of a case that LIGGGHTS plays, which may be half written; "": none.
+std::filesystem::path newest_restart(const std::filesystem::path& folder);
 
 /// The first line that LIGGGHTS prints. Throws base::UserError where it is not installed, or is not version 3.8.
 std::string installed_version();
