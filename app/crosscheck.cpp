@@ -57,11 +57,9 @@ int crosscheck_engines(const Arguments& arguments) {
   crosscheck::Request request;
   request.case_file = options.text("CASE.yaml");
   request.settings = options.list("set");
-  const std::string own = config::read_case(request.case_file, request.settings).run.engine;
-  if (options.has("engine"))
-    request.engine = options.text("engine");
-  else if (!own.empty())
-    request.engine = own;
+  const config::RunCase own = config::read_case(request.case_file, request.settings).run;
+  if (!own.engine.empty()) request.engine = own.engine, request.ranks = own.ranks;
+  if (options.has("engine")) request.engine = options.text("engine");
   if (options.has("ranks")) request.ranks = options.integer("ranks");
   if (options.has("seeds")) request.seeds = options.integer("seeds");
   request.switches = options.list("switch");

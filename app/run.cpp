@@ -75,7 +75,7 @@ int check_for_engine(const config::Case& c, const host::Registry& registry) {
   const run::Assembly a = run::assemble(c, registry);
   engine::liggghts::require_playable(a, registry);
   fmt::print("LIGGGHTS can play this case: {} beads, {} steps of {:.4g} s\n", a.bead_count, a.end_step - a.first_step, a.time_step);
-  for (const std::string& difference : engine::liggghts::differences_of(a)) fmt::print("differs: {}\n", difference);
+  for (const std::string& difference : engine::liggghts::differences_of(a, registry)) fmt::print("differs: {}\n", difference);
   return kDone;
 }
 

@@ -39,6 +39,7 @@ class Hertz {
         shear_root_(std::sqrt(shear_stiffness_)),
         shear_softness_(1.0 / shear_stiffness_),
         tension_(values.flag("allow_tension")),
+        pulled_friction_(values.flag("friction_in_tension") ? 1.0 : 0.0),
         cap_(cap_choice(values)) {}
 
   double reach(double) const { return 0.0; }
@@ -63,7 +64,7 @@ class Hertz {
     const R elastic = R(2.0 / 3.0) * stiffness * overlap;
     R total = elastic - R(normal_root_) * root * normal_speed;
     if (!tension_) total = maximum(total, zero);
-    const R limit = c.friction * maximum(total + c.added_cap, zero);
+    const R pressing = total + c.added_cap, limit = c.friction * maximum(pressing, R(-pulled_friction_) * pressing);
 
     const Spring<R> spring{R(shear_stiffness_) * contact, R(shear_root_) * root, limit,
                            maximum(contact, R(1e-100)),   R(shear_softness_),    R(-0.5) * c.radius * normal_speed};
@@ -84,6 +85,7 @@ class Hertz {
   double young_, normal_stiffness_, shear_stiffness_;  // E*, S_n/a, S_t/a
   double restitution_, friction_, damping_, normal_root_, shear_root_, shear_softness_;
   bool tension_;
+  double pulled_friction_;  // part of mu |F_n| that limits friction where F_n pulls
   Cap cap_;
 };
 

@@ -16,6 +16,7 @@ constexpr Parameter kParameters[] = {
     choice_parameter("tangential", "no_slip|mindlin_deresiewicz", "no_slip",
                      "Tangential spring. Partial slip is the law hertz_mindlin_deresiewicz; here that word is refused."),
     allow_tension_parameter,
+    friction_in_tension_parameter,
     cap_parameter,
 };
 

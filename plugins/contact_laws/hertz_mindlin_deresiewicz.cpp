@@ -5,7 +5,8 @@
 namespace millscope::laws {
 namespace {
 
-constexpr Parameter kParameters[] = {restitution_parameter, static_friction_parameter, allow_tension_parameter, cap_parameter};
+constexpr Parameter kParameters[] = {restitution_parameter, static_friction_parameter, allow_tension_parameter,
+                                     friction_in_tension_parameter, cap_parameter};
 
 constexpr Descriptor kDescriptor = describe<Hertz<PartialSlip>>({
     .name = "hertz_mindlin_deresiewicz",

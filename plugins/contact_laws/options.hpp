@@ -14,6 +14,9 @@ inline constexpr Parameter static_friction_parameter =
 inline constexpr Parameter allow_tension_parameter = flag_parameter(
     "allow_tension", true,
     "Whether damping may pull parting bodies: true gives the nominal restitution (and what other codes do); false clips F_n at 0.");
+inline constexpr Parameter friction_in_tension_parameter =
+    flag_parameter("friction_in_tension", false,
+                   "What friction does while damping pulls parting bodies: false: nothing; true: as much as mu |F_n|, as in LIGGGHTS.");
 inline constexpr Parameter cap_parameter =
     choice_parameter("cap", "spring|sum", "spring",
                      "What mu F_n limits: the spring alone (damping acts while it does not slide), or spring and damping together.");

@@ -166,7 +166,7 @@ class Local {
     for (const Running& r : running_) {
       underway.push_back({r.job.work, r.child->elapsed(), std::min(1.0, simulated_time(r.job.entry.run()) / r.job.end_s)});
     }
-    for (const Job& job : board_.open()) waiting += job.work;
+    for (const Job& job : board_.open()) waiting += job.work * job.cores;
     board_.progress().update(underway, waiting, slots_);
   }
 

@@ -139,7 +139,8 @@ class Slurm {
       batch.entries.push_back(h.job.entry.folder());
       output::write_json(h.note(), {{"batch", name}, {"index", h.index}, {"tries", h.tries}, {"checkpoint", h.checkpoint}});
     }
-    batch.sbatch_options = {fmt::format("--array=0-{}{}", tasks.size() - 1, options.slots > 0 ? fmt::format("%{}", options.slots) : "")};
+    batch.sbatch_options = {fmt::format("--array=0-{}{}", tasks.size() - 1,
+                                        options.slots > 0 ? fmt::format("%{}", std::max(1, options.slots / batch.cores)) : "")};
     if (memory > kUsualMemory) batch.sbatch_options.push_back(fmt::format("--mem={}M", memory / 1'000'000 + 1));
     batch.sbatch_options.insert(batch.sbatch_options.end(), options.slurm_options.begin(), options.slurm_options.end());
     const std::string refusal = submit(batch);

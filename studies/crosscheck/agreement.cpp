@@ -41,7 +41,7 @@ void judge(Compared& c, const Limits& limits, std::size_t seeds) {
   if (!c.limit) return;
   const double size = std::fabs(c.difference.value), error = c.difference.error, reach = reach_of(seeds) * error;
   c.judgement = size + reach <= *c.limit ? Judgement::agree : size - reach > *c.limit ? Judgement::differ : Judgement::unresolved;
-  c.seeds_needed = static_cast<double>(seeds) * std::pow(3 * error / *c.limit, 2);
+  c.seeds_needed = static_cast<double>(seeds) * std::pow(reach / (size - *c.limit), 2);
 }
 
 /// Holm's step-down: the k-th smallest p times how many are left, never falling.
@@ -73,7 +73,7 @@ const char* text(Judgement judgement) {
 }
 
 std::vector<Compared> agreement(const std::vector<std::vector<Quantity>>& ours, const std::vector<std::vector<Quantity>>& theirs,
-                                const Limits& limits, std::vector<std::string>& left_out) {
+                                const Limits& limits) {
   const std::size_t seeds = ours.size();
   assert(seeds >= 2 && theirs.size() == seeds);
   std::vector<Compared> all;
@@ -82,10 +82,6 @@ std::vector<Compared> agreement(const std::vector<std::vector<Quantity>>& ours, 
     for (std::size_t s = 0; s < seeds; ++s) {
       assert(ours[s][q].name == ours[0][q].name && theirs[s][q].name == ours[0][q].name);
       a.push_back(ours[s][q].value), b.push_back(theirs[s][q].value), d.push_back(b.back() - a.back());
-    }
-    if (!std::all_of(d.begin(), d.end(), [](double v) { return std::isfinite(v); })) {
-      left_out.push_back(ours[0][q].name);
-      continue;
     }
     Compared c{ours[0][q].name, ours[0][q].unit, mean_of(a), mean_of(b), mean_of(d)};
     c.p = p_of(c.difference, seeds);

@@ -7,7 +7,7 @@
 //
 // Within a limit L:   agree        |d| + k e ≤ L      k: 2, or the 97.5 % point of t where that is more (few seeds)
 //                     differ       |d| − k e > L
-//                     unresolved   else; e = L/3 would need n (3 e/L)² seeds
+//                     unresolved   else; n (k e/(|d| − L))² seeds would resolve it, the rest being the same
 #pragma once
 
 #include <optional>
@@ -40,9 +40,8 @@ struct Compared {
   double seeds_needed = 0;  ///< with a limit
 };
 
-/// The quantities of one run for each seed, ours[s] and theirs[s] from the same start; at least 2. A quantity that some run does not tell
-/// is left out and named in `left_out`.
+/// The quantities of one run for each seed, ours[s] and theirs[s] from the same start: at least 2, and the same quantities in each.
 std::vector<Compared> agreement(const std::vector<std::vector<Quantity>>& ours, const std::vector<std::vector<Quantity>>& theirs,
-                                const Limits& limits, std::vector<std::string>& left_out);
+                                const Limits& limits);
 
 }  // namespace millscope::crosscheck

@@ -65,6 +65,14 @@ void tell_engine(Found& found, const fs::path& run) {
   if (engine.contains("differs")) found.differs = engine["differs"].get<std::vector<std::string>>();
 }
 
+constexpr double kShortestWindow = 0.1;  // s: nine rows of 10 ms give the mean power of the other engine
+
+void require_window(const config::Case& c) {
+  if (c.time.end - c.time.analyze_from >= kShortestWindow) return;
+  throw UserError(c.time.where, fmt::format("what counts is {:.4g} s, from time.analyze_from_s to time.end_s; give {} s and more",
+                                            c.time.end - c.time.analyze_from, kShortestWindow));
+}
+
 void check(const Request& r) {
   if (r.engine.empty()) throw UserError("crosscheck: against which engine? Add --engine liggghts");
   if (r.seeds < kFewestSeeds || r.seeds > kMostSeeds)
@@ -76,10 +84,12 @@ void check(const Request& r) {
 Found crosscheck(const Request& request, const host::Registry& registry) {
   check(request);
   config::Case c = config::read_case(request.case_file, together(request.settings, of_engine(request)));
+  require_window(c);
   engine::require_playable(c, registry);
   const run::Assembly a = run::assemble(std::move(c), registry);
-  fs::create_directories(request.output);
-  const fs::path case_file = write_common_case(a, registry, request.output);
+  for (const char* earlier : {"crosscheck.json", "quantities.csv"}) fs::remove(request.output / earlier);
+  fs::create_directories(request.output / "common");
+  const fs::path case_file = write_common_case(a, registry, request.output / "common");
   const std::vector<Player> players = players_of(request);
   for (const Player& player : players) run::assemble(config::read_case(case_file.string(), player.settings), registry);
   const std::vector<campaign::Simulation> simulations = simulations_of(request, players, case_file, a.c.seed);
@@ -88,20 +98,24 @@ Found crosscheck(const Request& request, const host::Registry& registry) {
   const std::vector<campaign::Outcome> outcomes = campaign::run(simulations, options);
   require_all(simulations, outcomes);
 
-  std::vector<std::vector<std::vector<Quantity>>> told(players.size(),
-                                                       std::vector<std::vector<Quantity>>(static_cast<std::size_t>(request.seeds)));
-  base::for_each_item(outcomes.size(), base::worker_count(0, outcomes.size()), [&](std::size_t i, std::size_t) {
-    told[i % players.size()][i / players.size()] = measure(outcomes[i].folder, registry);
-  });
+  std::vector<std::vector<Quantity>> told(outcomes.size());
+  base::for_each_item(outcomes.size(), base::worker_count(0, outcomes.size()),
+                      [&](std::size_t i, std::size_t) { told[i] = measure(outcomes[i].folder, registry); });
   Found found;
   found.name = a.c.name, found.engine = request.engine, found.seeds = static_cast<std::size_t>(request.seeds);
-  found.window_s = a.c.time.end - a.c.time.analyze_from, found.limits = request.limits;
+  found.window_s = a.c.time.end - a.c.time.analyze_from;
+  found.left_out = keep_common(told);
   tell_engine(found, outcomes[0].folder);
-  found.quantities = agreement(told[1], told[0], request.limits, found.left_out);
-  std::vector<std::string> known;  // what is left out of a switched run is left out above
+  const auto of_player = [&](std::size_t player) {
+    std::vector<std::vector<Quantity>> runs;
+    for (std::size_t i = player; i < told.size(); i += players.size()) runs.push_back(told[i]);
+    return runs;
+  };
+  const auto theirs = of_player(0), ours = of_player(1);
+  found.quantities = agreement(ours, theirs, request.limits);
   for (std::size_t k = 2; k < players.size(); ++k)
     found.switches.push_back(
-        {request.switches[k - 2], agreement(told[1], told[k], request.limits, known), agreement(told[k], told[0], request.limits, known)});
+        {request.switches[k - 2], agreement(ours, of_player(k), request.limits), agreement(of_player(k), theirs, request.limits)});
   for (std::size_t i = 0; i < outcomes.size(); ++i) found.runs.push_back({simulations[i].label, outcomes[i].folder, outcomes[i].wall_s});
   return found;
 }

@@ -1,6 +1,6 @@
 // Does another engine say the same of a mill? One case, played by both from the same beads at the same places, for several seeds.
 //
-//   OUT/case.yaml            the case that both play (common_case.hpp), and its walls as STL
+//   OUT/common/              the case that both play (common_case.hpp), and its walls as STL
 //   OUT/cache/               the runs, each once: the same command goes on where it was stopped
 //   OUT/crosscheck.json      what was found; quantities.csv: the same as a table
 #pragma once
@@ -47,7 +47,6 @@ struct Found {
   std::string name, engine, engine_version;
   std::size_t seeds = 0;
   double window_s = 0;  ///< of each run that counts
-  Limits limits;
   std::vector<Compared> quantities;
   std::vector<Switched> switches;
   std::vector<std::string> differs;   ///< what the engine defines in its own way, a sentence each

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -135,7 +136,13 @@ std::vector<Quantity> of_charge(const fs::path& run, const host::Registry& regis
   request.overrides = {"resampling.draws=20"};  // the errors are those between seeds
   request.threads = 1;
   std::vector<Quantity> all;
-  for (const analysis::ResultArray& result : analysis::analyze(request, registry).arrays) {
+  analysis::ResultSet results;
+  try {
+    results = analysis::analyze(request, registry);
+  } catch (const base::UserError&) {
+    return all;  // a mill that does not turn, or no round one, has none of them
+  }
+  for (const analysis::ResultArray& result : results.arrays) {
     std::string name = result.name;
     std::replace(name.begin(), name.end(), '_', ' ');
     const bool told = std::find(std::begin(kCentre), std::end(kCentre), name) != std::end(kCentre);  // by the summary
@@ -168,6 +175,23 @@ double contacts_per_bead(std::span<const float> place, const output::FrameBeads&
     }
   }
   return 2 * static_cast<double>(touching) / static_cast<double>(n);
+}
+
+std::vector<std::string> keep_common(std::vector<std::vector<Quantity>>& runs) {
+  std::map<std::string, std::size_t> told;
+  std::vector<std::string> names, left_out;
+  for (const std::vector<Quantity>& run : runs) {
+    for (const Quantity& q : run) {
+      const auto [at, is_new] = told.emplace(q.name, 0);
+      if (is_new) names.push_back(q.name);
+      at->second += std::isfinite(q.value) ? 1 : 0;
+    }
+  }
+  for (const std::string& name : names) {
+    if (told[name] < runs.size()) left_out.push_back(name);
+  }
+  for (std::vector<Quantity>& run : runs) std::erase_if(run, [&](const Quantity& q) { return told[q.name] < runs.size(); });
+  return left_out;
 }
 
 std::vector<Quantity> measure(const fs::path& run, const host::Registry& registry) {

@@ -23,11 +23,13 @@ inline constexpr const char* kPowerByCentre = "power by centre of mass";
 inline constexpr const char* kCentre[] = {"centre of mass x", "centre of mass y"};
 inline constexpr const char* kTranslation = "translational energy";
 
-/// From summary.json, frames.h5 and the analyzer charge_features of a run's folder; the same quantities for each run of a case. Throws
-/// base::UserError.
+/// From summary.json, frames.h5 and, where it applies, the analyzer charge_features of a run's folder. Throws base::UserError.
 std::vector<Quantity> measure(const std::filesystem::path& run, const host::Registry& registry);
 
 /// Beads that a bead touches, on average. `place`: [N, 3], m; `period`: along z, m; 0: none.
 double contacts_per_bead(std::span<const float> place, const output::FrameBeads& beads, double period);
+
+/// Leaves of each run the quantities that all of them tell, in the order of the first; returns the names of the others.
+std::vector<std::string> keep_common(std::vector<std::vector<Quantity>>& runs);
 
 }  // namespace millscope::crosscheck

@@ -14,7 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kLevel = 0.05;  // of all quantities together
+constexpr double kManyTimes = 10;  // so many more seeds are none that anyone would try
+constexpr double kLevel = 0.05;    // of all quantities together
 
 /// A unit in which lengths and small powers read well, and its factor on SI.
 struct Shown {
@@ -44,19 +45,21 @@ std::string p_text(double p) { return p < 0.001 ? "<0.001" : fmt::format("{:.3f}
 
 std::string limit_text(const Compared& c) { return c.limit ? fmt::format("{:.2g}", shown(c).factor * *c.limit) : ""; }
 
-std::string judged(const Compared& c) {
+std::string judged(const Compared& c, std::size_t seeds) {
   if (c.judgement != Judgement::unresolved) return text(c.judgement);
+  if (c.seeds_needed > kManyTimes * static_cast<double>(seeds)) return "not resolved: lies at the limit";
   return fmt::format("not resolved: {:.0f} seeds would do", std::ceil(c.seeds_needed));
 }
 
 /// What has a limit, and what differs; the rest is in the files.
-std::string table_of(const std::vector<Compared>& all, const std::string& ours, const std::string& theirs) {
-  std::vector<base::Row> rows{{"quantity", ours, theirs, "difference", "unit", "p, all together", "limit", ""}};
+std::string table_of(const Found& found) {
+  const std::vector<Compared>& all = found.quantities;
+  std::vector<base::Row> rows{{"quantity", "millscope", found.engine, "difference", "unit", "p, all together", "limit", ""}};
   for (const Compared& c : all) {
     if (!c.limit && c.adjusted_p > kLevel) continue;
     const double factor = shown(c).factor;
     rows.push_back({c.name, with_error(c.ours, factor), with_error(c.theirs, factor), with_error(c.difference, factor), shown(c).unit,
-                    p_text(c.adjusted_p), limit_text(c), judged(c)});
+                    p_text(c.adjusted_p), limit_text(c), judged(c, found.seeds)});
   }
   std::string said = base::columns_to_left(rows);
   if (const std::size_t rest = all.size() + 1 - rows.size(); rest > 0)
@@ -109,12 +112,12 @@ Json json_of(const std::vector<Compared>& all) {
 }
 
 std::string csv_of(const std::vector<Compared>& all) {
-  std::string text_of = "quantity,unit,ours,ours_error,theirs,theirs_error,difference,difference_error,p,adjusted_p,limit,judgement\n";
+  std::string csv = "quantity,unit,ours,ours_error,theirs,theirs_error,difference,difference_error,p,adjusted_p,limit,judgement\n";
   for (const Compared& c : all)
-    text_of += fmt::format("{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{},{}\n", output::csv_cell(c.name), c.unit,
-                           c.ours.value, c.ours.error, c.theirs.value, c.theirs.error, c.difference.value, c.difference.error, c.p,
-                           c.adjusted_p, c.limit ? fmt::format("{:.9g}", *c.limit) : "", text(c.judgement));
-  return text_of;
+    csv += fmt::format("{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{},{}\n", output::csv_cell(c.name), c.unit,
+                       c.ours.value, c.ours.error, c.theirs.value, c.theirs.error, c.difference.value, c.difference.error, c.p,
+                       c.adjusted_p, c.limit ? fmt::format("{:.9g}", *c.limit) : "", text(c.judgement));
+  return csv;
 }
 
 }  // namespace
@@ -126,9 +129,9 @@ std::string sentence(const Found& found) {
   const auto add = [&](const std::vector<std::string>& names, const char* what) {
     if (!names.empty()) said += fmt::format("{}{}: {}", said.empty() ? "" : "; ", what, fmt::join(names, ", "));
   };
-  add(differ, "differ");
-  add(open, "not resolved");
-  add(agree, "agree within the limits");
+  add(differ, "Differ");
+  add(open, said.empty() ? "Not resolved" : "not resolved");
+  add(agree, said.empty() ? "Agree within the limits" : "agree within the limits");
   const auto beyond =
       std::count_if(found.quantities.begin(), found.quantities.end(), [](const Compared& c) { return c.adjusted_p <= kLevel; });
   return fmt::format("{}. Of {} quantities {} at 5 % together", said, found.quantities.size(),
@@ -138,7 +141,7 @@ std::string sentence(const Found& found) {
 }
 
 std::string table(const Found& found) {
-  std::string said = table_of(found.quantities, "millscope", found.engine);
+  std::string said = table_of(found);
   if (!found.switches.empty()) said += "\n" + table_of_switches(found);
   return said;
 }

@@ -95,7 +95,11 @@ Json comparison_section(const fs::path& folder) {
   return section;
 }
 
-Json crosscheck_section(const fs::path& folder) { return from_file("crosscheck", "crosscheck.json", folder); }
+Json crosscheck_section(const fs::path& folder) {
+  Json section = from_file("crosscheck", "crosscheck.json", folder);
+  section["title"] = section["crosscheck"].value("name", section["title"]);
+  return section;
+}
 
 Json calibration_section(const fs::path& folder) {
   Json section = from_file("calibration", "calibration.json", folder);

@@ -49,4 +49,14 @@ TEST_CASE("the count is that of every pair with every other") {
   CHECK(touching > 100);
 }
 
+TEST_CASE("what one run does not tell is left out of all by name") {
+  std::vector<std::vector<Quantity>> runs{{{"a", "m", 1}, {"b", "m", 2}, {"c", "m", 3}},
+                                          {{"a", "m", std::nan("")}, {"b", "m", 5}, {"d", "m", 6}}};
+  CHECK(keep_common(runs) == std::vector<std::string>{"a", "c", "d"});
+  for (const auto& run : runs) {
+    REQUIRE(run.size() == 1);
+    CHECK(run[0].name == "b");
+  }
+}
+
 }  // namespace millscope::crosscheck

@@ -11,7 +11,7 @@ SHORT = ["--set", "fill.settle_s=0.05", "--set", "time={end_s: 0.3, analyze_from
 
 class Refusals(CliTest):
     def refused(self, *parts, words=()):
-        self.assert_one_line(self.millscope("crosscheck", "case.yaml", "-o", "out", "-q", *words), *parts)
+        self.assert_one_line(self.millscope("crosscheck", "case.yaml", "-o", "out", "-q", *SHORT, *words), *parts)
         self.assertFalse((self.folder / "out").exists())
 
     def test_what_cannot_be_compared_is_refused_before_anything_is_written(self):
@@ -19,6 +19,7 @@ class Refusals(CliTest):
         self.refused("'edem' is no engine", words=["--engine", "edem"])
         self.refused("a limit is above 0", words=["--limit", "power=0 %"])
         self.refused("'weight'", words=["--limit", "weight=1 %"])
+        self.refused("give 0.1 s and more", words=["--set", "time={end_s: 0.3, analyze_from_s: 0.25}"])
 
     @unittest.skipUnless(shutil.which("liggghts"), "liggghts is not installed")
     def test_what_the_engine_cannot_play(self):
@@ -48,10 +49,11 @@ class Both(CliTest):
             self.assertLess(abs(quantities[name]["difference"]["value"]), 0.05 * 0.01, name)
         self.assertLess(abs(quantities["power by centre of mass"]["difference"]["value"]), 0.05 * abs(quantities["power by centre of mass"]["ours"]["value"]))
         self.assertGreater(quantities["contacts per bead"]["ours"]["value"], 0.5)
-        rows = list(csv.DictReader((self.folder / "out/quantities.csv").open()))
+        with open(self.folder / "out/quantities.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
         self.assertEqual([row["quantity"] for row in rows], [row["name"] for row in found["quantities"]])
         # Both had the same walls: triangles.
-        self.assertIn("kind: \"mesh\"", (self.folder / "out/case.yaml").read_text().replace("kind: mesh", "kind: \"mesh\""))
+        self.assertIn("kind: \"mesh\"", (self.folder / "out/common/case.yaml").read_text().replace("kind: mesh", "kind: \"mesh\""))
         again = self.millscope(*words)
         self.assertEqual(again.returncode, 0, again.stderr)
         self.assertIn("simulations found in the cache: 9 of 9", again.stdout)

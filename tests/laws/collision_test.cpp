@@ -45,6 +45,23 @@ TEST_CASE("without tension the bodies keep more of their speed, and never pull")
   }
 }
 
+TEST_CASE("while damping pulls parting beads friction does nothing, or as much as mu |F_n| where it is told to") {
+  for (const char* name : {"hertz_mindlin", "hertz_mindlin_deresiewicz"}) {
+    for (const bool told : {false, true}) {
+      const Law law = make_law(name, std::string("restitution=0.5 static_friction=0.3 friction_in_tension=") + (told ? "1" : "0"));
+      Contacts c(1);
+      c.own_friction = true;
+      c.radius[0] = 2.5e-3, c.mass[0] = bead_pair().largest_mass, c.overlap[0] = 1e-7;
+      Contacts::put(c.normal, 0, {1, 0, 0});
+      Contacts::put(c.velocity, 0, {0.5, 1, 0});  // parting fast, sliding faster
+      for (int k = 0; k < 1000; ++k) c.step(law, 1e-6);
+      INFO(name << ", " << told);
+      REQUIRE(c.normal_force[0] < 0);
+      CHECK(-c.force[1][0] == Approx(told ? -0.3 * c.normal_force[0] : 0.0).margin(1e-12));
+    }
+  }
+}
+
 TEST_CASE("a JKR collision without adhesion is a Hertz collision") {
   CHECK(rebound(make_law("jkr", hertz(0.7) + " surface_energy=0"), 1.0, 2e-7) == Approx(0.7).epsilon(0.005));
 }

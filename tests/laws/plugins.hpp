@@ -38,6 +38,7 @@ inline const Case kCases[] = {
     {"hertz_mindlin", "restitution=0.8 static_friction=0.34", false},
     {"hertz_mindlin", "restitution=0.8 static_friction=0.34 cap=sum", true},
     {"hertz_mindlin", "restitution=0.5 static_friction=0.34 allow_tension=0", false},
+    {"hertz_mindlin", "restitution=0.5 static_friction=0.34 friction_in_tension=1", false},
     {"hertz_mindlin", "restitution=0.5 static_friction=0.34 allow_tension=0 cap=sum", true},
     {"hertz_mindlin_deresiewicz", "restitution=0.8 static_friction=0.34", false},
     {"hertz_mindlin_deresiewicz", "restitution=0.8 static_friction=0.34 cap=sum", true},

@@ -28,7 +28,7 @@ std::size_t write_mesh(const run::Assembly& a, const MeshFile& mesh, const fs::p
   return slots.size();
 }
 
-std::string readme(const run::Assembly& a, const Exported& exported) {
+std::string readme(const run::Assembly& a, const host::Registry& registry, const Exported& exported) {
   std::string text = fmt::format(R"(# {}: for LIGGGHTS
 
     liggghts -in in.liggghts                      # LIGGGHTS-PUBLIC 3.8; Debian: apt install liggghts
@@ -51,7 +51,7 @@ Up to step {} the charge falls with the walls at rest; the case's own time begin
 
 )",
                                  a.c.name, base::version(), exported.beads, exported.steps, a.time_step, exported.triangles, zero_step(a));
-  for (const std::string& difference : differences_of(a)) text += "- " + difference + ".\n";
+  for (const std::string& difference : differences_of(a, registry)) text += "- " + difference + ".\n";
   return text;
 }
 
@@ -69,7 +69,7 @@ Exported write_case(const run::Assembly& a, const host::Registry& registry, cons
   output::write_file(aside.path() / "beads.data", data_of(a));
   output::write_file(aside.path() / "in.liggghts", script_of(a, physics_of(a, registry), meshes));
   output::write_file(aside.path() / output::kResolvedCase, config::resolved_yaml(a.c, registry.descriptors()));
-  output::write_file(aside.path() / "README.md", readme(a, exported));
+  output::write_file(aside.path() / "README.md", readme(a, registry, exported));
   aside.publish();
   return exported;
 }

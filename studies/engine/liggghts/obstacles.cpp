@@ -133,12 +133,19 @@ void require_playable(const run::Assembly& a, const host::Registry& registry) {
   if (!obstacles.empty()) throw base::UserError(fmt::format("{}", fmt::join(obstacles, "\n")));
 }
 
-std::vector<std::string> differences_of(const run::Assembly& a) {
+std::vector<std::string> differences_of(const run::Assembly& a, const host::Registry& registry) {
   std::vector<std::string> all{
       "LIGGGHTS books no energy by kind: neither dissipation nor a balance",
-      "where damping pulls parting bodies, friction in LIGGGHTS is limited by the size of that force; here there is none"};
+      "LIGGGHTS damps with the speed of half a step before, here with that of the step",
+      "at a wall LIGGGHTS takes the wall's speed at its surface, here at half the depth to which the bead sinks in"};
+  const config::PluginInstance& law = a.c.contact.law;
+  if (instance_number(law, Kind::contact_law, "allow_tension", registry) != 0 &&
+      instance_number(law, Kind::contact_law, "friction_in_tension", registry) == 0)
+    all.push_back(
+        "where damping pulls parting bodies, friction in LIGGGHTS is limited by the size of that force; here there is none "
+        "(contact.law.friction_in_tension: true is LIGGGHTS' way)");
   for (const MeshFile& mesh : meshes_of(a)) {
-    const double smooth = smooth_degrees(a.geometries[mesh.body].surface, corners_of(a, mesh), a.system->bodies[mesh.body].motion);
+    const double smooth = smooth_degrees(a, mesh);
     if (smooth < kSmoothDegrees)
       all.push_back(fmt::format(
           "faces of '{}' that turn by more than {:.2g}° are one by one in LIGGGHTS: a bead that sinks in there is pushed by several",

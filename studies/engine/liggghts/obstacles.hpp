@@ -16,6 +16,6 @@ std::vector<std::string> obstacles_of(const run::Assembly& a, const host::Regist
 void require_playable(const run::Assembly& a, const host::Registry& registry);
 
 /// What both engines play, but define differently: a sentence for each.
-std::vector<std::string> differences_of(const run::Assembly& a);
+std::vector<std::string> differences_of(const run::Assembly& a, const host::Registry& registry);
 
 }  // namespace millscope::engine::liggghts

@@ -154,7 +154,6 @@ nlohmann::ordered_json summary_of(const std::vector<Span>& series, const run::As
     j["kinetic_energy_J"] = ke.value;
     j["kinetic_energy_J_sem"] = ke.standard_error;
   }
-  j["engine"] = {{"name", "liggghts"}, {"differs", differences_of(a)}};
   return j;
 }
 
@@ -178,6 +177,7 @@ Imported read_results(const fs::path& folder, const fs::path& out, const host::R
   const std::vector<Span> series = series_of(folder / "post", a, meshes_of(a));
   const double mass = charge_mass(beads_in(folder / "beads.data"));
   nlohmann::ordered_json j = summary_of(series, a, mass);
+  j["engine"] = {{"name", "liggghts"}, {"differs", differences_of(a, registry)}};
   const Imported imported{a.bead_count, write_frames(folder / "post", a, out / "frames.h5"), series.back().end};
   if (a.c.output.tracks) write_tracks(folder, a, out / "tracks.h5");
   write_series(series, a, mass, out / "series.csv");

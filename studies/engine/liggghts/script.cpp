@@ -60,8 +60,7 @@ void add_walls(const run::Assembly& a, const Physics& physics, const std::vector
     const dem::Motion& motion = a.system->bodies[mesh.body].motion;
     lines.add("fix",
               fmt::format("{} all mesh/surface/stress file {} type {} curvature {:.6g} curvature_tolerant yes stress on reference_point {}",
-                          mesh.id, mesh.file, mesh.type, smooth_degrees(a.geometries[mesh.body].surface, corners_of(a, mesh), motion),
-                          triple(motion.point)));
+                          mesh.id, mesh.file, mesh.type, smooth_degrees(a, mesh), triple(motion.point)));
     names += " " + mesh.id;
   }
   lines.add("fix",
