@@ -45,6 +45,16 @@ class Made(CliTest):
         self.refused("ended with code 0 after step 0 of [0-9]+")
         self.assertFalse((self.folder / "out/summary.json").exists())
 
+    def test_a_full_disk(self):
+        small = self.folder / "small"
+        small.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", str(small)], capture_output=True).returncode != 0:
+            self.skipTest("no small disk can be made here")
+        self.addCleanup(subprocess.run, ["umount", "-l", str(small)])
+        self.engine("cat /dev/zero > post/frame_0.txt 2> /dev/null; exit 0\n")
+        done = self.millscope("run", "case.yaml", "-o", "small/out", "-q", "--engine", "liggghts", *SHORT)
+        self.assert_one_line(done, "small/out/engine: the disk is full; make room", code=4)
+
     def test_none_is_installed(self):
         self.addCleanup(os.environ.__setitem__, "PATH", os.environ["PATH"])
         os.environ["PATH"] = str(self.folder)

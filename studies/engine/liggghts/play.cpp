@@ -92,11 +92,14 @@ void require_success(const Ended& ended, const fs::path& folder, std::int64_t st
     if (!error.empty()) throw UserError(fmt::format("{}: {}; {}", (folder / name).string(), error, remedy_for(error)));
   }
   if (ended.signal == 0 && ended.exit_code == 0 && steps_done >= steps) return;
+  // It may go on to its end without a word of what it could not write.
+  if (output::free_bytes(folder) < 1'000'000)
+    throw UserError(fmt::format("{}: the disk is full; make room, then 'millscope resume {}' lets it go on", folder.string(),
+                                folder.parent_path().string()),
+                    output::kExitDisk);
   if (ended.signal == 0 && ended.exit_code == 0 && steps_done > 0)
     throw UserError(fmt::format("LIGGGHTS was stopped from outside after step {} of {}; 'millscope resume {}' lets it go on", steps_done,
                                 steps, folder.parent_path().string()));
-  if (output::free_bytes(folder) < 1'000'000)
-    throw UserError(fmt::format("{}: the disk is full; make room", folder.string()), output::kExitDisk);
   const std::string how =
       ended.signal != 0 ? fmt::format("was ended by signal {}", ended.signal) : fmt::format("ended with code {}", ended.exit_code);
   throw UserError(fmt::format(
