@@ -14,7 +14,7 @@ void add_runner_options(Options& options, const char* cache) {
   options.add()("cache", po::value<std::string>()->value_name("DIR"), cache);
   options.add()("runner", po::value<std::string>()->value_name("local|slurm"), "where simulations run (default: local, or the study's)");
   options.add()("slots", po::value<int>()->value_name("N"),
-                "cores at once (default: all of this machine; slurm: no limit); no influence on results");
+                "cores at once (default: all of this machine; slurm: no limit, or of each array); no influence on results");
   options.add()("slurm", po::value<std::vector<std::string>>()->value_name("OPTIONS"),
                 "more options for sbatch, e.g. --slurm=\"--partition=long --time=2:00:00\"");
   options.add()("retry-failed", "run again what failed");

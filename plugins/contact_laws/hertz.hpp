@@ -39,7 +39,7 @@ class Hertz {
         shear_root_(std::sqrt(shear_stiffness_)),
         shear_softness_(1.0 / shear_stiffness_),
         tension_(values.flag("allow_tension")),
-        pulled_friction_(values.flag("friction_in_tension") ? 1.0 : 0.0),
+        pulled_friction_(values.flag("friction_in_tension")),
         cap_(cap_choice(values)) {}
 
   double reach(double) const { return 0.0; }
@@ -64,7 +64,9 @@ class Hertz {
     const R elastic = R(2.0 / 3.0) * stiffness * overlap;
     R total = elastic - R(normal_root_) * root * normal_speed;
     if (!tension_) total = maximum(total, zero);
-    const R pressing = total + c.added_cap, limit = c.friction * maximum(pressing, R(-pulled_friction_) * pressing);
+    R pressing = total;
+    if (pulled_friction_) pressing = maximum(total, -total);
+    const R limit = c.friction * maximum(pressing + c.added_cap, zero);
 
     const Spring<R> spring{R(shear_stiffness_) * contact, R(shear_root_) * root, limit,
                            maximum(contact, R(1e-100)),   R(shear_softness_),    R(-0.5) * c.radius * normal_speed};
@@ -84,8 +86,7 @@ class Hertz {
  private:
   double young_, normal_stiffness_, shear_stiffness_;  // E*, S_n/a, S_t/a
   double restitution_, friction_, damping_, normal_root_, shear_root_, shear_softness_;
-  bool tension_;
-  double pulled_friction_;  // part of mu |F_n| that limits friction where F_n pulls
+  bool tension_, pulled_friction_;
   Cap cap_;
 };
 

@@ -43,15 +43,14 @@ void put_mesh_in_place(const run::GeometryUse& use, config::PluginInstance& plug
 
 /// Throws where the beads would be put elsewhere than into the geometries of the case.
 void require_same_inside(const run::Assembly& given, const run::Assembly& common) {
-  if (given.c.fill.region) return;
   for (std::size_t g = 0; g < given.geometries.size(); ++g) {
     const Interior &a = given.geometries[g].interior, &b = common.geometries[g].interior;
-    if (a.is_cylinder == b.is_cylinder && (a.is_cylinder == 0 || std::fabs(a.radius - b.radius) < 0.01 * a.radius)) continue;
+    if (a.is_cylinder == 0 || (b.is_cylinder != 0 && std::fabs(a.radius - b.radius) < 0.01 * a.radius)) continue;
     const config::PluginInstance& plugin = given.c.geometry[g].plugin;
-    throw base::UserError(plugin.where,
-                          fmt::format("geometry.{}: its triangles do not tell its axis and its radius, as few lifters do not; "
-                                      "give fill.region, or three lifters and more",
-                                      plugin.name));
+    throw base::UserError(
+        plugin.where,
+        fmt::format("geometry.{}: its triangles do not tell its axis and its radius, as few lifters do not; give three lifters and more",
+                    plugin.name));
   }
 }
 

@@ -51,9 +51,11 @@ class Made(CliTest):
         if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", str(small)], capture_output=True).returncode != 0:
             self.skipTest("no small disk can be made here")
         self.addCleanup(subprocess.run, ["umount", "-l", str(small)])
-        self.engine("cat /dev/zero > post/frame_0.txt 2> /dev/null; exit 0\n")
+        told = "printf '    Step  Time  Atoms  KinEng\\n     200 0.01 324 0.1\\n' > log.liggghts; "
+        self.engine(told + "echo whole > post/restart.100; echo cut > post/restart.200; cat /dev/zero > post/frame_0.txt 2> /dev/null; : > post/restart.300; exit 0\n")
         done = self.millscope("run", "case.yaml", "-o", "small/out", "-q", "--engine", "liggghts", *SHORT)
         self.assert_one_line(done, "small/out/engine: the disk is full; make room", code=4)
+        self.assertEqual(sorted(file.name for file in (small / "out/engine/post").glob("restart.*")), ["restart.100"])
 
     def test_none_is_installed(self):
         self.addCleanup(os.environ.__setitem__, "PATH", os.environ["PATH"])

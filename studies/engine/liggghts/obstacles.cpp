@@ -137,8 +137,9 @@ std::vector<std::string> differences_of(const run::Assembly& a, const host::Regi
   std::vector<std::string> all{
       "LIGGGHTS books no energy by kind: neither dissipation nor a balance",
       "LIGGGHTS damps with the speed of half a step before, here with that of the step",
-      "where a bead has sunk into a face, a sharp edge of the wall within the bead's radius pushes it too in LIGGGHTS; here the face alone "
-      "does",
+      "where a bead has sunk into a face, a sharp edge of that face within the bead's radius may push it too in LIGGGHTS (from one side of "
+      "the "
+      "edge); here the face alone does",
       "at a wall LIGGGHTS takes the wall's speed at its surface, here at half the depth to which the bead sinks in"};
   const config::PluginInstance& law = a.c.contact.law;
   if (instance_number(law, Kind::contact_law, "allow_tension", registry) != 0 &&

@@ -85,18 +85,32 @@ std::vector<std::string> command_for(const run::Assembly& a, const std::string& 
   return words;
 }
 
+fs::path restart_file(const fs::path& post, std::int64_t step) { return post / fmt::format("restart.{}", step); }
+
+/// LIGGGHTS goes on where it cannot write: the newest restart file may be cut, and those behind it empty.
+void drop_restarts_of_full_disk(const fs::path& post) {
+  const std::vector<std::int64_t> steps = steps_of_files(post, "restart");
+  for (std::size_t k = steps.size(); k-- > 0;) {
+    const bool empty = fs::file_size(restart_file(post, steps[k])) == 0;
+    fs::remove(restart_file(post, steps[k]));
+    if (!empty) break;
+  }
+}
+
 /// Throws with what LIGGGHTS said where it did not come to its end.
 void require_success(const Ended& ended, const fs::path& folder, std::int64_t steps_done, std::int64_t steps) {
+  const bool whole = ended.signal == 0 && ended.exit_code == 0 && steps_done >= steps;
+  if (!whole && output::free_bytes(folder) < 1'000'000) {  // of which it may say nothing
+    drop_restarts_of_full_disk(folder / "post");
+    throw UserError(fmt::format("{}: the disk is full; make room, then 'millscope resume {}' lets it go on", folder.string(),
+                                folder.parent_path().string()),
+                    output::kExitDisk);
+  }
   for (const char* name : {kLog, kMessages}) {
     const std::string error = state_of_log(base::text_if_readable(folder / name).value_or("")).error;
     if (!error.empty()) throw UserError(fmt::format("{}: {}; {}", (folder / name).string(), error, remedy_for(error)));
   }
-  if (ended.signal == 0 && ended.exit_code == 0 && steps_done >= steps) return;
-  // It may go on to its end without a word of what it could not write.
-  if (output::free_bytes(folder) < 1'000'000)
-    throw UserError(fmt::format("{}: the disk is full; make room, then 'millscope resume {}' lets it go on", folder.string(),
-                                folder.parent_path().string()),
-                    output::kExitDisk);
+  if (whole) return;
   if (ended.signal == 0 && ended.exit_code == 0 && steps_done > 0)
     throw UserError(fmt::format("LIGGGHTS was stopped from outside after step {} of {}; 'millscope resume {}' lets it go on", steps_done,
                                 steps, folder.parent_path().string()));
@@ -114,12 +128,17 @@ struct Begin {
   std::optional<std::int64_t> restart = {};  ///< the file that it reads
 };
 
-fs::path restart_file(const fs::path& post, std::int64_t step) { return post / fmt::format("restart.{}", step); }
-
-/// All but the last two: the last may be half written.
+/// All but the last two with something in them: the last may be half written, and on a full disk those behind it are empty.
 void drop_old_restarts(const fs::path& post) {
   const std::vector<std::int64_t> steps = steps_of_files(post, "restart");
-  for (std::size_t k = 0; k + 2 < steps.size(); ++k) fs::remove(restart_file(post, steps[k]));
+  int kept = 0;
+  for (std::size_t k = steps.size(); k-- > 0;) {
+    const fs::path file = restart_file(post, steps[k]);
+    if (kept == 2)
+      fs::remove(file);
+    else
+      kept += fs::file_size(file) > 0 ? 1 : 0;
+  }
 }
 
 /// The newest that is whole: LIGGGHTS has told of that step or a later one, which it does when the file is written; has written another

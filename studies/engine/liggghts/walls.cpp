@@ -38,7 +38,10 @@ class Wall {
     for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
       for (std::size_t k = 0; k < 3; ++k) add(corners[t + k], corners[t + (k + 1) % 3], corners[t + (k + 2) % 3]);
     }
-    for (const std::uint32_t corner : corners) low_ = std::min(low_, along(place(corner))), high_ = std::max(high_, along(place(corner)));
+    for (std::uint64_t c = 0; c < 3 * surface.triangle_count; ++c) {  // of all materials
+      const double at = along(place(surface.triangles[c]));
+      low_ = std::min(low_, at), high_ = std::max(high_, at);
+    }
   }
 
   /// The smallest turn and angle that must not be joined, degrees; kSmoothDegrees at most.
@@ -86,7 +89,7 @@ class Wall {
 
   void take_edge(const Edge& edge, const std::vector<Vector3>& away) {
     const bool is_free = away.size() == 1;
-    if (is_free ? at_an_end(edge) : is_hollow(edge, away)) return;
+    if (at_an_end(edge) || (!is_free && is_hollow(edge, away))) return;
     const double turn = is_free ? 180 : 180 - degrees(base::dot(away[0], away[1]));
     take(turn);
     if (turn <= kJoinedAnyway) return;

@@ -33,7 +33,7 @@ inline constexpr double kJoinedAnyway = 0.256235;
 /// make a smaller angle. So it stays below (0.9 of)
 ///   - the turn of every edge that is not hollow: both its faces rise towards the mill's axis, and it lies in the outer part of the mill;
 ///   - the angles between all edges of each corner in the open: of three sharp ridges or free edges, or of two that are not in one line.
-/// Free edges at either end of the wall, where a slice goes on and a drum is closed by another wall, are not in the open. Where the inside
+/// Edges at either end of the wall, where a slice goes on and a drum is closed, are not in the open. Where the inside
 /// is no cylinder nothing is known, and LIGGGHTS' own rule holds.
 double smooth_degrees(const Surface& surface, const Interior& inside, const std::vector<std::uint32_t>& corners);
 
