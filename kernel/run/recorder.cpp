@@ -245,6 +245,18 @@ void Recorder::write_tracks(const dem::System& system) {
   tracks_->append(system.time(), position);
 }
 
+std::vector<double> vertices_at(const Surface& s, const dem::Motion& motion, double time) {
+  const dem::Pose pose = dem::pose_at(motion, time);
+  std::vector<double> moved(3 * s.vertex_count);
+  for (std::uint64_t v = 0; v < s.vertex_count; ++v) {
+    for (std::size_t r = 0; r < 3; ++r) {
+      moved[3 * v + r] = pose.offset[r];
+      for (std::size_t c = 0; c < 3; ++c) moved[3 * v + r] += pose.rotation[r][c] * s.vertices[3 * v + c];
+    }
+  }
+  return moved;
+}
+
 void Recorder::write_pictures(const dem::System& system) {
   const std::int64_t number = system.step() / picture_steps_;
   const std::string name = fmt::format("beads_{:06d}.vtp", number);
@@ -253,14 +265,7 @@ void Recorder::write_pictures(const dem::System& system) {
   for (std::size_t b = 0; b < a_.geometries.size(); ++b) {
     const Surface& s = a_.geometries[b].surface;
     if (s.triangle_count == 0) continue;
-    const dem::Pose pose = dem::pose_at(system.bodies[b].motion, system.time());
-    std::vector<double> moved(3 * s.vertex_count);
-    for (std::uint64_t v = 0; v < s.vertex_count; ++v) {
-      for (std::size_t r = 0; r < 3; ++r) {
-        moved[3 * v + r] = pose.offset[r];
-        for (std::size_t c = 0; c < 3; ++c) moved[3 * v + r] += pose.rotation[r][c] * s.vertices[3 * v + c];
-      }
-    }
+    const std::vector<double> moved = vertices_at(s, system.bodies[b].motion, system.time());
     const std::vector<double> impact = system.impact_work(b), shear = system.shear_work(b);
     const std::string mesh = fmt::format("{}_{:06d}.vtp", system.bodies[b].name, number);
     output::write_mesh_vtp(directory_ / "vtk" / mesh,

@@ -18,6 +18,9 @@ namespace millscope::run {
 /// given.
 std::vector<std::uint32_t> tracked_beads(const Assembly& a);
 
+/// Where the vertices of a body's surface are at a time, s: [V,3] m.
+std::vector<double> vertices_at(const Surface& s, const dem::Motion& motion, double time);
+
 class Recorder {
  public:
   /// Throws UserError for outputs that this case cannot give, before anything is written.

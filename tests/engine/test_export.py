@@ -69,7 +69,7 @@ class Import(CliTest):
     def setUp(self):
         super().setUp()
         self.succeed("export", "case.yaml", "-o", "theirs", "--engine", "liggghts", "--set", "mill.direction=clockwise", "--set",
-                     "time={end_s: 0.4, analyze_from_s: 0.2}", "--set", "output.frames={every_s: 0.1, from_s: 0.2}", "--set", "output.tracks={beads: [3, 7], every_s: 0.1}")
+                     "time={end_s: 0.4, analyze_from_s: 0.2}", "--set", "output.frames={every_s: 0.1, from_s: 0.2}", "--set", "output.tracks={beads: [3, 7], every_s: 0.1}", "--set", "output.vtk=~")
         script = (self.folder / "theirs/in.liggghts").read_text(encoding="utf-8")
         self.step = float(words_of(script, "timestep")[0][0])
         self.beads = [line.split() for line in (self.folder / "theirs/beads.data").read_text().split("Atoms")[1].split("Velocities")[0].splitlines() if line]

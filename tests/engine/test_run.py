@@ -103,7 +103,12 @@ class Real(CliTest):
         done = self.succeed("run", "case.yaml", "-o", "out", "--engine", "liggghts", *SHORT)
         self.assertIn("done; see out/summary.json", done.stdout)
         self.assertFalse((self.folder / "log.liggghts").exists())  # what is asked of the engine leaves nothing behind
-        self.assertEqual(sorted(n for n in tree_of(self.folder / "out") if "/" not in n), ["case.resolved.yaml", "engine", "frames.h5", "series.csv", "summary.json", "tracks.h5"])
+        self.assertEqual(sorted(n for n in tree_of(self.folder / "out") if "/" not in n), ["case.resolved.yaml", "engine", "frames.h5", "series.csv", "summary.json", "tracks.h5", "vtk"])
+        self.run_case("ours", *SHORT)
+        for name in ("beads.pvd", "mesh.pvd"):  # the same instants, the walls at the same places
+            self.assertEqual((self.folder / "out/vtk" / name).read_text(), (self.folder / "ours/vtk" / name).read_text())
+        points = [re.search(rb'<AppendedData encoding="raw">\s*_(.*)', (self.folder / run / "vtk/liner_000007.vtp").read_bytes(), re.S).group(1) for run in ("out", "ours")]
+        self.assertIn(points[0][1608:2000], points[1])
         summary = self.summary("out")
         self.assertIn("3.8", summary["engine"]["version"])
         self.assertEqual(summary["engine"]["ranks"], 1)

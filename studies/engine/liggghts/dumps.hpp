@@ -39,6 +39,9 @@ std::vector<DataBead> beads_in(const std::filesystem::path& file);
 /// frames.h5 of post/frame_*.txt. Returns how many. Throws base::UserError for one that is missing, cut short or of other beads.
 std::size_t write_frames(const std::filesystem::path& post, const run::Assembly& a, const std::filesystem::path& to);
 
+/// vtk/ of post/picture_*.txt and the walls; `to`: the folder, which is made. Throws likewise.
+void write_pictures(const std::filesystem::path& post, const run::Assembly& a, const std::filesystem::path& to);
+
 /// tracks.h5 of post/tracks.txt. `folder`: that of the exported case. Throws likewise.
 void write_tracks(const std::filesystem::path& folder, const run::Assembly& a, const std::filesystem::path& to);
 

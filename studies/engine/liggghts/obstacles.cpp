@@ -177,7 +177,6 @@ std::vector<std::string> differences_of(const run::Assembly& a, const host::Regi
     all.push_back("the torque that LIGGGHTS gives for a wall lacks the rolling moments; the power by centre of mass has them");
   }
   if (a.c.output.series) all.push_back("series.csv has means over about 10 ms, whatever output.series says");
-  if (a.c.output.vtk) all.push_back("of the output, VTK is not written; frames and tracks are");
   return all;
 }
 

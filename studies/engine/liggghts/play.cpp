@@ -194,8 +194,8 @@ run::Outcome finish(const run::Assembly& a, const host::Registry& registry, cons
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   read_results(folder, out, registry, {options.command_line, a.c.run.ranks, wall});
   for (const fs::directory_entry& entry : fs::directory_iterator(folder / "post")) {
-    // frames.h5 and tracks.h5 have them; there is nothing to go on to.
-    for (const char* name : {"frame_", "tracks.", "restart."}) {
+    // frames.h5, vtk/ and tracks.h5 have them; there is nothing to go on to.
+    for (const char* name : {"frame_", "picture_", "tracks.", "restart."}) {
       if (entry.path().filename().string().starts_with(name)) fs::remove(entry);
     }
   }

@@ -178,8 +178,11 @@ Imported read_results(const fs::path& folder, const fs::path& out, const host::R
   const double mass = charge_mass(beads_in(folder / "beads.data"));
   nlohmann::ordered_json j = summary_of(series, a, mass);
   j["engine"] = {{"name", "liggghts"}, {"differs", differences_of(a, registry)}};
+  for (const char* half_read : {"frames.h5", "tracks.h5", "series.csv", "vtk"})
+    fs::remove_all(out / half_read);  // by an attempt that failed
   const Imported imported{a.bead_count, write_frames(folder / "post", a, out / "frames.h5"), series.back().end};
   if (a.c.output.tracks) write_tracks(folder, a, out / "tracks.h5");
+  if (a.c.output.vtk) write_pictures(folder / "post", a, out / "vtk");
   write_series(series, a, mass, out / "series.csv");
   output::write_file(out / output::kResolvedCase, config::resolved_yaml(a.c, registry.descriptors()));
   j["engine"]["version"] = version_in(folder / "log.liggghts");

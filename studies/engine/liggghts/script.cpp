@@ -121,6 +121,13 @@ void add_run(const run::Assembly& a, std::int64_t step, std::optional<std::int64
   if (end > restart.value_or(zero_step(a) + a.first_step)) lines.add("run", fmt::format("{} upto", end));
 }
 
+/// All beads, every so many steps: files post/NAME_STEP.txt.
+void add_dump(const char* name, std::int64_t every, Lines& lines) {
+  lines.add("dump",
+            fmt::format("{0}s all custom {1} post/{0}_*.txt id type x y z vx vy vz omegax omegay omegaz radius density", name, every));
+  lines.add("dump_modify", fmt::format("{}s sort id format \"%d %d %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g\"", name));
+}
+
 /// The case's own time, with frames from where the case wants them.
 void add_runs(const run::Assembly& a, std::optional<std::int64_t> restart, Lines& lines) {
   if (a.c.output.tracks) {
@@ -134,11 +141,10 @@ void add_runs(const run::Assembly& a, std::optional<std::int64_t> restart, Lines
     lines.add("dump", fmt::format("tracks tracked custom {} post/{} id x y z", track_every(a), name_of_session("tracks", restart)));
     lines.add("dump_modify", "tracks sort id format \"%d %.9g %.9g %.9g\"");
   }
+  if (a.c.output.vtk) add_dump("picture", picture_every(a), lines);
   if (a.c.output.frames) {
     add_run(a, frames_from(a), restart, lines);
-    lines.add("dump", fmt::format("frames all custom {} post/frame_*.txt id type x y z vx vy vz omegax omegay omegaz radius density",
-                                  frame_every(a)));
-    lines.add("dump_modify", "frames sort id format \"%d %d %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g\"");
+    add_dump("frame", frame_every(a), lines);
   }
   add_run(a, a.end_step, restart, lines);
 }
@@ -155,6 +161,8 @@ std::int64_t series_every(const run::Assembly& a) { return std::max<std::int64_t
 
 std::int64_t frame_every(const run::Assembly& a) { return steps_of(a, a.c.output.frames->every); }
 
+std::int64_t picture_every(const run::Assembly& a) { return steps_of(a, a.c.output.vtk->every); }
+
 std::int64_t track_every(const run::Assembly& a) { return steps_of(a, a.c.output.tracks->every); }
 
 std::int64_t frames_from(const run::Assembly& a) {
@@ -162,7 +170,8 @@ std::int64_t frames_from(const run::Assembly& a) {
 }
 
 std::int64_t zero_step(const run::Assembly& a) {
-  const std::int64_t often = std::lcm(a.c.output.frames ? frame_every(a) : 1, a.c.output.tracks ? track_every(a) : 1);
+  const std::int64_t two = std::lcm(a.c.output.frames ? frame_every(a) : 1, a.c.output.tracks ? track_every(a) : 1);
+  const std::int64_t often = std::lcm(two, a.c.output.vtk ? picture_every(a) : 1);
   return (-a.first_step + often - 1) / often * often;
 }
 

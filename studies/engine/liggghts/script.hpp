@@ -30,7 +30,10 @@ std::int64_t frames_from(const run::Assembly& a);
 /// Where the case has tracks: steps between their instants.
 std::int64_t track_every(const run::Assembly& a);
 
-/// The step at which the case's own time begins: frames and tracks come at whole multiples of their steps.
+/// Where the case has pictures for ParaView: steps between them, from t = 0 on.
+std::int64_t picture_every(const run::Assembly& a);
+
+/// The step at which the case's own time begins: frames, pictures and tracks come at whole multiples of their steps.
 std::int64_t zero_step(const run::Assembly& a);
 
 /// The beads where they are now, at rest or not: file of `read_data`.
