@@ -50,6 +50,7 @@ Drift drift_of(const Json& summary) {
   Drift most;
   double farthest = -1;
   for (const std::string by : {"torque", "com"}) {
+    if (!summary["power_W"].contains(by)) continue;  // another engine does not tell it of a mill that repeats along x or y
     const double errors = summary["steadiness"][by + "_power_drift_standard_errors"].get<double>();
     const double part = std::abs(summary["steadiness"][by + "_power_drift_W"].get<double>() / summary["power_W"][by].get<double>());
     const double far = std::min(errors / 3, part / 0.01);
@@ -64,8 +65,13 @@ Drift drift_of(const Json& summary) {
 }  // namespace
 
 Soundness soundness_of(const Assembly& a, const Json& summary) {
-  Soundness s;
+  Soundness s = soundness_of_means(a, summary);
   s.deepest = deepest_contacts(a);
+  return s;
+}
+
+Soundness soundness_of_means(const Assembly& a, const Json& summary) {
+  Soundness s;
   s.stiffness_factor = a.c.stiffness_factor;
   s.stiffness_from_young = a.stiffness_from_young;
   if (summary.contains("contact")) s.contact_steps = summary["contact"]["steps_per_shortest_contact"].get<double>();
@@ -76,7 +82,9 @@ Soundness soundness_of(const Assembly& a, const Json& summary) {
   s.window = summary["window_s"][1].get<double>() - summary["window_s"][0].get<double>();
   s.steady = summary["steady"].get<bool>();
   if (!s.steady) s.drift = drift_of(summary);
-  if (summary["energy"]["wall_work_J"].get<double>() != 0) s.imbalance = summary["energy"]["imbalance_fraction"].get<double>();
+  if (summary.contains("energy") && summary["energy"]["wall_work_J"].get<double>() != 0)
+    s.imbalance = summary["energy"]["imbalance_fraction"].get<double>();
+  if (!summary["power_W"].contains("com")) return s;
   const double power = summary["power_W"]["com"].get<double>(), error = summary["power_W"]["com_sem"].get<double>();
   if (power != 0 && std::isfinite(error)) s.power_error = error / std::abs(power);
   const double centre = std::hypot(summary["com_m_sem"][0].get<double>(), summary["com_m_sem"][1].get<double>());

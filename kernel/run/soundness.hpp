@@ -9,4 +9,7 @@ namespace millscope::run {
 /// `summary`: what summary.json says so far.
 Soundness soundness_of(const Assembly& a, const nlohmann::ordered_json& summary);
 
+/// The same of a run that another engine made: how deep its contacts were is not known.
+Soundness soundness_of_means(const Assembly& a, const nlohmann::ordered_json& summary);
+
 }  // namespace millscope::run

@@ -52,6 +52,31 @@ Sample take_sample(const dem::System& system, const Assembly& a) {
   return s;
 }
 
+Json means_of(const Course& course) {
+  Json j;
+  j["window_s"] = {course.from, course.until};
+  const Mean pt = correlated_mean(course.torque), ke = correlated_mean(course.kinetic);
+  const Steadiness by_torque = steadiness(course.torque, kSteadyTolerance);
+  j["steady"] = by_torque.steady;
+  j["steadiness"] = {{"torque_power_drift_W", by_torque.drift}, {"torque_power_drift_standard_errors", by_torque.standard_errors}};
+  j["power_W"] = {{"torque", pt.value}, {"torque_sem", pt.standard_error}};
+  if (!course.centre.empty()) {
+    const Mean pc = correlated_mean(course.centre);
+    const Steadiness by_centre = steadiness(course.centre, kSteadyTolerance);
+    j["steady"] = by_torque.steady && by_centre.steady;
+    j["steadiness"].update({{"com_power_drift_W", by_centre.drift}, {"com_power_drift_standard_errors", by_centre.standard_errors}});
+    j["power_W"].update({{"com", pc.value}, {"com_sem", pc.standard_error}});
+  }
+  for (const std::vector<double>& c : course.place) {
+    const Mean m = c.empty() ? Mean{} : correlated_mean(c);
+    j["com_m"].push_back(c.empty() ? Json() : Json(m.value));
+    j["com_m_sem"].push_back(c.empty() ? Json() : Json(m.standard_error));
+  }
+  j["kinetic_energy_J"] = ke.value;
+  j["kinetic_energy_J_sem"] = ke.standard_error;
+  return j;
+}
+
 Json window_summary(const Assembly& a, const std::vector<Sample>& samples) {
   Json j;
   if (samples.size() < 9) {
@@ -60,38 +85,21 @@ Json window_summary(const Assembly& a, const std::vector<Sample>& samples) {
     return j;
   }
   const Sample &first = samples.front(), &last = samples.back();
-  const double span = last.time - first.time;
-  std::vector<double> torque, centre, dissipation, kinetic, x[3];
+  Course course{first.time, last.time, {}, {}, {}};
+  std::vector<double> dissipation;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Sample& s = samples[i];
-    centre.push_back(power_of_centre(a, s));
-    kinetic.push_back(s.translational + s.rotational);
-    for (std::size_t k = 0; k < 3; ++k) x[k].push_back(s.centre[k]);
+    course.centre.push_back(power_of_centre(a, s));
+    course.kinetic.push_back(s.translational + s.rotational);
+    for (std::size_t k = 0; k < 3; ++k) course.place[k].push_back(s.centre[k]);
     if (i == 0) continue;
     const double dt = s.time - samples[i - 1].time;
-    torque.push_back((s.torque_work - samples[i - 1].torque_work) / dt);
+    course.torque.push_back((s.torque_work - samples[i - 1].torque_work) / dt);
     dissipation.push_back((s.dissipated - samples[i - 1].dissipated) / dt);
   }
-  const Mean pt = correlated_mean(torque), pc = correlated_mean(centre), pd = correlated_mean(dissipation), ke = correlated_mean(kinetic);
-  j["window_s"] = {first.time, last.time};
-  const Steadiness by_torque = steadiness(torque, kSteadyTolerance), by_centre = steadiness(centre, kSteadyTolerance);
-  j["steady"] = by_torque.steady && by_centre.steady;
-  j["steadiness"] = {{"torque_power_drift_W", by_torque.drift},
-                     {"torque_power_drift_standard_errors", by_torque.standard_errors},
-                     {"com_power_drift_W", by_centre.drift},
-                     {"com_power_drift_standard_errors", by_centre.standard_errors}};
-  j["power_W"] = {{"torque", pt.value},           {"torque_sem", pt.standard_error}, {"com", pc.value},
-                  {"com_sem", pc.standard_error}, {"dissipation", pd.value},         {"dissipation_sem", pd.standard_error}};
-  Json com = Json::array(), com_sem = Json::array();
-  for (const auto& c : x) {
-    const Mean m = correlated_mean(c);
-    com.push_back(m.value);
-    com_sem.push_back(m.standard_error);
-  }
-  j["com_m"] = com;
-  j["com_m_sem"] = com_sem;
-  j["kinetic_energy_J"] = ke.value;
-  j["kinetic_energy_J_sem"] = ke.standard_error;
+  j = means_of(course);
+  const Mean pd = correlated_mean(dissipation);
+  j["power_W"].update({{"dissipation", pd.value}, {"dissipation_sem", pd.standard_error}});
   const auto stored = [](const Sample& s) { return s.translational + s.rotational + s.elastic + s.potential; };
   const double input = last.wall_work - first.wall_work, lost = last.dissipated - first.dissipated, kept = stored(last) - stored(first);
   j["energy"] = {{"wall_work_J", input},
@@ -100,7 +108,7 @@ Json window_summary(const Assembly& a, const std::vector<Sample>& samples) {
                  {"imbalance_J", input - lost - kept},
                  {"imbalance_fraction", std::abs(input) > 0 ? (input - lost - kept) / std::abs(input) : 0.0},
                  {"elastic_J", last.elastic},
-                 {"mean_power_span_s", span}};
+                 {"mean_power_span_s", last.time - first.time}};
   return j;
 }
 

@@ -30,6 +30,18 @@ inline constexpr double kSampleInterval = 1e-3;  // s
 /// turns.
 double power_of_centre(const Assembly& a, double mass, double time, const std::array<double, 3>& centre);
 
+/// The charge over an analysis window, evenly sampled; at least 9 values each.
+struct Course {
+  double from = 0, until = 0;                  ///< s
+  std::vector<double> torque;                  ///< power by torque, W
+  std::vector<double> centre;                  ///< power by centre of mass, W; empty: not known
+  std::vector<double> kinetic;                 ///< J
+  std::array<std::vector<double>, 3> place{};  ///< of the centre of mass, m; empty: not known
+};
+
+/// window_s, steady, steadiness, power_W, com_m, kinetic_energy_J, with standard errors; what is not known is null or absent.
+nlohmann::ordered_json means_of(const Course& course);
+
 /// Means, standard errors, steadiness and energy balance over the samples of the window.
 nlohmann::ordered_json window_summary(const Assembly& a, const std::vector<Sample>& samples);
 

@@ -17,7 +17,7 @@
 #include "kernel/output/new_folder.hpp"
 #include "kernel/output/series.hpp"
 #include "kernel/output/summary.hpp"
-#include "kernel/run/statistics.hpp"
+#include "kernel/run/soundness.hpp"
 #include "kernel/run/window.hpp"
 #include "studies/engine/liggghts/dumps.hpp"
 #include "studies/engine/liggghts/obstacles.hpp"
@@ -117,16 +117,17 @@ void write_series(const std::vector<Span>& series, const run::Assembly& a, doubl
 
 nlohmann::ordered_json summary_of(const std::vector<Span>& series, const run::Assembly& a, double mass) {
   constexpr std::size_t kFewestRows = 9;  // that a mean with an error needs
-  std::vector<double> torque, centre, kinetic;
-  std::array<std::vector<double>, 3> place;
-  double from = 0;
+  run::Course course;
+  course.until = series.back().end;
   for (const Span& s : series) {
     if (s.begin < a.c.time.analyze_from - 1e-9) continue;
-    if (torque.empty()) from = s.begin;
-    torque.push_back(s.power);
-    centre.push_back(run::power_of_centre(a, mass, s.time, s.centre));
-    kinetic.push_back(s.translation + s.rotation);
-    for (std::size_t axis = 0; axis < 3; ++axis) place[axis].push_back(s.centre[axis]);
+    if (course.torque.empty()) course.from = s.begin;
+    course.torque.push_back(s.power);
+    if (knows_centre(a)) course.centre.push_back(run::power_of_centre(a, mass, s.time, s.centre));
+    course.kinetic.push_back(s.translation + s.rotation);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!a.c.domain.periodic[axis]) course.place[axis].push_back(s.centre[axis]);
+    }
   }
   nlohmann::ordered_json j;
   j["schema_version"] = 1;
@@ -140,20 +141,8 @@ nlohmann::ordered_json summary_of(const std::vector<Span>& series, const run::As
   j["settle_s"] = static_cast<double>(-a.first_step) * a.time_step;
   j["mill_speed_rad_per_s"] = a.mill_speed;
   j["stiffness_factor"] = a.c.stiffness_factor;
-  if (torque.size() >= kFewestRows) {
-    const run::Mean pt = run::correlated_mean(torque), pc = run::correlated_mean(centre), ke = run::correlated_mean(kinetic);
-    j["window_s"] = {from, series.back().end};
-    j["power_W"] = {{"torque", pt.value}, {"torque_sem", pt.standard_error}};
-    if (knows_centre(a)) j["power_W"].update({{"com", pc.value}, {"com_sem", pc.standard_error}});
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const run::Mean m = run::correlated_mean(place[axis]);
-      const bool repeats = a.c.domain.periodic[axis];
-      j["com_m"].push_back(repeats ? nlohmann::ordered_json() : nlohmann::ordered_json(m.value));
-      j["com_m_sem"].push_back(repeats ? nlohmann::ordered_json() : nlohmann::ordered_json(m.standard_error));
-    }
-    j["kinetic_energy_J"] = ke.value;
-    j["kinetic_energy_J_sem"] = ke.standard_error;
-  }
+  if (course.torque.size() >= kFewestRows) j.update(run::means_of(course));
+  j["doubts"] = run::doubts_of(run::soundness_of_means(a, j));
   return j;
 }
 
