@@ -86,7 +86,10 @@ Recorder::Recorder(const Assembly& a, std::filesystem::path directory, std::opti
   if (a.c.output.series) open_series(resume_time);
   if (a.c.output.frames) open_frames(resume_time);
   if (a.c.output.tracks) open_tracks(resume_time);
-  if (a.c.output.vtk) open_pictures(resume_time);
+  if (a.c.output.vtk) {
+    picture_steps_ = steps_of(a.c.output.vtk->every, a.time_step);
+    pictures_.emplace(directory_ / "vtk", resume_time);
+  }
 }
 
 void Recorder::take_beads() {
@@ -146,17 +149,6 @@ void Recorder::open_tracks(std::optional<double> resume_time) {
   tracks_ = resume_time ? output::TrackWriter::resume(path, infos, *resume_time) : output::TrackWriter::create(path, infos);
 }
 
-void Recorder::open_pictures(std::optional<double> resume_time) {
-  picture_steps_ = steps_of(a_.c.output.vtk->every, a_.time_step);
-  const std::filesystem::path folder = directory_ / "vtk";
-  std::filesystem::create_directories(folder);
-  const auto open = [&](const char* name) {
-    return resume_time ? output::PictureSeries::resume(folder / name, *resume_time) : output::PictureSeries::create(folder / name);
-  };
-  bead_pictures_ = open("beads.pvd");
-  mesh_pictures_ = open("mesh.pvd");
-}
-
 bool Recorder::wants(std::int64_t step) const {
   if (step < 0) return false;
   return (step >= a_.analyze_step && step % sample_steps_ == 0) || (series_steps_ > 0 && step % series_steps_ == 0) ||
@@ -179,7 +171,8 @@ void Recorder::observe(const dem::System& system) {
   const bool picture = picture_steps_ > 0 && step % picture_steps_ == 0;
   if (frame || picture) gather(system);
   if (frame) write_frame(system);
-  if (picture) write_pictures(system);
+  if (picture)
+    pictures_->add(a_, system.time(), system.step() / picture_steps_, {ids_, materials_, radius_, position_, velocity_, spin_}, &system);
   if (track_steps_ > 0 && step % track_steps_ == 0) write_tracks(system);
 }
 
@@ -243,35 +236,6 @@ void Recorder::write_tracks(const dem::System& system) {
     position.insert(position.end(), c, c + 3);
   }
   tracks_->append(system.time(), position);
-}
-
-std::vector<double> vertices_at(const Surface& s, const dem::Motion& motion, double time) {
-  const dem::Pose pose = dem::pose_at(motion, time);
-  std::vector<double> moved(3 * s.vertex_count);
-  for (std::uint64_t v = 0; v < s.vertex_count; ++v) {
-    for (std::size_t r = 0; r < 3; ++r) {
-      moved[3 * v + r] = pose.offset[r];
-      for (std::size_t c = 0; c < 3; ++c) moved[3 * v + r] += pose.rotation[r][c] * s.vertices[3 * v + c];
-    }
-  }
-  return moved;
-}
-
-void Recorder::write_pictures(const dem::System& system) {
-  const std::int64_t number = system.step() / picture_steps_;
-  const std::string name = fmt::format("beads_{:06d}.vtp", number);
-  output::write_beads_vtp(directory_ / "vtk" / name, {ids_, materials_, radius_, position_, velocity_, spin_});
-  bead_pictures_->add(system.time(), name);
-  for (std::size_t b = 0; b < a_.geometries.size(); ++b) {
-    const Surface& s = a_.geometries[b].surface;
-    if (s.triangle_count == 0) continue;
-    const std::vector<double> moved = vertices_at(s, system.bodies[b].motion, system.time());
-    const std::vector<double> impact = system.impact_work(b), shear = system.shear_work(b);
-    const std::string mesh = fmt::format("{}_{:06d}.vtp", system.bodies[b].name, number);
-    output::write_mesh_vtp(directory_ / "vtk" / mesh,
-                           {moved, {s.triangles, 3 * s.triangle_count}, {s.triangle_materials, s.triangle_count}, impact, shear});
-    mesh_pictures_->add(system.time(), mesh, static_cast<int>(b));
-  }
 }
 
 void Recorder::flush() {

@@ -9,17 +9,13 @@
 #include "kernel/output/frames.hpp"
 #include "kernel/output/series.hpp"
 #include "kernel/output/tracks.hpp"
-#include "kernel/output/vtk.hpp"
+#include "kernel/run/pictures.hpp"
 #include "kernel/run/window.hpp"
 
 namespace millscope::run {
-
 /// Which beads are followed where the case has tracks, once they are in: the user's, or a seeded draw, in the order of their ids or as
 /// given.
 std::vector<std::uint32_t> tracked_beads(const Assembly& a);
-
-/// Where the vertices of a body's surface are at a time, s: [V,3] m.
-std::vector<double> vertices_at(const Surface& s, const dem::Motion& motion, double time);
 
 class Recorder {
  public:
@@ -45,12 +41,10 @@ class Recorder {
   void open_series(std::optional<double> resume_time);
   void open_frames(std::optional<double> resume_time);
   void open_tracks(std::optional<double> resume_time);
-  void open_pictures(std::optional<double> resume_time);
   void write_series(const Sample& s);
   void gather(const dem::System& system);
   void write_frame(const dem::System& system);
   void write_tracks(const dem::System& system);
-  void write_pictures(const dem::System& system);
 
   const Assembly& a_;
   std::filesystem::path directory_;
@@ -58,7 +52,7 @@ class Recorder {
   std::optional<output::SeriesWriter> series_;
   std::optional<output::FrameWriter> frames_;
   std::optional<output::TrackWriter> tracks_;
-  std::optional<output::PictureSeries> bead_pictures_, mesh_pictures_;
+  std::optional<Pictures> pictures_;
   std::vector<Sample> samples_;
   std::optional<dem::Ledger> window_start_;
   std::vector<std::uint32_t> track_ids_;

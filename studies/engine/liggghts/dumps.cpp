@@ -11,8 +11,7 @@
 #include "kernel/config/case.hpp"
 #include "kernel/output/frames.hpp"
 #include "kernel/output/tracks.hpp"
-#include "kernel/output/vtk.hpp"
-#include "kernel/run/recorder.hpp"
+#include "kernel/run/pictures.hpp"
 #include "studies/engine/liggghts/script.hpp"
 
 namespace millscope::engine::liggghts {
@@ -170,24 +169,12 @@ std::size_t write_frames(const fs::path& folder, const run::Assembly& a, const f
 }
 
 void write_pictures(const fs::path& post, const run::Assembly& a, const fs::path& to) {
-  fs::create_directory(to);
-  auto bead_series = output::PictureSeries::create(to / "beads.pvd"), mesh_series = output::PictureSeries::create(to / "mesh.pvd");
+  run::Pictures pictures(to);
   const std::int64_t zero = zero_step(a), every = picture_every(a);
   for (std::int64_t step = zero; step <= zero + a.end_step; step += every) {
-    const fs::path file = post / fmt::format("picture_{}.txt", step);
-    const Frame f = read_frame(file, a);
-    const double time = static_cast<double>(step - zero) * a.time_step;
-    const std::int64_t number = (step - zero) / every;
-    const std::string beads = fmt::format("beads_{:06d}.vtp", number);
-    output::write_beads_vtp(to / beads, {f.id, f.material, f.radius, f.position, f.velocity, f.spin});
-    bead_series.add(time, beads);
-    for (std::size_t b = 0; b < a.geometries.size(); ++b) {
-      const Surface& s = a.geometries[b].surface;
-      const std::string mesh = fmt::format("{}_{:06d}.vtp", a.system->bodies[b].name, number);
-      const std::vector<double> moved = run::vertices_at(s, a.system->bodies[b].motion, time);
-      output::write_mesh_vtp(to / mesh, {moved, {s.triangles, 3 * s.triangle_count}, {s.triangle_materials, s.triangle_count}, {}, {}});
-      mesh_series.add(time, mesh, static_cast<int>(b));
-    }
+    const Frame f = read_frame(post / fmt::format("picture_{}.txt", step), a);
+    pictures.add(a, static_cast<double>(step - zero) * a.time_step, (step - zero) / every,
+                 {f.id, f.material, f.radius, f.position, f.velocity, f.spin});
   }
 }
 
