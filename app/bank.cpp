@@ -47,14 +47,8 @@ void add_bank_options(Options& options) {
   options.with_plugins();
 }
 
-int slots_of(const Options& options) {
-  if (!options.has("slots")) return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  if (options.integer("slots") < 1) throw UserError(fmt::format("--slots {}: give 1 or more", options.integer("slots")));
-  return options.integer("slots");
-}
-
 campaign::Options bank_campaign(const Options& options) {
-  campaign::Options c = campaign_of(study_session(options, ""));
+  campaign::Options c = calibrate::campaign_of(study_session(options, ""));
   c.cache = cache_of(options);
   return c;
 }
@@ -72,7 +66,7 @@ int status(const Arguments& arguments) {
   add_bank_options(options);
   if (!options.parse(arguments)) return kDone;
   const campaign::Options c = bank_campaign(options);
-  const int slots = slots_of(options);
+  const int slots = c.slots > 0 ? c.slots : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const diagnose::Question question = question_of(options);
   fmt::print("{}", diagnose::status_text(question, diagnose::bank_status(question, c), slots));
   return kDone;

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using base::UserError;
 
 campaign::Options campaign_options(const Options& options, const fs::path& output) {
-  campaign::Options c = campaign_of(study_session(options, output));
+  campaign::Options c = calibrate::campaign_of(study_session(options, output));
   if (c.cache.empty()) c.cache = output / "cache";
   if (options.has("memory")) {
     const double gigabytes = options.number("memory");

@@ -44,7 +44,7 @@ int make_sets(const Arguments& arguments) {
   const challenge::Challenge what = challenge::read_challenge(options.text("CHALLENGE.yaml"), options.list("set"));
   const diagnose::Question question = challenge::question_of(what, registry);
   const calibrate::SessionOptions session = study_session(options, output);
-  challenge::make(what, question, registry, {output, campaign_of(session), session.say});
+  challenge::make(what, question, registry, {output, calibrate::campaign_of(session), session.say});
   if (!options.has("quiet")) {
     fmt::print("sets in {}; hash of its manifest: {}\nkeep {} and the seed from those who diagnose\n", output.string(),
                challenge::manifest_hash(output), (output / "answers").string());

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include "app/commands.hpp"
-#include "app/engines.hpp"
 #include "app/study_options.hpp"
 #include "kernel/config/case.hpp"
 #include "kernel/config/units.hpp"
@@ -13,7 +12,6 @@ namespace millscope::app {
 namespace {
 
 namespace po = boost::program_options;
-namespace fs = std::filesystem;
 
 /// "power=0.5 %", "centre=0.3 mm", "energy=1 %".
 crosscheck::Limits limits_of(const std::vector<std::string>& texts) {
@@ -65,7 +63,7 @@ int crosscheck_engines(const Arguments& arguments) {
   request.switches = options.list("switch");
   request.limits = limits_of(options.list("limit"));
   request.output = options.text("output");
-  request.campaign = campaign_of(study_session(options, request.output));
+  request.campaign = calibrate::campaign_of(study_session(options, request.output));
   const crosscheck::Found found = crosscheck::crosscheck(request, options.registry());
   crosscheck::write(found, request.output);
   if (!options.has("quiet")) {

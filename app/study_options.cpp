@@ -29,19 +29,6 @@ void add_study_options(Options& options) {
   options.with_plugins();
 }
 
-campaign::Options campaign_of(const calibrate::SessionOptions& s) {
-  campaign::Options c;
-  c.cache = s.cache;
-  if (!s.runner.empty()) c.runner = s.runner;
-  c.slots = s.slots;
-  c.plugin_directories = s.plugin_directories;
-  c.slurm_options = s.slurm_options;
-  c.quiet = s.quiet;
-  c.retry_failed = s.retry_failed;
-  c.say = s.say;
-  return c;
-}
-
 std::vector<std::string> words_of(const std::vector<std::string>& texts) {
   std::vector<std::string> words;
   for (const std::string& text : texts) {

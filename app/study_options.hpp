@@ -5,15 +5,12 @@
 
 #include "app/commands.hpp"
 #include "studies/calibrate/session.hpp"
-#include "studies/campaign/campaign.hpp"
 
 namespace millscope::app {
 
 void add_study_options(Options& options);
 /// Where simulations run and are kept, for commands without a study; `cache`: what the help says of it.
 void add_runner_options(Options& options, const char* cache);
-/// What those say.
-campaign::Options campaign_of(const calibrate::SessionOptions& s);
 /// A line on standard output, at once.
 void print_line(const std::string& line);
 /// "--partition=long --time=60" → words.

@@ -4,12 +4,11 @@
 #include <thread>
 
 namespace millscope::calibrate {
-namespace {
 
-campaign::Options campaign_options(const Study& study, const SessionOptions& o) {
+campaign::Options campaign_of(const SessionOptions& o) {
   campaign::Options c;
   c.cache = o.cache;
-  c.runner = o.runner.empty() ? study.runner : o.runner;
+  if (!o.runner.empty()) c.runner = o.runner;
   c.slots = o.slots;
   c.plugin_directories = o.plugin_directories;
   c.quiet = o.quiet;
@@ -19,10 +18,9 @@ campaign::Options campaign_options(const Study& study, const SessionOptions& o) 
   return c;
 }
 
-}  // namespace
-
 Session::Session(const Study& study, const host::Registry& registry, SessionOptions options) : study_(study), options_(std::move(options)) {
   if (options_.cache.empty()) options_.cache = options_.output / "cache";
+  if (options_.runner.empty()) options_.runner = study_.runner;
   check_study(study_, registry);
   Recordings recordings = read_recordings(study_);
   check_recordings(study_, recordings, registry);
@@ -30,7 +28,7 @@ Session::Session(const Study& study, const host::Registry& registry, SessionOpti
   observer_ = std::make_unique<Observer>(study_, registry, std::move(recordings),
                                          ObserverOptions{options_.cache / "observations", 0, options_.say});
   // A study asks many times; what other programs left is said at the first.
-  machinery_.run = [how = campaign_options(study_, options_)](std::span<const campaign::Simulation> simulations) mutable {
+  machinery_.run = [how = campaign_of(options_)](std::span<const campaign::Simulation> simulations) mutable {
     campaign::Options once = how;
     how.say_of_other_programs = false;
     return campaign::run(simulations, once);

@@ -24,6 +24,9 @@ struct SessionOptions {
   std::function<void(const std::string&)> say;  ///< one line of progress; may be empty
 };
 
+/// How its simulations run; the cache as given, the runner that of a campaign where none is.
+campaign::Options campaign_of(const SessionOptions& options);
+
 /// The study's recordings and campaign, ready for an Evaluator.
 class Session {
  public:
