@@ -91,7 +91,7 @@ Found crosscheck(const Request& request, const host::Registry& registry) {
   fs::create_directories(request.output / "common");
   const fs::path case_file = write_common_case(a, registry, request.output / "common");
   const std::vector<Player> players = players_of(request);
-  for (const Player& player : players) run::assemble(config::read_case(case_file.string(), player.settings), registry);
+  for (const std::string& setting : request.switches) run::assemble(config::read_case(case_file.string(), {setting}), registry);
   const std::vector<campaign::Simulation> simulations = simulations_of(request, players, case_file, a.c.seed);
   campaign::Options options = request.campaign;
   if (options.cache.empty()) options.cache = request.output / "cache";
@@ -113,9 +113,11 @@ Found crosscheck(const Request& request, const host::Registry& registry) {
   };
   const auto theirs = of_player(0), ours = of_player(1);
   found.quantities = agreement(ours, theirs, request.limits);
-  for (std::size_t k = 2; k < players.size(); ++k)
+  for (std::size_t k = 2; k < players.size(); ++k) {
+    const auto switched = of_player(k);
     found.switches.push_back(
-        {request.switches[k - 2], agreement(ours, of_player(k), request.limits), agreement(of_player(k), theirs, request.limits)});
+        {request.switches[k - 2], agreement(ours, switched, request.limits), agreement(switched, theirs, request.limits)});
+  }
   for (std::size_t i = 0; i < outcomes.size(); ++i) found.runs.push_back({simulations[i].label, outcomes[i].folder, outcomes[i].wall_s});
   return found;
 }
