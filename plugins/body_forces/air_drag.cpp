@@ -44,10 +44,11 @@ class AirDrag {
     }
   }
 
-  void act(const Bead& bead, BeadForce& out) const {
-    const Vec<double> fluid{-turning_ * bead.position.y, turning_ * bead.position.x, 0.0};
-    const Vec<double> slip = fluid - bead.velocity;
-    out.force = (strength_ * drag_rate(fluid_, 2.0 * bead.radius, length(slip))) * slip;
+  template <class R>
+  void act(const BeadState<R>& bead, BeadResponse<R>& out) const {
+    const Vec<R> fluid{R(-turning_) * bead.position.y, R(turning_) * bead.position.x, R(0.0)};
+    const Vec<R> slip = fluid - bead.velocity;
+    out.force = (R(strength_) * drag_rate(fluid_, R(2.0) * bead.radius, length(slip))) * slip;
     out.power = -dot(out.force, bead.velocity);
   }
 

@@ -20,6 +20,8 @@
 //
 // Power taken from the bead is −F·v − ½ v² dm_a/dt: its sum is what the liquid took for good, and its potential energy. What the ledger has
 // no place for is the liquid's kinetic energy Σ ½ m_a v², which in a steady state does not grow.
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "drag.hpp"
@@ -62,31 +64,35 @@ class FluidPool {
     }
   }
 
-  void act(const Bead& bead, BeadForce& out) const {
-    const Vec<double>&x = bead.position, &v = bead.velocity;
-    const double full = 2.0 * bead.radius, depth = std::clamp(level_ - x.y + bead.radius, 0.0, full);
-    if (depth == 0.0 || fluid_.density == 0.0) return;
-    const double volume = std::numbers::pi / 3.0 * depth * depth * (3.0 * bead.radius - depth),
-                 area = std::numbers::pi * depth * (full - depth);
-    const double displaced = fluid_.density * volume, added = 0.5 * displaced, growth = -0.5 * fluid_.density * area * v.y;
+  template <class R>
+  void act(const BeadState<R>& bead, BeadResponse<R>& out) const {
+    if (fluid_.density == 0.0) return;
+    const R zero(0.0), pi(std::numbers::pi), density(fluid_.density);
+    const Vec<R>&x = bead.position, &v = bead.velocity;
+    const R full = R(2.0) * bead.radius, depth = maximum(zero, minimum(R(level_) - x.y + bead.radius, full));
+    if (!any(depth > zero)) return;
+    const R volume = pi * R(1.0 / 3.0) * depth * depth * (R(3.0) * bead.radius - depth), area = pi * depth * (full - depth);
+    const R displaced = density * volume, added = R(0.5) * displaced, growth = R(-0.5) * density * area * v.y;
 
-    const Vec<double> flow{-turning_ * x.y, turning_ * x.x, 0.0}, slip = flow - v;
-    const Vec<double> turn{-turning_ * turning_ * x.x, -turning_ * turning_ * x.y, 0.0};
-    const double share = volume / (4.0 / 3.0 * std::numbers::pi * bead.radius * bead.radius * bead.radius);
-    const double resistance = std::max(growth, 0.0) + share * drag(full, length(slip));
-    out.force = displaced * (turn + Vec<double>{0.0, gravity_, 0.0}) + added * turn + resistance * slip;
+    const Vec<R> flow{R(-turning_) * x.y, R(turning_) * x.x, zero}, slip = flow - v;
+    const Vec<R> turn{R(-turning_ * turning_) * x.x, R(-turning_ * turning_) * x.y, zero};
+    const R share = volume / (R(4.0 / 3.0) * pi * bead.radius * bead.radius * bead.radius);
+    const R resistance = maximum(growth, zero) + share * drag(full, length(slip));
+    out.force = displaced * (turn + Vec<R>{zero, R(gravity_), zero}) + added * turn + resistance * slip;
     out.added_mass = added;
-    out.power = -dot(out.force, v) - 0.5 * growth * dot(v, v);
+    out.power = -dot(out.force, v) - R(0.5) * growth * dot(v, v);
   }
 
  private:
   /// Drag over slip of a submerged bead of this diameter, N s/m.
-  double drag(double diameter, double speed) const {
-    const double single = drag_rate(fluid_, diameter, porosity_ * speed);
+  template <class R>
+  R drag(const R& diameter, const R& speed) const {
+    const R single = drag_rate(fluid_, diameter, R(porosity_) * speed);
     if (porosity_ == 1.0) return single;
-    const double reynolds = fluid_.density * porosity_ * speed * diameter / std::max(fluid_.viscosity, 1e-300);
-    const double decades = 1.5 - std::log10(reynolds);
-    return single * std::pow(porosity_, 0.65 * std::exp(-0.5 * decades * decades) - 3.7);
+    const R reynolds = R(fluid_.density * porosity_ / std::max(fluid_.viscosity, 1e-300)) * speed * diameter;
+    const R decades = R(1.5) - R(1.0 / std::numbers::ln10) * logarithm(reynolds);
+    const R exponent = R(0.65) * exponential(R(-0.5) * decades * decades) - R(3.7);  // −χ
+    return single * exponential(exponent * R(std::log(porosity_)));
   }
 
   Fluid fluid_;

@@ -16,6 +16,7 @@
 // below St = ln(H/h_min). No step takes more than half of v_n, however stiff the film.
 #include <numbers>
 
+#include "millscope/functions.hpp"
 #include "millscope/interaction_adapter.hpp"
 
 namespace millscope::interactions {
@@ -75,7 +76,7 @@ class Lubrication {
   R integral(const R& gap) const {
     const R h = minimum(maximum(gap, R(0.0)), R(range_));
     const R near = h * R(1.0 / cut_);
-    const R far = R(1.0) + lanewise([](double x) { return std::log(x); }, maximum(near, R(1.0)));
+    const R far = R(1.0) + logarithm(maximum(near, R(1.0)));
     return select(near < R(1.0), near, far) - h * R(1.0 / range_);
   }
 

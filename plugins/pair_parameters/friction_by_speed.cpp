@@ -6,6 +6,7 @@
 // v_s         speed_     speed at which 1/e of the difference is left, m/s
 //
 //   μ = μ_k + (μ_s − μ_k) exp(−v/v_s)
+#include "millscope/functions.hpp"
 #include "millscope/pair_parameter_adapter.hpp"
 
 namespace millscope::pair_parameters {
@@ -37,7 +38,7 @@ class FrictionBySpeed {
   void values(const ParameterState<R>& pair, R*, PairValues<R>& out) const {
     const R normal_speed = dot(pair.velocity, pair.normal);
     const R sliding = length(pair.velocity - normal_speed * pair.normal);
-    const R left = lanewise([](double x) { return std::exp(x); }, -(sliding / R(speed_)));
+    const R left = exponential(-(sliding / R(speed_)));
     out.friction = R(kinetic_) + R(static_ - kinetic_) * left;
   }
 

@@ -8,6 +8,7 @@
 //   plastic:      e = e_0 (v/v_0)^{−1/4}, at most 1  (Johnson 1985, §11.5)
 //
 // The difference from e_0 is scaled by `strength`; never below `floor`.
+#include "millscope/functions.hpp"
 #include "millscope/pair_parameter_adapter.hpp"
 
 namespace millscope::pair_parameters {
@@ -45,15 +46,12 @@ class RestitutionBySpeed {
     const auto touching = pair.overlap > zero;
     const R closing = maximum(-dot(pair.velocity, pair.normal), slowest);
     history[0] = select(touching, select(history[0] > zero, history[0], closing), zero);
-    out.restitution = lanewise([this](double v) { return at(v); }, maximum(history[0], slowest));
+    const R one(1.0), reference(reference_), ratio = maximum(history[0], slowest) / R(speed_);
+    const R e = plastic_ ? reference / square_root(square_root(ratio)) : one - (one - reference) * power(ratio, 0.2);
+    out.restitution = minimum(one, maximum(R(floor_), reference + R(strength_) * (minimum(one, e) - reference)));
   }
 
  private:
-  double at(double v) const {
-    const double e = plastic_ ? reference_ * std::pow(v / speed_, -0.25) : 1.0 - (1.0 - reference_) * std::pow(v / speed_, 0.2);
-    return std::fmin(1.0, std::fmax(floor_, reference_ + strength_ * (std::fmin(1.0, e) - reference_)));
-  }
-
   double reference_, speed_, strength_, floor_;
   bool plastic_;
 };

@@ -1,7 +1,7 @@
 # millscope_add_plugin(NAME SOURCES file… [WIDE] [LINK target…])
 #
-# Builds one plugin library, the target NAME_plugin. Contact laws, interactions and pair parameters say WIDE, and so does a geometry that
-# computes its contacts in packs: they are built once per instruction set (x86-64-v2, v3, v4) into the sub-folders v2, v3, v4, and the
+# Builds one plugin library, the target NAME_plugin. Contact laws, interactions and pair parameters say WIDE, and so does a geometry or a
+# body force that computes in packs: they are built once per instruction set (x86-64-v2, v3, v4) into the sub-folders v2, v3, v4, and the
 # loader takes the best that the machine runs. The same function serves the plugins of the project and those built out of tree with
 # find_package(millscope).
 

@@ -6,6 +6,8 @@
 //     void act(const Bead&, BeadForce&) const;                         // may be absent when `uniform` always gives true
 //   };
 //   constexpr Descriptor kDescriptor = describe<MyDrag>({.name = "my_drag", .doc = "…", .parameters = kParameters});
+//
+// Faster: `template <class R> void act(const BeadState<R>&, BeadResponse<R>&) const`, for R = double or Pack, which is several beads at once.
 #pragma once
 
 #include "millscope/body_force.hpp"
@@ -15,21 +17,28 @@
 
 namespace millscope {
 
-/// One bead.
-struct Bead {
-  double time;
-  double time_step;
-  Vec<double> position, velocity, spin;
-  double radius, mass;
+/// One bead (R = double) or a pack of them.
+template <class R>
+struct BeadState {
+  double time;       ///< s
+  double time_step;  ///< s
+  Vec<R> position;   ///< m
+  Vec<R> velocity;   ///< m/s
+  Vec<R> spin;       ///< rad/s
+  R radius;          ///< m
+  R mass;            ///< kg
 };
+using Bead = BeadState<double>;
 
 /// What acts on it; zero on entry.
-struct BeadForce {
-  Vec<double> force;   ///< N
-  Vec<double> moment;  ///< N m
-  double added_mass;   ///< kg of fluid that moves with the bead
-  double power;        ///< W taken from the bead (drag: > 0)
+template <class R>
+struct BeadResponse {
+  Vec<R> force;   ///< N
+  Vec<R> moment;  ///< N m
+  R added_mass;   ///< kg of fluid that moves with the bead
+  R power;        ///< W taken from the bead (drag: > 0)
 };
+using BeadForce = BeadResponse<double>;
 
 namespace detail {
 
@@ -41,28 +50,51 @@ template <class F>
 concept HasAct = requires(const F& f, const Bead& bead, BeadForce& out) {
   f.act(bead, out);
 };
+template <class F>
+concept HasWideAct = requires(const F& f, const BeadState<Pack>& beads, BeadResponse<Pack>& out) {
+  f.act(beads, out);
+};
 
-inline Vec<double> vector_at(const double* const (&p)[3], std::int64_t i) { return {p[0][i], p[1][i], p[2][i]}; }
-inline void add_at(double* const (&p)[3], std::int64_t i, const Vec<double>& value) {
-  p[0][i] += value.x;
-  p[1][i] += value.y;
-  p[2][i] += value.z;
+template <class R>
+Vec<R> vector_at(const double* const (&p)[3], std::int64_t i) {
+  return {load<R>(p[0] + i), load<R>(p[1] + i), load<R>(p[2] + i)};
+}
+template <class R>
+void add_at(double* p, const R& value) {
+  store(p, load<R>(p) + value);
+}
+template <class R>
+void add_at(double* const (&p)[3], std::int64_t i, const Vec<R>& value) {
+  add_at(p[0] + i, value.x);
+  add_at(p[1] + i, value.y);
+  add_at(p[2] + i, value.z);
+}
+
+/// Bead i, or the pack that begins there; what it takes from them, W.
+template <class R, class F>
+R act_at(const F& force, BodyForceBatch& b, std::int64_t i) {
+  const R zero(0.0);
+  const BeadState<R> bead{b.time, b.time_step, vector_at<R>(b.position, i), vector_at<R>(b.velocity, i), vector_at<R>(b.spin, i),
+                          load<R>(b.radius + i), load<R>(b.mass + i)};
+  BeadResponse<R> out{{zero, zero, zero}, {zero, zero, zero}, zero, zero};
+  force.act(bead, out);
+  add_at(b.force, i, out.force);
+  add_at(b.moment, i, out.moment);
+  add_at(b.added_mass + i, out.added_mass);
+  return out.power;
 }
 
 template <class F>
 void act_on_beads(const void* self, BodyForceBatch* b) {
   b->power_sum = 0.0;
+  std::int64_t i = 0;
+  if constexpr (HasWideAct<F>) {
+    Pack power(0.0);
+    for (; i + kPackWidth <= b->count; i += kPackWidth) power += act_at<Pack>(*static_cast<const F*>(self), *b, i);
+    b->power_sum = lane_sum(power);
+  }
   if constexpr (HasAct<F>) {
-    for (std::int64_t i = 0; i < b->count; ++i) {
-      const Bead bead{b->time,      b->time_step, vector_at(b->position, i), vector_at(b->velocity, i), vector_at(b->spin, i),
-                      b->radius[i], b->mass[i]};
-      BeadForce out{};
-      static_cast<const F*>(self)->act(bead, out);
-      add_at(b->force, i, out.force);
-      add_at(b->moment, i, out.moment);
-      b->added_mass[i] += out.added_mass;
-      b->power_sum += out.power;
-    }
+    for (; i < b->count; ++i) b->power_sum += act_at<double>(*static_cast<const F*>(self), *b, i);
   }
 }
 

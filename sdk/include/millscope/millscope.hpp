@@ -5,6 +5,7 @@
 #include "millscope/analyzer_adapter.hpp"
 #include "millscope/body_force_adapter.hpp"
 #include "millscope/contact_law_adapter.hpp"
+#include "millscope/functions.hpp"
 #include "millscope/geometry_adapter.hpp"
 #include "millscope/interaction_adapter.hpp"
 #include "millscope/observation_adapter.hpp"
