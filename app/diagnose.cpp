@@ -50,11 +50,12 @@ int diagnose_study(const Arguments& arguments) {
   const host::Registry registry = options.registry();
   const diagnose::Question question = diagnose::read_question(options.text("STUDY.yaml"), options.list("set"), registry);
   const calibrate::SessionOptions session_of = study_session(options, output);
+  naming.level = question.level;
   calibrate::Session session(question.study, registry, session_of);
   naming.say = session_of.say;
   const diagnose::Diagnosis found =
       diagnose::diagnose(question, session.machinery(), diagnose::evidence_of(question, registry, session), naming);
-  diagnose::write_outputs({question, found}, output);
+  diagnose::write_outputs({found.question, found}, output);
   if (!options.has("quiet")) print_found(question, found, output);
   return kDone;
 }

@@ -59,7 +59,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Summary, observable, kind, analyzer, result, 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Smoothing, noise, noise_correlation, roughness, gap_limit, travel, blocks)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AxialPlace, low, high, middle)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RecordedCondition, observation, summaries, analyzers, camera, smoothing, place, mass, omega,
-                                   measured_power, identity)
+                                   measured_power, axis_path, axis_noise, identity)
 
 /// What lies in the cache; nothing where it is not there, damaged or of another shape.
 template <class T>

@@ -13,6 +13,7 @@
 #include "studies/camera/camera.hpp"
 #include "studies/camera/ctrack_writer.hpp"
 #include "studies/campaign/identity.hpp"
+#include "studies/inspect/mill_motion.hpp"
 
 namespace millscope::calibrate {
 namespace {
@@ -96,6 +97,13 @@ recording::Recording film(const BeadPaths& paths, const Film& how, int threads) 
   return recording::clean_recording(std::move(recording));
 }
 
+/// The axis as it was found in the recording, from rides along the shell: it is off by as much there (docs/virtual_camera.md). Where no
+/// simulated bead rides along the shell it stays where it is.
+void find_axis(const RecordedCondition& r, double angular_velocity, recording::Recording& recording) {
+  const auto found = inspect::axis_by_rides(recording, r.axis_path, angular_velocity, r.axis_noise);
+  if (found) recording.frame->axis = *found;
+}
+
 /// At a finished run. `camera`: text of links before those of the recording's camera; may be empty.
 struct Look {
   const campaign::Outcome& run;
@@ -125,8 +133,8 @@ struct Observer::Impl {
     const RecordedCondition& r = recorded[condition];
     const std::string name = "camera of condition '" + how.study.conditions[condition].name + "'";
     const camera::Camera first = look.camera.empty() ? camera::Camera() : camera::parse_camera(look.camera, name, how.registry);
-    const recording::Recording recording =
-        film(paths, {first.before(camera[condition]), camera_seed(look.run.key), r.smoothing}, how.threads);
+    recording::Recording recording = film(paths, {first.before(camera[condition]), camera_seed(look.run.key), r.smoothing}, how.threads);
+    if (r.axis_path > 0) find_axis(r, paths.mill().context.omega, recording);
     const analysis::ResultSet results =
         process({recording, analysis::stated_mill(recording, paths.mill()), Side::simulated}, r.smoothing, processing);
     std::vector<std::string> done;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "kernel/base/statistics.hpp"
@@ -17,23 +18,28 @@ namespace {
 
 using base::UserError;
 
-/// Where the axis was found from the points, its error moves the centre of mass and with it the power.
+/// Where the axis was found from the points, its error moves the centre of mass and with it the power. What all such axes are off by
+/// together is no error: simulated beads find theirs in the same way (observe.cpp).
 void add_axis_error(const Recorded& recorded, RecordedCondition& r) {
-  if (recorded.tracks().frame) return;
-  const auto axis = recorded.motion().axis[0].estimate;
-  if (!axis) return;
-  const double error = axis->standard_error();
+  const inspect::MillMotion& motion = recorded.motion();
+  if (recorded.tracks().frame || !motion.axis[0].estimate) return;
+  const bool by_rides = motion.rides > 0;
+  if (by_rides && motion.path_radius.estimate) r.axis_path = motion.path_radius.estimate->value, r.axis_noise = motion.noise;
+  const std::array<double, 2> error{by_rides ? motion.axis_scatter[0] : motion.axis[0].estimate->standard_error(),
+                                    by_rides ? motion.axis_scatter[1] : motion.axis[1].estimate->standard_error()};
   Observation& o = r.observation;
-  const double watts = r.mass * 9.81 * std::fabs(r.omega) * error;
+  const double watts = r.mass * 9.81 * std::fabs(r.omega) * error[0];
   Eigen::Index i = 0;
   for (const Observable& what : o.observables) {
     if (what.kind == ObservableKind::power && !r.measured_power) o.covariance(i, i) += watts * watts;
-    if (what.name == kCentreX) o.covariance(i, i) += std::pow(1e3 * error, 2);
+    if (what.name == kCentreX) o.covariance(i, i) += std::pow(1e3 * error[0], 2);
+    if (what.name == kCentreY) o.covariance(i, i) += std::pow(1e3 * error[1], 2);
     ++i;
   }
   if (!r.measured_power) o.power.sem = std::hypot(o.power.sem, watts);
-  o.notes.push_back(fmt::format("the axis is known to ±{:.2g} mm, which is counted in the centre of mass{}", 1e3 * error,
-                                r.measured_power ? "" : " and the power"));
+  o.notes.push_back(fmt::format("the axis is known to ±{:.2g} and ±{:.2g} mm, which is counted in the centre of mass{}{}", 1e3 * error[0],
+                                1e3 * error[1], r.measured_power ? "" : " and the power",
+                                by_rides ? "; simulated beads find theirs in the same way" : ""));
 }
 
 /// The charge's mass: as recorded; where the recording does not tell, that of the case.

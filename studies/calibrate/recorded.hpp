@@ -24,7 +24,9 @@ struct RecordedCondition {
   double mass = 0;   ///< kg, of the recorded charge
   double omega = 0;  ///< rad/s
   bool measured_power = false;
-  std::string identity;  ///< hash of all that the above depends on
+  double axis_path = 0;   ///< m, radius of the rides along the shell by which the axis was found; 0: it was stated, or found otherwise
+  double axis_noise = 0;  ///< m, of their points
+  std::string identity;   ///< hash of all that the above depends on
   bool operator==(const RecordedCondition&) const = default;
 };
 

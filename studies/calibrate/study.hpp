@@ -128,7 +128,7 @@ struct Study {
 std::vector<std::string> settings_of(const Study& study, const Eigen::VectorXd& point);
 
 /// Sections of a study that `diagnose` reads and `calibrate` has no use for: one file may serve both.
-inline constexpr std::array<std::string_view, 3> kDiagnoseSections{"nuisances", "hypotheses", "bank"};
+inline constexpr std::array<std::string_view, 4> kDiagnoseSections{"nuisances", "hypotheses", "bank", "level"};
 
 /// Reads the file alone; `also`: sections that another room reads from `Study::root`. Throws base::UserError with file:line.
 Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides = {},

@@ -169,7 +169,7 @@ std::vector<Summary> choose_summaries(const ResultSet& recorded, const Study& st
   if (!left_out(study, ObservableKind::centre)) {
     if (choice.measured_power)
       out.push_back({{kCentreX, "mm", ObservableKind::centre}, Summary::number, "power", "centre_of_mass_x", "", {}, 1e3});
-    out.push_back({{"centre of mass y", "mm", ObservableKind::centre}, Summary::number, "power", "centre_of_mass_y", "", {}, 1e3});
+    out.push_back({{kCentreY, "mm", ObservableKind::centre}, Summary::number, "power", "centre_of_mass_y", "", {}, 1e3});
   }
   const auto distribution = [&](ObservableKind kind, const char* axis, double shown, const char* unit) {
     if (!left_out(study, kind)) add_distribution(recorded, axis, kind, shown, unit, out);

@@ -22,7 +22,7 @@ struct Summary {
   bool operator==(const Summary&) const = default;
 };
 
-inline constexpr const char* kCentreX = "centre of mass x";  ///< an observable's name
+inline constexpr const char *kCentreX = "centre of mass x", *kCentreY = "centre of mass y";  ///< names of observables
 
 /// Whether the uncertainty of an analyzer's result is read for a summary, a histogram or a power.
 bool becomes_summary(const std::string& analyzer, const std::string& result, const std::vector<Term>& terms);

@@ -12,12 +12,13 @@ namespace {
 namespace fs = std::filesystem;
 
 void diagnose_set(const fs::path& folder, const host::Registry& registry, const calibrate::SessionOptions& session_of,
-                  const naming::Options& naming) {
+                  naming::Options naming) {
   const diagnose::Question question = diagnose::read_question(folder / "study.yaml", {}, registry);
+  naming.level = question.level;
   calibrate::Session session(question.study, registry, session_of);
   const diagnose::Diagnosis found =
       diagnose::diagnose(question, session.machinery(), diagnose::evidence_of(question, registry, session), naming);
-  diagnose::write_outputs({question, found}, session_of.output);
+  diagnose::write_outputs({found.question, found}, session_of.output);
 }
 
 std::string one_line(std::string text) {

@@ -21,6 +21,9 @@ constexpr std::size_t kDraws = 120;
 // What resampling rides cannot see, because it is in all of them: beads that do not quite touch the shell (part of its radius), and that
 // roll on between two lifters (part of its speed). From thirty recordings of a mill whose axis and speed are known.
 constexpr double kLooseness = 0.001;
+// The axis besides: beads that ride on the lifters' tops, press into a soft liner or leave it lie within the noise of the shell's circle
+// and pull it. Part of the radius; 0.1 to 0.5 % in simulated mills of 150 mm with 3 to 10 mm high lifters (docs/inspect.md).
+constexpr double kAxisPull = 0.003;
 constexpr double kRolling = 0.006;
 
 /// What the steps share.
@@ -137,8 +140,9 @@ void report_circle(const Work& work, MillMotion& motion) {
   });
   const double freedom = static_cast<double>(work.rides.size()) - 3;
   const std::string basis = fmt::format("{} rides along one circle", work.rides.size());
-  motion.axis[0] = {interval(work.circle.x, deviation[0], freedom, kLooseness * work.circle.radius), basis};
-  motion.axis[1] = {interval(work.circle.y, deviation[1], freedom, kLooseness * work.circle.radius), basis};
+  motion.axis_scatter = {deviation[0], deviation[1]};
+  motion.axis[0] = {interval(work.circle.x, deviation[0], freedom, kAxisPull * work.circle.radius), basis};
+  motion.axis[1] = {interval(work.circle.y, deviation[1], freedom, kAxisPull * work.circle.radius), basis};
   motion.path_radius = {interval(work.circle.radius, deviation[2], freedom, 2 * kLooseness * work.circle.radius),
                         basis + ", the outermost; a shell that the tracer never touched is larger"};
   motion.radial_scatter = scatter_about(points, work.circle);
@@ -182,6 +186,7 @@ void report_enclosing(const Work& work, MillMotion& motion) {
   });
   const std::string basis = why_no_wall(work) + ": from the circle that encloses the points";
   const double floor = 0.01 * work.circle.radius;
+  motion.axis_scatter = {deviation[0], deviation[1]};
   motion.axis[0] = {interval(work.circle.x, deviation[0], 30, floor), basis};
   motion.axis[1] = {interval(work.circle.y, deviation[1], 30, floor), basis};
   base::Interval90 radius = interval(work.circle.radius, deviation[2], 30, floor);
@@ -226,6 +231,7 @@ Agreement compare_speed(const recording::Condition& stated, const MillMotion& mo
 MillMotion estimate_motion(const recording::Recording& recording) {
   Work work{recording, plane_noise(recording), plane_points(recording), {}, {}, {}, {}, {}};
   MillMotion motion;
+  motion.noise = work.noise;
   if (!find_rotation(work)) {
     const char* why = "no rigid rotation of the outer charge is recognised: too few points in unbroken stretches, or no turning mill";
     motion.axis = {Finding{{}, why}, Finding{{}, why}};
@@ -248,6 +254,16 @@ MillMotion estimate_motion(const recording::Recording& recording) {
     report_least_speed(work, motion);
   }
   return motion;
+}
+
+std::optional<std::array<double, 2>> axis_by_rides(const recording::Recording& recording, double path_radius, double angular_velocity,
+                                                   double noise) {
+  Work work{recording, noise, {}, {}, {}, {}, {}, {}};
+  work.circle = {0, 0, path_radius};
+  work.rotation = {work.circle, angular_velocity, 0};
+  settle(work);
+  if (!met_wall(work)) return {};
+  return std::array{work.circle.x, work.circle.y};
 }
 
 }  // namespace millscope::inspect

@@ -70,13 +70,14 @@ void add_rides(const recording::Run& run, std::size_t number, const std::vector<
 
 std::vector<Ride> find_rides(const recording::Recording& recording, const Circle& circle, int sense, const RideRule& rule) {
   constexpr std::size_t kMayMiss = 2;  // points outside the band that do not end a ride
+  const double inner = std::max(0.0, circle.radius - rule.band), outer = circle.radius + rule.band;
   std::vector<Ride> rides;
   for (std::size_t r = 0; r < recording.runs.size(); ++r) {
     const recording::Run& run = recording.runs[r];
     std::vector<std::size_t> points;
     for (std::size_t i = 0; i < run.size(); ++i) {
-      const double distance = std::hypot(run.position[0][i] - circle.x, run.position[1][i] - circle.y);
-      if (std::fabs(distance - circle.radius) > rule.band) continue;
+      const double dx = run.position[0][i] - circle.x, dy = run.position[1][i] - circle.y, square = dx * dx + dy * dy;
+      if (square < inner * inner || square > outer * outer) continue;
       if (!points.empty() && (i - points.back() > kMayMiss + 1 || run.time[i] - run.time[points.back()] > recording.gap_limit)) {
         add_rides(run, r, points, circle, sense, rule, rides);
         points.clear();

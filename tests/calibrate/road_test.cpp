@@ -193,7 +193,7 @@ TEST_CASE("nothing of what is cached of a recording is lost") {
   watts = 8, sem = 0.1, how = "measured";
   x = {{0, 1, 2}, {40, 60}, {1, 1.5}}, speed = {{0, 1}, {100}, {0.25}}, bead_seconds = 600, blocks = 41, notes = {"a note"};
   RecordedCondition r;
-  auto& [observation, summaries, analyzers, camera, smoothing, place, mass, omega, measured_power, identity] = r;
+  auto& [observation, summaries, analyzers, camera, smoothing, place, mass, omega, measured_power, axis_path, axis_noise, identity] = r;
   observation = o, summaries = {s}, analyzers = "analyzers: {}", camera = "observations: {}";
   auto& [noise, noise_correlation, roughness, gap_limit, travel, lengths] = smoothing;
   noise = {1e-4, 2e-4, 3e-4}, noise_correlation = 0.2, roughness = {1, 2, 3}, gap_limit = 0.04;
@@ -203,7 +203,7 @@ TEST_CASE("nothing of what is cached of a recording is lost") {
   least = 1.5, wished = 2.5;
   auto& [low, high, middle] = place;
   low = 0.01, high = 0.09, middle = 0.05;
-  mass = 11, omega = -6, measured_power = true, identity = "0123";
+  mass = 11, omega = -6, measured_power = true, axis_path = 0.07, axis_noise = 5e-4, identity = "0123";
   const testing::Folder folder;
   write_cached(folder.path / "r.json", r);
   const auto back = read_cached<RecordedCondition>(folder.path / "r.json");

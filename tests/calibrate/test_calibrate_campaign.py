@@ -55,7 +55,7 @@ class Campaign(unittest.TestCase):
         return len(list((self.folder / (name + "-cache")).rglob("run/summary.json")))
 
     def test_it_is_a_calibration(self):
-        self.assertEqual(self.expected["simulations"], 6)
+        self.assertIn(self.expected["simulations"], (5, 6))  # it may stop before the budget ends where nothing is left to gain
         self.assertEqual(self.expected["failed"], [])
         self.assertTrue(0.1 <= self.expected["parameters"][0]["value"] <= 0.8)
 

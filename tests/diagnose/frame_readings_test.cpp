@@ -65,7 +65,7 @@ TEST_CASE("rides and flights tell where the axis stands, which way is down and w
   close("axis_y", -0.003, 0.5e-3);
   close("tilt", 3 * std::numbers::pi / 180, 0.02);
   close("clock", 0.03, 0.01);
-  CHECK_THAT(text_of(readings), Contains("axis_x by rides along the shell 3.96 mm (3.7") && Contains(" mrad ("));
+  CHECK_THAT(text_of(readings), Contains("axis_x by rides along the shell 3.96 mm (3.4") && Contains(" mrad ("));
 }
 
 TEST_CASE("what is not stated cannot be read against") {

@@ -273,3 +273,10 @@ TEST_CASE("a bank and an error of power that cannot be are refused at their line
   CHECK_THAT(refused("power_error: 5\n"), StartsWith("study.yaml:9: 'power_error'"));
   CHECK_THAT(refused("power_error: much\n"), StartsWith("study.yaml:9: 'power_error'"));
 }
+
+TEST_CASE("a study may say how often a false alarm is allowed") {
+  const Scratch folder;
+  CHECK(question_of(folder, "").level == 0.05);
+  CHECK(question_of(folder, "level: 1 %\n").level == Approx(0.01));
+  CHECK_THAT(refused("level: 0.5\n"), StartsWith("study.yaml:9: ") && Contains("'level'") && Contains("false alarm"));
+}

@@ -4,7 +4,7 @@
 #include <functional>
 #include <set>
 
-#include "made_up_study.hpp"
+#include "made_up_diagnosis.hpp"
 #include "studies/diagnose/verdict/diagnosis.hpp"
 
 using namespace millscope;
@@ -17,39 +17,6 @@ using testing::Scratch;
 
 namespace {
 
-const std::string kSections =
-    "nuisances: {fill.filling: {range: [30.4 %, 32.2 %], sigma: 0.313 %, name: filling}}\n"
-    "hypotheses: {rolling_resistance: {}, capillary_bridge: {}, lifter_wear: {}}\n"
-    "bank: {base: 24, each: 10}\n";
-const std::string kRolling = "pairs.glass~glass.rolling_friction", kBridge = "pairs.glass~glass.surface_tension",
-                  kHeight = "geometry.liner.lifter_height";
-const std::vector<std::string> kTheta{"pairs.glass~glass.static_friction=0.3", "pairs.glass~liner.static_friction=0.4",
-                                      "fill.filling=0.313"};
-
-/// Three effects, each with a signature of its own in every condition.
-std::vector<Physics> usual() {
-  return {{kRolling, 0, 0.2, 3, {21, 22, 23}}, {kBridge, 0, 0.08, 3, {31, 32, 33}}, {kHeight, 0.005, 0.003, 3, {41, 42, 43}}};
-}
-
-std::vector<std::string> with(const std::string& more) {
-  std::vector<std::string> truth = kTheta;
-  truth.push_back(more);
-  return truth;
-}
-
-naming::Options quick() {
-  naming::Options o;
-  o.draws = 240, o.comparison_draws = 160;
-  return o;
-}
-
-const Judged& judged(const Diagnosis& d, const std::string& name) {
-  for (std::size_t j = 0; j < d.problem.alternatives.size(); ++j) {
-    if (d.problem.alternatives[j].name == name) return d.naming.judged[j];
-  }
-  throw std::runtime_error("not judged: " + name);
-}
-
 /// A mill in which no bead is thrown to where 'summary 5' is taken, in the simulations that `lacks` names by condition and key.
 calibrate::Machinery lacking(MadeUpMill& mill, const std::function<bool(std::size_t, const std::string&)>& lacks) {
   calibrate::Machinery machinery = mill.machinery();
@@ -59,15 +26,6 @@ calibrate::Machinery lacking(MadeUpMill& mill, const std::function<bool(std::siz
     return seen;
   };
   return machinery;
-}
-
-Diagnosis found(const Question& q, MadeUpMill& mill) { return diagnose::diagnose(q, mill.machinery(), mill.evidence(), quick()); }
-
-Diagnosis diagnosed(const std::vector<Physics>& physics, const std::vector<std::string>& truth, double recording_noise = 1) {
-  const Scratch folder;
-  const Question q = question_of(folder, kSections);
-  MadeUpMill mill(q, physics, truth, recording_noise);
-  return found(q, mill);
 }
 
 }  // namespace

@@ -35,6 +35,19 @@ TEST_CASE("the intervals of axis, speed and radius hold the truth about nine tim
   for (const int count : inside) CHECK(count >= all - 4);
 }
 
+TEST_CASE("where the axis is known the rides are those of an axis that has to be found") {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SyntheticMill away, there;
+    away.seed = there.seed = seed;
+    there.axis = {0, 0};
+    const inspect::MillMotion m = inspect::estimate_motion(make_recording(away));
+    const auto axis = inspect::axis_by_rides(make_recording(there), m.path_radius.estimate->value, away.angular_velocity, m.noise);
+    REQUIRE(axis);
+    for (std::size_t i = 0; i < 2; ++i) CHECK(std::fabs(m.axis[i].estimate->value - away.axis[i] - (*axis)[i]) < 3e-5);
+    CHECK(m.axis_scatter[0] > 0);
+  }
+}
+
 TEST_CASE("a mill that turns the other way is told from its mirror image") {
   SyntheticMill mill;
   mill.angular_velocity = 4;

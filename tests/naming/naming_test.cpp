@@ -43,6 +43,18 @@ TEST_CASE("an effect that is there is named, with its strength and the friction 
   CHECK(std::fabs(n.mismatch.front().z) > 3);
 }
 
+TEST_CASE("one number that stands out rejects the base, and what stands out never is surer than that") {
+  Problem p = made_up_problem({}, point(0, 0, 0), {0, 0, 0}, 4);
+  const Result usual = name_candidates(p, quick());
+  CHECK(usual.base_p > 0.05);
+  CHECK(usual.mismatch.front().p >= usual.base_p);
+  p.observed[7] += 7 * std::sqrt(usual.covariance(7, 7));
+  const Result odd = name_candidates(p, quick());
+  CHECK(odd.mismatch.front().observable == 7);
+  CHECK(odd.base_p < 0.05);
+  CHECK(odd.mismatch.front().p >= odd.base_p);
+}
+
 TEST_CASE("what friction imitates is concealed, what does nothing is undetectable") {
   const Problem p = made_up_problem({}, point(0, 0, 0), {0, 0, 0}, 4);
   const Result n = name_candidates(p, quick());

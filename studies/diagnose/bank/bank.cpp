@@ -16,7 +16,6 @@
 namespace millscope::diagnose {
 namespace {
 
-constexpr double kLeastStrength = 0.1;
 constexpr int kAgain = 8;               // parameter sets: eight degrees of freedom of each of about 70 observables
 constexpr std::size_t kSpareApart = 2;  // runs beyond the coefficients of what is varied apart: linear, square, × every parameter
 constexpr int kSeedBits = 53;           // of a run's seed: as many as a whole number of a case may have, so that no two runs share one

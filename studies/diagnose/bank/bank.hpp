@@ -13,9 +13,11 @@
 
 namespace millscope::diagnose {
 
+inline constexpr double kLeastStrength = 0.1;  ///< of a one-sided candidate's simulations
+
 /// One parameter set of the bank.
 struct BankPoint {
-  std::string group;  ///< "base", "again", a candidate's or a nuisance's name, or "candidate*nuisance"
+  std::string group;  ///< "base", "again", a candidate's or a nuisance's name, "candidate*nuisance"; with > or < where it is beyond.hpp's
   int index = 0;      ///< within the group
   VectorXd theta;
   std::vector<naming::ActiveCandidate> active;

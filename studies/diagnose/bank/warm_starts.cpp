@@ -11,7 +11,7 @@
 #include <limits>
 #include <map>
 
-#include "studies/diagnose/bank/bank.hpp"
+#include "studies/diagnose/bank/beyond.hpp"
 
 namespace millscope::diagnose {
 namespace {
@@ -109,6 +109,7 @@ std::vector<campaign::Simulation> simulations_of(const Question& question, const
   std::map<std::pair<std::string, std::size_t>, Chain> chains;
   if (question.bank.develop) {
     for (const auto& [name, index] : last) {
+      if (is_beyond(name)) continue;  // few, and far from others in what they vary: from rest
       const std::vector<BankPoint> group = group_of(question, name, index);
       for (const std::size_t c : conditions) chains[{name, c}] = chain_of(question, group, c);
     }
@@ -116,7 +117,8 @@ std::vector<campaign::Simulation> simulations_of(const Question& question, const
   std::vector<campaign::Simulation> simulations;
   for (const BankPoint& p : points) {
     for (const std::size_t c : conditions)
-      simulations.push_back(question.bank.develop ? *chains.at({p.group, c}).at(p.index) : simulation_of(question, p, c));
+      simulations.push_back(question.bank.develop && !is_beyond(p.group) ? *chains.at({p.group, c}).at(p.index)
+                                                                         : simulation_of(question, p, c));
   }
   return simulations;
 }

@@ -47,6 +47,13 @@ struct StrengthRange {
   double low = 0, high = 1;
 };
 
+/// Whether a fitted value stands at an end of its range (not at 0, where a candidate vanishes).
+inline bool at_limit(double value, const StrengthRange& range) {
+  constexpr double kSlack = 1e-3;  // of the half range 1 of a coded parameter
+  if (range.low == range.high) return false;
+  return (range.high != 0 && value >= range.high - kSlack) || (range.low != 0 && value <= range.low + kSlack);
+}
+
 /// What a model may do besides turning θ within its priors.
 struct Switched {
   std::vector<Index> on = {};              ///< candidates

@@ -12,8 +12,6 @@
 namespace millscope::naming {
 namespace {
 
-constexpr double kAtLimit = 0.999;  // of the coded range
-
 /// Part of the draws that are at least `value`, the value itself counted among them; the largest over the laws of noise, whose draws follow
 /// each other in turn.
 double tail(const std::vector<double>& draws, double value, std::size_t laws) {
@@ -42,6 +40,52 @@ std::vector<base::Interval90> of_theta(const BankData& data, const std::vector<b
   }
   return out;
 }
+
+/// p of several statistics together (min-p; Westfall & Young 1993): how often the smallest p of a draw is as small, the largest over the
+/// laws of noise, whose draws follow each other in turn. Large values are unlikely ones. Draws and what was observed are ranked together,
+/// so that neither has a finer scale.
+class Family {
+ public:
+  Family(const std::vector<std::vector<double>>& draws, std::size_t laws) : laws_(laws) {
+    for (std::size_t law = 0; law < laws; ++law) {
+      for (const std::vector<double>& statistic : draws) {
+        Ranked own;
+        for (std::size_t b = law; b < statistic.size(); b += laws) own.value.push_back(statistic[b]);
+        own.sorted = own.value;
+        std::sort(own.sorted.begin(), own.sorted.end());
+        for (const double value : own.value) own.above.push_back(own.at_least(value));
+        laws_[law].push_back(std::move(own));
+      }
+    }
+  }
+
+  /// Of one of the statistics, where all have been observed.
+  double p(std::size_t statistic, const std::vector<double>& observed) const {
+    double largest = 0;
+    for (const std::vector<Ranked>& law : laws_) {
+      const std::ptrdiff_t own = 1 + law[statistic].at_least(observed[statistic]);
+      const std::size_t draws = law[statistic].value.size();
+      std::size_t smaller = 0;
+      for (std::size_t b = 0; b < draws; ++b) {
+        std::ptrdiff_t least = own + 1;
+        for (std::size_t k = 0; k < law.size(); ++k) least = std::min(least, law[k].above[b] + (observed[k] >= law[k].value[b] ? 1 : 0));
+        smaller += least <= own ? 1 : 0;
+      }
+      largest = std::max(largest, static_cast<double>(1 + smaller) / static_cast<double>(1 + draws));
+    }
+    return largest;
+  }
+
+ private:
+  /// One statistic under one law.
+  struct Ranked {
+    std::vector<double> value, sorted;
+    std::vector<std::ptrdiff_t> above;  ///< draws that are at least as large, itself among them
+    std::ptrdiff_t at_least(double limit) const { return sorted.end() - std::lower_bound(sorted.begin(), sorted.end(), limit); }
+  };
+
+  std::vector<std::vector<Ranked>> laws_;
+};
 
 class Namer {
  public:
@@ -74,56 +118,30 @@ class Namer {
     std::vector<Choice> choices{{}};
     for (Index j = 0; j < count(); ++j) choices.push_back({j});
     const auto drawn = pseudo_.draw(pseudo_.truth({}, out_.base), choices, {o_.draws, 1});
-    out_.base_p = p_of(collect(drawn, [](const auto& d) { return d.fit[0].q; }), out_.base.q);
+    goodness_of_base(drawn);
     out_.base_theta = of_theta(p_.data, pseudo_.intervals({}, out_.base, o_.comparison_draws, 2));
     for (Index i = 0; i < out_.base.coded.size(); ++i) {
       const Coordinate& c = p_.data.theta[i];
-      if (std::fabs(out_.base.coded[i]) > kAtLimit) out_.at_limit.push_back(c.name);
+      if (at_limit(out_.base.coded[i], {-1, 1})) out_.at_limit.push_back(c.name);
     }
-    std::vector<std::vector<double>> delta(count());
+    std::vector<std::vector<double>> gains;
+    std::vector<double> observed;
+    std::vector<Index> asked;
     for (Index j = 0; j < count(); ++j) {
-      delta[j] = collect(drawn, [j](const auto& d) { return d.fit[0].q - d.fit[j + 1].q; });
+      const auto gain = collect(drawn, [j](const auto& d) { return d.fit[0].q - d.fit[j + 1].q; });
       Judged judged;
       judged.fit = pseudo_.fit({j});
       judged.delta_q = out_.base.q - judged.fit.q;
       out_.judged.push_back(judged);
       visibility(j);
-      if (tested(j)) out_.judged[j].p = p_of(delta[j], judged.delta_q);
+      if (!tested(j)) continue;
+      out_.judged[j].p = p_of(gain, judged.delta_q);
+      gains.push_back(gain);
+      observed.push_back(judged.delta_q);
+      asked.push_back(j);
     }
-    correct_family(delta);
-    mismatch(drawn);
-  }
-
-  /// min-p (Westfall and Young 1993): how often the smallest p of a draw is as small, within each law of noise. Draws and what was
-  /// observed are ranked together, so that neither has a finer scale.
-  void correct_family(const std::vector<std::vector<double>>& delta) {
-    const std::size_t laws = pseudo_.laws();
-    for (Judged& j : out_.judged) j.p_family = j.tested ? 0 : 1;
-    for (std::size_t law = 0; law < laws; ++law) {
-      std::vector<double> least, observed;
-      for (std::size_t k = 0; k < delta.size(); ++k) {
-        if (!tested(k)) {
-          observed.push_back(1);
-          continue;
-        }
-        std::vector<double> own;
-        for (std::size_t b = law; b < delta[k].size(); b += laws) own.push_back(delta[k][b]);
-        std::vector<double> pool = own;
-        pool.push_back(out_.judged[k].delta_q);
-        std::sort(pool.begin(), pool.end());
-        const auto p = [&](double value) {
-          return static_cast<double>(pool.end() - std::lower_bound(pool.begin(), pool.end(), value)) / static_cast<double>(pool.size());
-        };
-        least.resize(own.size(), 1);
-        for (std::size_t b = 0; b < own.size(); ++b) least[b] = std::min(least[b], p(own[b]));
-        observed.push_back(p(out_.judged[k].delta_q));
-      }
-      for (std::size_t k = 0; k < delta.size(); ++k) {
-        const auto smaller = std::count_if(least.begin(), least.end(), [&](double p) { return p <= observed[k]; });
-        out_.judged[k].p_family =
-            std::max(out_.judged[k].p_family, static_cast<double>(1 + smaller) / static_cast<double>(1 + least.size()));
-      }
-    }
+    const Family family(gains, pseudo_.laws());
+    for (std::size_t k = 0; k < asked.size(); ++k) out_.judged[asked[k]].p_family = family.p(k, observed);
   }
 
   void visibility(Index j) {
@@ -139,13 +157,17 @@ class Namer {
     judged.lambda_curve = seen.curve();
     judged.undetectable = alternative.screened_out || std::sqrt(judged.lambda) < o_.noise_units;
     judged.strength = without_interval(found);
+    judged.at_end = alternative.candidate && at_limit(found, alternative.range);
+    for (Index i = 0; i < judged.fit.coded.size(); ++i)
+      judged.at_end = judged.at_end || (!p_.data.theta[i].nuisance() && at_limit(judged.fit.coded[i], {-1, 1}));
     for (Index i = 0; i < judged.fit.coded.size(); ++i) {
       judged.theta.push_back(without_interval(p_.data.theta[i].natural(judged.fit.coded[i])));
     }
   }
 
-  /// Residuals of the retuned base, the largest of a draw as the measure (Westfall and Young's max-T).
-  void mismatch(const std::vector<PseudoData::Drawn>& drawn) {
+  /// One p for whether the data look like a draw of the base: Q and the largest residual together (min-p), and of every observable within
+  /// that family, so that none stands out of data that look like the base.
+  void goodness_of_base(const std::vector<PseudoData::Drawn>& drawn) {
     const Index n = p_.observed.size();
     VectorXd mean = VectorXd::Zero(n), square = VectorXd::Zero(n);
     for (const auto& d : drawn) mean += d.residual, square += d.residual.cwiseAbs2();
@@ -153,7 +175,10 @@ class Namer {
     const VectorXd sd = (square / draws - (mean / draws).cwiseAbs2()).cwiseMax(1e-300).cwiseSqrt();
     const auto largest = collect(drawn, [&](const auto& d) { return d.residual.cwiseQuotient(sd).cwiseAbs().maxCoeff(); });
     const VectorXd base = pseudo_.surrogate().at(out_.base.coded), z = (p_.observed - base).cwiseQuotient(sd);
-    for (Index i = 0; i < n; ++i) out_.mismatch.push_back({i, base[i], z[i], p_of(largest, std::fabs(z[i]))});
+    const Family family({collect(drawn, [](const auto& d) { return d.fit[0].q; }), largest}, pseudo_.laws());
+    const double q = out_.base.q;
+    out_.base_p = std::min(family.p(0, {q, z.cwiseAbs().maxCoeff()}), family.p(1, {q, z.cwiseAbs().maxCoeff()}));
+    for (Index i = 0; i < n; ++i) out_.mismatch.push_back({i, base[i], z[i], family.p(1, {q, std::fabs(z[i])})});
     std::stable_sort(out_.mismatch.begin(), out_.mismatch.end(),
                      [](const Mismatch& a, const Mismatch& b) { return std::fabs(a.z) > std::fabs(b.z); });
   }

@@ -70,6 +70,7 @@ struct Judged {
   double lambda_found = 0;  ///< at the fitted strength
   std::vector<std::pair<double, double>> lambda_curve;  ///< (strength, λ), strengths rising; of candidates
   bool undetectable = false;
+  bool at_end = false;                  ///< the fitted strength, or a parameter beside it, stands at an end of what was simulated
   int runs = 0;                         ///< of the bank with this candidate
   bool tested = true;                   ///< else it has no runs, or its first ones showed that it cannot matter; its p are 1
   base::Interval90 strength;            ///< its interval is worked out when some candidate is significant

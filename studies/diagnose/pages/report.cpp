@@ -11,7 +11,6 @@
 namespace millscope::diagnose {
 namespace {
 
-constexpr double kLevel = 0.05;
 constexpr std::size_t kShown = 8;  // rows of the mismatch
 constexpr std::size_t kCells = 4;  // of the missing force, in each condition
 
@@ -39,7 +38,7 @@ void where_it_differs(const Told& t, std::string& out) {
       "## Where the retuned base differs\n\nThe base with its parameters refitted to everything: Q = {:.1f} over {} observables, p = "
       "{:.2g} that a recording of this very model looks as bad.\n\n",
       n.base.q, t.diagnosis.problem.observed.size(), n.base_p);
-  if (n.mismatch.empty() || n.mismatch.front().p > kLevel)
+  if (n.mismatch.empty() || n.mismatch.front().p > t.question.level)
     out += "No single observable stands out; the largest differences, which chance alone makes as large:\n\n";
   for (std::size_t i = 0; i < std::min(kShown, n.mismatch.size()); ++i) add(out, "{}. {}\n", i + 1, mismatch_sentence(t, n.mismatch[i]));
   out += "\n";

@@ -24,7 +24,8 @@ struct Candidate {
   std::vector<std::string> paths;  ///< of the case, that take the value; empty: it is on or off
   double null_value = 0, far = 1;  ///< where it vanishes; the far end of its prior range, strength 1
   naming::StrengthRange range;     ///< of the strength (value − null)/(far − null)
-  std::vector<std::string> excludes;
+  std::vector<std::string> excludes = {};
+  naming::StrengthRange farthest = {};  ///< as far beyond its prior as the case allows, at most as far again
 
   bool on_or_off() const { return paths.empty(); }
   double value(double strength) const { return null_value + strength * (far - null_value); }

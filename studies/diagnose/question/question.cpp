@@ -10,11 +10,14 @@
 #include "kernel/config/units.hpp"
 #include "kernel/config/writer.hpp"
 #include "studies/diagnose/question/camera_frame.hpp"
+#include "studies/diagnose/question/feasible.hpp"
 
 namespace millscope::diagnose {
 namespace {
 
 using config::Node;
+
+constexpr double kLeastLevel = 1e-4, kMostLevel = 0.2;
 
 double number(const Node& node) {
   const config::Quantity quantity = config::read_quantity(node);
@@ -107,16 +110,6 @@ Candidate read_candidate(const Node& node, const Library& library) {
     node.fail("has a 'path' but no 'range'; give both ends, e.g. [3 mm, 5 mm]");
   }
   return c;
-}
-
-/// The case with some settings, written out; throws base::UserError where plugins or reader refuse it.
-std::string resolved(const calibrate::Study& study, const std::vector<std::string>& settings, const host::Registry& registry) {
-  std::vector<std::string> all = study.conditions[study.with_role(calibrate::Role::fit).front()].settings;
-  all.insert(all.end(), settings.begin(), settings.end());
-  const config::Case c = config::read_case(study.base.string(), all);
-  const std::vector<const Descriptor*> descriptors = registry.descriptors();
-  config::finish(c, descriptors);
-  return config::resolved_yaml(c, descriptors);
 }
 
 /// The parameters in the middle of their ranges must give a case that can be run.
@@ -329,6 +322,9 @@ Question read_question(const std::filesystem::path& file, const std::vector<std:
     };
     question.bank = {whole("base", 24, 8), whole("each", 10, 1), whole("first", 4, 1), read_develop(*node, question.study)};
   }
+  if (const auto node = root.find("level"))
+    question.level = config::read_number(*node, "1", config::between(kLeastLevel, kMostLevel, "it is how often a false alarm is allowed"));
+  find_farthest(registry, question);
   return question;
 }
 

@@ -11,6 +11,7 @@
 //     ends: {sentence: The mill has end faces., set: {geometry.liner.end_faces: true}}
 //   bank: {base: 24, each: 10, develop_s: 0.5}   # begin where other simulations of the bank ended
 //   power_error: 0.5 %                           # of speed and meter together
+//   level: 5 %                                   # how often something is said to be missing where nothing is
 #pragma once
 
 #include <optional>
@@ -41,13 +42,20 @@ struct BankSize {
   std::optional<double> develop = {};  ///< s that a run which begins at another's end turns before it is looked at; none: all begin at rest
 };
 
+/// How far a parameter may lie beyond its range, natural units.
+struct Farthest {
+  double low = 0, high = 0;
+};
+
 struct Question {
   calibrate::Study study;
   std::vector<Nuisance> nuisances;  ///< those of the case, those of the case that are varied apart, those of the camera
   std::vector<Candidate> candidates;
   std::vector<std::string> left_out;  ///< hypotheses that do not apply, and why
   BankSize bank;
-  std::vector<double> speed;  ///< |Ω| of every condition, rad/s
+  double level = 0.05;             ///< of every statement, for all candidates together
+  std::vector<Farthest> farthest;  ///< of each parameter, as far as the case allows: at most half its range beyond either end
+  std::vector<double> speed;       ///< |Ω| of every condition, rad/s
 
   std::size_t dimensions() const { return study.parameters.size() + nuisances.size(); }
   /// Of θ, that vary in every simulation.

@@ -10,6 +10,7 @@
 
 #include "studies/diagnose/naming/visibility.hpp"
 #include "studies/diagnose/question/camera_frame.hpp"
+#include "studies/diagnose/verdict/reach.hpp"
 
 namespace millscope::diagnose {
 namespace {
@@ -69,6 +70,27 @@ Screened screened(const Question& question, const calibrate::Machinery& machiner
   return out;
 }
 
+naming::Problem problem_after(const Screened& screening, const Diagnosis& diagnosis) {
+  naming::Problem problem = problem_of(diagnosis.question, diagnosis.evidence, diagnosis.bank, diagnosis.fit);
+  for (naming::Alternative& r : problem.alternatives) r.screened_out = r.candidate && screening.candidate[*r.candidate];
+  return problem;
+}
+
+/// Where a fit stands at an end of a range, simulations beyond it: once.
+void reach_farther(const calibrate::Machinery& machinery, Screened& screening, double noise_units, Diagnosis& diagnosis) {
+  const std::vector<End> ends = ends_reached(diagnosis.question, diagnosis.problem, noise_units);
+  if (ends.empty()) return;
+  Question wider = diagnosis.question;
+  for (const End& end : ends) {
+    note(machinery, {sentence_of(diagnosis.question, end)}, diagnosis);
+    for (BankPoint& p : plan_beyond(diagnosis.question, end)) screening.points.push_back(std::move(p));
+    wider = widened(std::move(wider), end);
+  }
+  diagnosis.question = std::move(wider);
+  diagnosis.bank = filled(diagnosis.question, machinery, screening.points, diagnosis.bank.conditions, diagnosis);
+  diagnosis.problem = problem_after(screening, diagnosis);
+}
+
 /// What was noted of the recordings; what holds for several is said once.
 void note_recordings(const Question& question, Diagnosis& diagnosis) {
   std::vector<std::pair<std::string, std::string>> lines;  // what; of which conditions
@@ -114,20 +136,22 @@ const char* name_of(Verdict verdict) {
   return "";
 }
 
-Diagnosis diagnose(const Question& question, const calibrate::Machinery& given, Evidence evidence, const naming::Options& options) {
+Diagnosis diagnose(const Question& asked, const calibrate::Machinery& given, Evidence evidence, const naming::Options& options) {
   std::set<std::filesystem::path> runs;
   const calibrate::Machinery machinery = noting(given, runs);
   Diagnosis diagnosis;
+  diagnosis.question = asked;
+  const Question& question = diagnosis.question;
   diagnosis.evidence = std::move(evidence);
   diagnosis.fit = question.study.with_role(calibrate::Role::fit);
   diagnosis.held = question.study.with_role(calibrate::Role::held_out);
-  const Screened screening = screened(question, machinery, diagnosis, options.noise_units);
+  Screened screening = screened(question, machinery, diagnosis, options.noise_units);
   std::vector<std::size_t> all = diagnosis.fit;
   all.insert(all.end(), diagnosis.held.begin(), diagnosis.held.end());
   diagnosis.bank = filled(question, machinery, screening.points, all, diagnosis);
   note(machinery, unsettled(question, diagnosis.bank, diagnosis.held), diagnosis);
-  diagnosis.problem = problem_of(question, diagnosis.evidence, diagnosis.bank, diagnosis.fit);
-  for (naming::Alternative& r : diagnosis.problem.alternatives) r.screened_out = r.candidate && screening.candidate[*r.candidate];
+  diagnosis.problem = problem_after(screening, diagnosis);
+  reach_farther(machinery, screening, options.noise_units, diagnosis);
   diagnosis.naming = naming::name_candidates(diagnosis.problem, options);
   const HeldOutRequest request{.question = question,
                                .machinery = machinery,
@@ -160,7 +184,7 @@ Diagnosis diagnose(const Question& question, const calibrate::Machinery& given, 
   }
   for (const std::string& line : question.left_out) diagnosis.notes.push_back("not tested: " + line);
   diagnosis.doubts = campaign::shared_doubts(runs);
-  conclude(question, options.level, options.noise_units, diagnosis);
+  conclude(asked, options.level, options.noise_units, diagnosis);
   return diagnosis;
 }
 

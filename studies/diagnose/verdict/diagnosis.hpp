@@ -15,6 +15,7 @@ enum class Verdict { no_mismatch, named, ambiguous, outside_library, undetectabl
 const char* name_of(Verdict verdict);
 
 struct Diagnosis {
+  Question question;  ///< as it was answered: what was too narrow is wider (reach.hpp)
   Verdict verdict = Verdict::undetectable;
   std::string sentence;            ///< the verdict in words
   std::vector<std::string> named;  ///< hypotheses; several: two together, or a class that these data cannot split
@@ -38,13 +39,13 @@ struct Diagnosis {
 Evidence evidence_of(const Question& question, const host::Registry& registry, const calibrate::Session& session);
 
 /// Everything from the bank on.
-Diagnosis diagnose(const Question& question, const calibrate::Machinery& machinery, Evidence evidence, const naming::Options& options);
+Diagnosis diagnose(const Question& asked, const calibrate::Machinery& machinery, Evidence evidence, const naming::Options& options);
 
 /// Whether one candidate would be named if the held-out conditions confirm it: significant, sufficient, alone in its class, and no second
 /// beside it.
 bool about_to_name(const naming::Result& naming, double level);
 
 /// Verdict, sentence, names and next experiment of a diagnosis that has everything else.
-void conclude(const Question& question, double level, double noise_units, Diagnosis& diagnosis);
+void conclude(const Question& asked, double level, double noise_units, Diagnosis& diagnosis);
 
 }  // namespace millscope::diagnose

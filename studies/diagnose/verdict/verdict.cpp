@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "studies/diagnose/naming/visibility.hpp"
 #include "studies/diagnose/verdict/diagnosis.hpp"
+#include "studies/diagnose/verdict/reach.hpp"
 
 namespace millscope::diagnose {
 namespace {
@@ -88,13 +91,40 @@ std::string to_see(const Diagnosis& diagnosis, double noise_units) {
   return now + fmt::format("; about {:.2g} times the {:.0f} s recorded would bring it to {:.0f}.", longer, recorded, noise_units);
 }
 
-/// What to do where no candidate suffices: the surest cell of the missing acceleration says where to look.
+/// Contact parameters of the base that the study neither fits nor doubts, with their values: "pairs.glass~glass.restitution (0.8)".
+std::vector<std::string> taken_for_granted(const Question& question) {
+  const config::Case base = config::read_case(question.study.base.string(), question.study.conditions.front().settings);
+  std::set<std::string> doubted;
+  for (const calibrate::Parameter& p : question.study.parameters) {
+    doubted.insert(p.path);
+    doubted.insert(p.tied.begin(), p.tied.end());
+  }
+  for (const Nuisance& n : question.nuisances) doubted.insert(n.path);
+  for (const Candidate& c : question.candidates) doubted.insert(c.paths.begin(), c.paths.end());
+  std::vector<std::string> out;
+  for (const std::string& key : base.pairs.keys()) {
+    for (const char* name : {"restitution", "static_friction"}) {
+      const std::string path = fmt::format("pairs.{}.{}", key, name);
+      if (doubted.contains(path) || !base.pairs.section().at(key).has(name)) continue;
+      out.push_back(fmt::format("{} ({:.4g})", path, value_in(base, path, base.root.where())));
+    }
+  }
+  return out;
+}
+
+/// What to do where no candidate suffices: ask for what nobody fits; the surest cell of the missing acceleration says where to look.
 std::string to_extend(const Question& question, const Diagnosis& diagnosis, double level) {
   const MissingForce* surest = nullptr;
   for (const MissingForce& m : diagnosis.missing) {
     if (!m.cells.empty() && m.cells.front().p <= (surest == nullptr ? level : surest->cells.front().p)) surest = &m;
   }
-  return "Add a candidate of your own under 'hypotheses', with a 'path' or a 'set' of the case or as a plugin." +
+  const std::vector<std::string> granted = taken_for_granted(question);
+  const std::string first = granted.empty() ? ""
+                                            : fmt::format(
+                                                  "First ask whether what this study does not fit is right: {}; give it a range under "
+                                                  "'parameters'. ",
+                                                  fmt::join(granted, ", "));
+  return first + "Add a candidate of your own under 'hypotheses', with a 'path' or a 'set' of the case or as a plugin." +
          (surest == nullptr
               ? ""
               : " What the retuned base lacks most surely: " + force_sentence(question, surest->condition, surest->cells.front()));
@@ -117,6 +147,33 @@ const naming::Pair* second_beside(const naming::Result& naming, double level) {
   if (naming.pairs.empty()) return nullptr;
   const naming::Pair& pair = naming.pairs.front();
   return pair.p <= level && pair.p_first <= level && pair.goodness_p > level ? &pair : nullptr;
+}
+
+/// The fit that the verdict speaks of, with the candidates that are on.
+std::pair<naming::FitResult, std::vector<naming::ActiveCandidate>> last_fit(const Diagnosis& diagnosis) {
+  const naming::Result& n = diagnosis.naming;
+  if (!n.best) return {n.base, {}};
+  const auto& alternatives = diagnosis.problem.alternatives;
+  if (!diagnosis.two_effects) return {n.judged[*n.best].fit, naming::active_of(alternatives[*n.best], n.judged[*n.best].fit)};
+  const naming::Pair& pair = n.pairs.front();
+  std::vector<naming::ActiveCandidate> active;
+  for (const Index k : {pair.first, pair.second}) {
+    if (alternatives[k].candidate) active.push_back({*alternatives[k].candidate, pair.fit.strengths.at(active.size())});
+  }
+  return {pair.fit, active};
+}
+
+/// What lies outside the ranges that the study gave, and what stands at the end of all that was simulated.
+void tell_ranges(const Question& asked, Diagnosis& diagnosis) {
+  const auto [fit, active] = last_fit(diagnosis);
+  const std::vector<std::string> outside = outside_ranges(asked, diagnosis.problem, fit, active);
+  if (!outside.empty()) {
+    diagnosis.sentence += fmt::format(" The range is too narrow: {}.", fmt::join(outside, "; "));
+    if (diagnosis.next_experiment.empty()) diagnosis.next_experiment = "Widen the range in the study if such a value is possible.";
+  }
+  if (diagnosis.naming.best && diagnosis.naming.judged[*diagnosis.naming.best].at_end)
+    diagnosis.sentence +=
+        " The fit stands at an end of what was simulated: how strong the effect is, and what friction is beside it, is not known.";
 }
 
 /// What limits the verdict, whatever it is.
@@ -196,8 +253,10 @@ bool about_to_name(const naming::Result& naming, double level) {
          naming.kept.size() == 1;
 }
 
-void conclude(const Question& question, double level, double noise_units, Diagnosis& diagnosis) {
-  reservations(diagnosis);
+namespace {
+
+void decide(double level, double noise_units, Diagnosis& diagnosis) {
+  const Question& question = diagnosis.question;
   if (!diagnosis.naming.best) return nothing_named(question, level, noise_units, diagnosis);
   const naming::Judged& best = diagnosis.naming.judged[*diagnosis.naming.best];
   const std::string name = name_of(diagnosis, *diagnosis.naming.best);
@@ -244,6 +303,14 @@ void conclude(const Question& question, double level, double noise_units, Diagno
   diagnosis.sentence = fmt::format("{} ({}; family-wise p = {:.2g}; every other candidate is rejected and the held-out conditions {}.)",
                                    meaning(question, diagnosis, *diagnosis.naming.best), name, best.p_family,
                                    is_nuisance(diagnosis) ? "do not contradict" : "are predicted better");
+}
+
+}  // namespace
+
+void conclude(const Question& asked, double level, double noise_units, Diagnosis& diagnosis) {
+  reservations(diagnosis);
+  decide(level, noise_units, diagnosis);
+  tell_ranges(asked, diagnosis);
 }
 
 }  // namespace millscope::diagnose

@@ -1,0 +1,57 @@
+#include "studies/diagnose/question/feasible.hpp"
+
+#include <fmt/format.h>
+
+#include "kernel/base/error.hpp"
+#include "kernel/config/writer.hpp"
+
+namespace millscope::diagnose {
+namespace {
+
+/// The farthest of `from` + 1, ½ and ¼ `step` at which the case can be run; `from` where none can.
+template <class Settings>
+double farthest(const calibrate::Study& study, const host::Registry& registry, double from, double step, const Settings& settings_at) {
+  for (const double share : {1.0, 0.5, 0.25}) {
+    const double value = from + share * step;
+    try {
+      resolved(study, settings_at(value), registry);
+      return value;
+    } catch (const base::UserError&) {  // no case has this value
+    }
+  }
+  return from;
+}
+
+}  // namespace
+
+std::string resolved(const calibrate::Study& study, const std::vector<std::string>& settings, const host::Registry& registry) {
+  std::vector<std::string> all = study.conditions[study.with_role(calibrate::Role::fit).front()].settings;
+  all.insert(all.end(), settings.begin(), settings.end());
+  const config::Case c = config::read_case(study.base.string(), all);
+  const std::vector<const Descriptor*> descriptors = registry.descriptors();
+  config::finish(c, descriptors);
+  return config::resolved_yaml(c, descriptors);
+}
+
+void find_farthest(const host::Registry& registry, Question& question) {
+  constexpr double kBeyond = 0.5;  // of a parameter's range
+  for (const calibrate::Parameter& p : question.study.parameters) {
+    const auto settings = [&](double value) {
+      std::vector<std::string> out{fmt::format("{}={:.4g}", p.path, value)};
+      for (const std::string& path : p.tied) out.push_back(fmt::format("{}={:.4g}", path, value));
+      return out;
+    };
+    const double step = kBeyond * (p.high - p.low);
+    question.farthest.push_back(
+        {farthest(question.study, registry, p.low, -step, settings), farthest(question.study, registry, p.high, step, settings)});
+  }
+  for (Candidate& c : question.candidates) {
+    c.farthest = c.range;
+    if (c.on_or_off()) continue;
+    const auto settings = [&](double strength) { return settings_of(c, strength); };
+    c.farthest.high = farthest(question.study, registry, c.range.high, c.range.high, settings);
+    if (c.range.low < 0) c.farthest.low = farthest(question.study, registry, c.range.low, c.range.low, settings);
+  }
+}
+
+}  // namespace millscope::diagnose

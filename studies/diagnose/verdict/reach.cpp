@@ -1,0 +1,79 @@
+#include "studies/diagnose/verdict/reach.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace millscope::diagnose {
+namespace {
+
+const std::string& name_of(const Question& question, const End& end) {
+  return end.candidate ? question.candidates[*end.candidate].name : question.study.parameters[*end.parameter].name;
+}
+
+/// What a strength stands for; what a parameter is.
+double value_at(const Question& question, const End& end, double place) {
+  return end.candidate ? question.candidates[*end.candidate].value(place) : place;
+}
+
+void add_new(std::vector<End>& ends, const End& end) {
+  if (std::find(ends.begin(), ends.end(), end) == ends.end()) ends.push_back(end);
+}
+
+void add_parameters(const Question& question, const naming::FitResult& fit, std::vector<End>& ends) {
+  for (Index i = 0; i < std::ssize(question.study.parameters); ++i) {
+    if (naming::at_limit(fit.coded[i], {-1, 1})) add_new(ends, {.parameter = i, .upper = fit.coded[i] > 0});
+  }
+}
+
+}  // namespace
+
+std::vector<End> ends_reached(const Question& question, const naming::Problem& problem, double noise_units) {
+  const naming::Surrogate surrogate(problem.data);
+  const naming::Weighting weighting(problem.covariance, surrogate);
+  std::vector<naming::StrengthRange> ranges;
+  for (const Candidate& c : question.candidates) ranges.push_back(c.on_or_off() ? naming::StrengthRange{1, 1} : c.range);
+  const auto fit = [&](std::vector<Index> on) {
+    return naming::Model(problem.data, surrogate, weighting, {std::move(on), ranges, {}}).fit(problem.observed);
+  };
+  std::vector<End> ends;
+  const naming::FitResult base = fit({});
+  add_parameters(question, base, ends);
+  for (const naming::Alternative& a : problem.alternatives) {
+    if (!a.candidate || a.screened_out || surrogate.features().count(*a.candidate) == 0) continue;
+    const naming::FitResult with = fit({*a.candidate});
+    if (base.q - with.q < noise_units * noise_units) continue;
+    add_parameters(question, with, ends);
+    const double strength = with.strengths.front();
+    if (naming::at_limit(strength, ranges[*a.candidate])) add_new(ends, {.candidate = a.candidate, .upper = strength > 0});
+  }
+  std::erase_if(ends, [&](const End& end) { return place_of(question, end) == farthest_of(question, end); });
+  return ends;
+}
+
+std::string sentence_of(const Question& before, const End& end) {
+  return fmt::format("{}: a fit stands at the {} end of its range, {:.4g}; simulated {} to {:.4g}, too", name_of(before, end),
+                     end.upper ? "upper" : "lower", value_at(before, end, place_of(before, end)), end.upper ? "up" : "down",
+                     value_at(before, end, farthest_of(before, end)));
+}
+
+std::vector<std::string> outside_ranges(const Question& asked, const naming::Problem& problem, const naming::FitResult& fit,
+                                        const std::vector<naming::ActiveCandidate>& active) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < asked.study.parameters.size(); ++i) {
+    const calibrate::Parameter& p = asked.study.parameters[i];
+    const double value = problem.data.theta[i].natural(fit.coded[static_cast<Index>(i)]);
+    if (rounded(value) < rounded(p.low) || rounded(value) > rounded(p.high))
+      out.push_back(fmt::format("{} = {:.3g} lies outside its range {:.4g} … {:.4g}", p.name, value, p.low, p.high));
+  }
+  for (const naming::ActiveCandidate& a : active) {
+    const Candidate& c = asked.candidates[a.candidate];
+    if (c.on_or_off() || (a.strength <= c.range.high && a.strength >= c.range.low)) continue;
+    const auto [low, high] = std::minmax({c.value(c.range.low), c.value(c.range.high)});
+    out.push_back(
+        fmt::format("{}: {} = {:.3g} lies outside its prior range {:.4g} … {:.4g}", c.name, c.parameter, c.value(a.strength), low, high));
+  }
+  return out;
+}
+
+}  // namespace millscope::diagnose

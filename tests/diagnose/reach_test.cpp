@@ -1,0 +1,95 @@
+// Ranges that are too narrow: what the bank adds, and what is said of it.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "made_up_diagnosis.hpp"
+#include "studies/diagnose/bank/beyond.hpp"
+
+using namespace millscope;
+using namespace millscope::diagnose;
+using Catch::WithinAbs;
+using Catch::Matchers::Contains;
+using naming::Judged;
+using testing::Scratch;
+
+TEST_CASE("beyond an end of a range a bank has simulations in the strip that follows, and keeps all others") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  const Index rolling = Index{0};
+  const End friction{.parameter = 0, .upper = true}, strength{.candidate = rolling, .upper = true};
+  CHECK(place_of(q, friction) == 0.6);
+  CHECK(farthest_of(q, friction) == Approx(0.85));
+  CHECK(farthest_of(q, {.parameter = 0, .upper = false}) > 0);  // no friction is below 0
+  CHECK(farthest_of(q, strength) == 2);
+  std::set<double> values;
+  for (const BankPoint& p : plan_beyond(q, friction)) {
+    CHECK(p.group == "base>bead_friction");
+    CHECK(p.active.empty());
+    CHECK(p.theta[0] >= 0.6);
+    CHECK(p.theta[0] <= 0.85);
+    values.insert(p.theta[0]);
+  }
+  CHECK(values.size() == static_cast<std::size_t>((q.bank.base + 2) / 3));
+  const std::vector<BankPoint> stronger = plan_beyond(q, strength);
+  CHECK(std::ssize(stronger) == (q.bank.each + 1) / 2);
+  for (const BankPoint& p : stronger) {
+    CHECK(p.group == "rolling_resistance>");
+    CHECK(p.active.front().strength > 1.05);
+    CHECK(p.active.front().strength <= 2);
+  }
+  const Question wider = widened(widened(q, friction), strength);
+  CHECK(wider.study.parameters[0].high == Approx(0.85));
+  CHECK(wider.candidates[rolling].range.high == 2);
+  CHECK(place_of(wider, strength) == farthest_of(wider, strength));  // no farther
+  // What a parameter set says is in natural units: the same simulations.
+  for (const BankPoint& p : plan_group(q, {rolling, {}}, 6)) CHECK(simulation_of(q, p, 0).settings == simulation_of(wider, p, 0).settings);
+}
+
+TEST_CASE("a strength beyond its prior is found, for the bank reaches farther by itself") {
+  const Diagnosis d = diagnosed(usual(), with(kRolling + "=0.3"));  // the prior ends at 0.2
+  INFO(d.sentence);
+  REQUIRE(d.named == std::vector<std::string>{"rolling_resistance"});
+  const Judged& found = judged(d, "rolling_resistance");
+  CHECK_FALSE(found.at_end);
+  CHECK(found.strength.low < 1.5);
+  CHECK(found.strength.high > 1.5);
+  CHECK(found.strength.value > 1.2);
+  CHECK(found.theta[0].low < 0.3);
+  CHECK(found.theta[0].high > 0.3);
+  CHECK_THAT(d.sentence, Contains("The range is too narrow: rolling_resistance: rolling_friction = 0.") && Contains("prior range 0 … 0.2"));
+  CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
+    return note == "rolling_resistance: a fit stands at the upper end of its range, 0.2; simulated up to 0.4, too";
+  }));
+}
+
+TEST_CASE("a strength beyond all that was simulated is said to be unknown") {
+  const Diagnosis d = diagnosed(usual(), with(kRolling + "=0.8"));
+  INFO(d.sentence);
+  CHECK(judged(d, "rolling_resistance").at_end);
+  CHECK_THAT(d.sentence, Contains("The fit stands at an end of what was simulated"));
+}
+
+TEST_CASE("friction beyond its range is no physics, and the range is said to be too narrow") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  MadeUpMill mill(q, usual(), {"pairs.glass~glass.static_friction=0.8", kTheta[1], kTheta[2]});
+  const Diagnosis d = found(q, mill);
+  INFO(d.sentence);
+  CHECK(d.verdict == Verdict::no_mismatch);
+  CHECK(d.named.empty());
+  CHECK_THAT(d.naming.base_theta[0].value, WithinAbs(0.8, 0.05));
+  CHECK_THAT(d.sentence, Contains("The range is too narrow: bead_friction = 0.") && Contains("outside its range 0.1 … 0.6"));
+  CHECK_THAT(d.next_experiment, Contains("Widen the range"));
+  CHECK(d.question.study.parameters[0].high == Approx(0.85));
+}
+
+TEST_CASE("where nothing of the library helps, what the study takes for granted is asked for first") {
+  Physics elsewhere{"pairs.glass~glass.restitution", 0.8, 0.5, 3, {51, 52, 53}};
+  std::vector<Physics> physics = usual();
+  physics.push_back(elsewhere);
+  const Diagnosis d = diagnosed(physics, with("pairs.glass~glass.restitution=0.4"));
+  INFO(d.sentence);
+  CHECK(d.verdict == Verdict::outside_library);
+  CHECK_THAT(d.next_experiment, Contains("First ask whether what this study does not fit is right: pairs.glass~glass.restitution (0.8)"));
+}
