@@ -93,3 +93,32 @@ TEST_CASE("where nothing of the library helps, what the study takes for granted 
   CHECK(d.verdict == Verdict::outside_library);
   CHECK_THAT(d.next_experiment, Contains("First ask whether what this study does not fit is right: pairs.glass~glass.restitution (0.8)"));
 }
+
+TEST_CASE("what could be seen for itself but not beside what was found is told") {
+  std::vector<Physics> physics = usual();
+  physics[1].direction = physics[0].direction, physics[1].size = 1.2;  // a bridge does what rolling friction does, but less
+  const Diagnosis d = diagnosed(physics, with(kRolling + "=0.1"), 0.6);
+  REQUIRE(d.naming.best);
+  REQUIRE(d.problem.alternatives[*d.naming.best].name == "rolling_resistance");
+  CHECK(judged(d, "capillary_bridge").lambda > 9);
+  CHECK(judged(d, "capillary_bridge").lambda_beside < 9);
+  CHECK(judged(d, "lifter_wear").lambda_beside > 9);
+  CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
+    return note.find("could not show even at its strongest: capillary_bridge") != std::string::npos &&
+           note.find("lifter_wear") == std::string::npos;
+  }));
+}
+
+TEST_CASE("two effects that do not add up are both told, though neither is named") {
+  std::vector<Physics> physics = usual();
+  physics.push_back({"pairs.glass~glass.restitution", 0.8, 0.5, 2.5, {51, 52, 53}});  // what the two do together besides
+  std::vector<std::string> truth = with(kRolling + "=0.16");
+  truth.push_back(kBridge + "=0.06");
+  truth.push_back("pairs.glass~glass.restitution=0.4");
+  const Diagnosis d = diagnosed(physics, truth);
+  INFO(d.sentence);
+  CHECK(d.verdict == Verdict::outside_library);
+  CHECK(d.named.empty());
+  CHECK_THAT(d.sentence, Contains("beside it helps significantly, too") && Contains("the sum of the two does not suffice either"));
+  CHECK_THAT(d.next_experiment, Contains("into the base case, with a range for its strength"));
+}

@@ -70,10 +70,12 @@ struct Judged {
   double lambda_found = 0;  ///< at the fitted strength
   std::vector<std::pair<double, double>> lambda_curve;  ///< (strength, λ), strengths rising; of candidates
   bool undetectable = false;
-  bool at_end = false;                  ///< the fitted strength, or a parameter beside it, stands at an end of what was simulated
-  int runs = 0;                         ///< of the bank with this candidate
-  bool tested = true;                   ///< else it has no runs, or its first ones showed that it cannot matter; its p are 1
-  base::Interval90 strength;            ///< its interval is worked out when some candidate is significant
+  bool at_end = false;  ///< the fitted strength, or a parameter beside it, stands at an end of what was simulated
+  int runs = 0;         ///< of the bank with this candidate
+  double lambda_beside =
+      kNotWorkedOut;          ///< λ at full strength beside the best candidate, which is refitted as well; of others that may be there too
+  bool tested = true;         ///< else it has no runs, or its first ones showed that it cannot matter; its p are 1
+  base::Interval90 strength;  ///< its interval is worked out when some candidate is significant
   std::vector<base::Interval90> theta;  ///< natural units; the same
   double goodness_p = kNotWorkedOut;    ///< whether the data look like a draw of this model; the same
   double against_best_p = 1;            ///< under this candidate: how often the best would be better by so much

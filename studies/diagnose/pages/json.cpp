@@ -75,6 +75,7 @@ Json hypotheses(const Told& t) {
                    {"lambda", g.lambda},
                    {"lambda_found", g.lambda_found},
                    {"lambda_at", lambda_curve(t, j)},
+                   {"lambda_beside", g.lambda_beside},
                    {"undetectable", g.undetectable},
                    {"tested", g.tested},
                    {"p_against_best", compared ? Json(g.against_best_p) : Json()},

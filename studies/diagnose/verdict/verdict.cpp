@@ -176,6 +176,40 @@ void tell_ranges(const Question& asked, Diagnosis& diagnosis) {
         " The fit stands at an end of what was simulated: how strong the effect is, and what friction is beside it, is not known.";
 }
 
+/// What could be seen for itself, but not beside the best: it may be there as well.
+void tell_hidden(double noise_units, Diagnosis& diagnosis) {
+  if (!diagnosis.naming.best || diagnosis.two_effects || diagnosis.verdict == Verdict::outside_library) return;
+  std::vector<std::string> hidden;
+  for (std::size_t j = 0; j < diagnosis.naming.judged.size(); ++j) {
+    const naming::Judged& g = diagnosis.naming.judged[j];
+    if (!g.undetectable && g.lambda_beside < noise_units * noise_units)
+      hidden.push_back(fmt::format("{} ({:.1f} noise units)", diagnosis.problem.alternatives[j].name, std::sqrt(g.lambda_beside)));
+  }
+  if (hidden.empty()) return;
+  diagnosis.notes.push_back(
+      fmt::format("beside {}, these data could not show even at its strongest: {}. It may be there as well; another speed, filling or a "
+                  "longer recording "
+                  "would tell",
+                  name_of(diagnosis, *diagnosis.naming.best), fmt::join(hidden, ", ")));
+}
+
+/// Two that are both asked for but whose sum does not describe the recordings: the bank has each alone, and together they may act
+/// otherwise.
+void tell_sum(double level, Diagnosis& diagnosis) {
+  if (diagnosis.naming.pairs.empty()) return;
+  const naming::Pair& pair = diagnosis.naming.pairs.front();
+  if (pair.p > level || pair.p_first > level) return;
+  const std::string first = name_of(diagnosis, pair.first), second = name_of(diagnosis, pair.second);
+  diagnosis.sentence += fmt::format(
+      " {} beside it helps significantly, too (p = {:.2g}), but the sum of the two does not suffice either: each was simulated alone, and "
+      "together they may act otherwise.",
+      second, pair.p);
+  diagnosis.next_experiment = fmt::format(
+      "Put {} into the base case, with a range for its strength under 'parameters', and diagnose again: "
+      "then {} is simulated together with it. {}",
+      first, second, diagnosis.next_experiment);
+}
+
 /// What limits the verdict, whatever it is.
 void reservations(Diagnosis& diagnosis) {
   for (const std::string& name : diagnosis.naming.at_limit)
@@ -279,6 +313,7 @@ void decide(double level, double noise_units, Diagnosis& diagnosis) {
         name, best.p_family, best.goodness_p);
     diagnosis.named.clear();
     diagnosis.next_experiment = to_extend(question, diagnosis, level);
+    tell_sum(level, diagnosis);
     return;
   }
   if (diagnosis.naming.kept.size() > 1) {
@@ -311,6 +346,7 @@ void conclude(const Question& asked, double level, double noise_units, Diagnosis
   reservations(diagnosis);
   decide(level, noise_units, diagnosis);
   tell_ranges(asked, diagnosis);
+  tell_hidden(noise_units, diagnosis);
 }
 
 }  // namespace millscope::diagnose
