@@ -51,11 +51,15 @@ int diagnose_study(const Arguments& arguments) {
   const diagnose::Question question = diagnose::read_question(options.text("STUDY.yaml"), options.list("set"), registry);
   const calibrate::SessionOptions session_of = study_session(options, output);
   naming.level = question.level;
+  constexpr double kDrawsBeyond = 6;  // of two laws of noise, three each beyond the level
+  if (naming.draws * naming.level < kDrawsBeyond)
+    throw UserError(fmt::format("--draws {}: too few for the study's level of {:.3g}; give {:.0f} or more", naming.draws, naming.level,
+                                std::ceil(kDrawsBeyond / naming.level)));
   calibrate::Session session(question.study, registry, session_of);
   naming.say = session_of.say;
   const diagnose::Diagnosis found =
       diagnose::diagnose(question, session.machinery(), diagnose::evidence_of(question, registry, session), naming);
-  diagnose::write_outputs({found.question, found}, output);
+  diagnose::write_outputs({question, found}, output);
   if (!options.has("quiet")) print_found(question, found, output);
   return kDone;
 }

@@ -97,11 +97,16 @@ recording::Recording film(const BeadPaths& paths, const Film& how, int threads) 
   return recording::clean_recording(std::move(recording));
 }
 
-/// The axis as it was found in the recording, from rides along the shell: it is off by as much there (docs/virtual_camera.md). Where no
-/// simulated bead rides along the shell it stays where it is.
+/// The axis as it was found in the recording, from rides along the shell: it is off by as much there (docs/inspect.md). A run without such
+/// rides has none that could be compared.
 void find_axis(const RecordedCondition& r, double angular_velocity, recording::Recording& recording) {
   const auto found = inspect::axis_by_rides(recording, r.axis_path, angular_velocity, r.axis_noise);
-  if (found) recording.frame->axis = *found;
+  if (!found)
+    throw UserError(fmt::format(
+        "{}: too few of the simulated beads ride along the shell for the axis to be found as in the recording; state the axis in the "
+        "recording's frame",
+        recording.file.string()));
+  recording.frame->axis = *found;
 }
 
 /// At a finished run. `camera`: text of links before those of the recording's camera; may be empty.

@@ -18,7 +18,7 @@ void diagnose_set(const fs::path& folder, const host::Registry& registry, const 
   calibrate::Session session(question.study, registry, session_of);
   const diagnose::Diagnosis found =
       diagnose::diagnose(question, session.machinery(), diagnose::evidence_of(question, registry, session), naming);
-  diagnose::write_outputs({found.question, found}, session_of.output);
+  diagnose::write_outputs({question, found}, session_of.output);
 }
 
 std::string one_line(std::string text) {

@@ -122,3 +122,24 @@ TEST_CASE("two effects that do not add up are both told, though neither is named
   CHECK_THAT(d.sentence, Contains("beside it helps significantly, too") && Contains("the sum of the two does not suffice either"));
   CHECK_THAT(d.next_experiment, Contains("into the base case, with a range for its strength"));
 }
+
+TEST_CASE("the bank keeps its simulations where it reaches farther, also those that begin at another's end") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections.substr(0, kSections.rfind('}')) + ", develop_s: 0.5 s}\n");
+  MadeUpMill mill(q, usual(), {"pairs.glass~glass.static_friction=0.8", kTheta[1], kTheta[2]});
+  const Diagnosis d = found(q, mill);
+  INFO(d.sentence);
+  CHECK(d.verdict == Verdict::no_mismatch);
+  CHECK_THAT(d.naming.base_theta[0].value, WithinAbs(0.8, 0.05));
+  const auto without = plan_bank(q).size() * 3, beyond = plan_beyond(q, {.parameter = 0, .upper = true}).size() * 3;
+  CHECK(static_cast<std::size_t>(mill.computed()) <= without + beyond + 36);  // 36: held out
+}
+
+TEST_CASE("a range is not widened where the study's constraints leave nothing beyond") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections + "constraints: [bead_friction < 0.61]\n");
+  MadeUpMill mill(q, usual(), {"pairs.glass~glass.static_friction=0.8", kTheta[1], kTheta[2]});
+  const Diagnosis d = found(q, mill);
+  CHECK(d.question.study.parameters[0].high == 0.6);
+  CHECK(std::find(d.naming.at_limit.begin(), d.naming.at_limit.end(), "bead_friction") != d.naming.at_limit.end());
+}

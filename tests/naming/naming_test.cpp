@@ -88,7 +88,7 @@ TEST_CASE("lambda is what the nearest retuned base is away, wherever it lies") {
         }
       }
     }
-    const Visibility seen(p, s, weighting, u, j);
+    const Visibility seen(p, s, weighting, {u}, j);
     const double expected = std::max(0.0, nearest - noise);
     CHECK(seen.lambda() <= expected + 1e-9);
     CHECK_THAT(seen.lambda(), WithinAbs(expected, 0.02 * nearest + 0.5));
@@ -108,7 +108,7 @@ TEST_CASE("at the fitted strength lambda is what delta Q is on average, wherever
       const FitResult base = Model(p.data, s, w, {}).fit(p.observed);
       const FitResult with = Model(p.data, s, w, {{0}, std::vector<StrengthRange>(3)}).fit(p.observed);
       gained += (base.q - with.q) / 40;
-      expected += Visibility(p, s, w, with.coded, 0).at(with.strengths[0]) / 40;
+      expected += Visibility(p, s, w, {with.coded}, 0).at(with.strengths[0]) / 40;
     }
     CHECK_THAT(expected, WithinRel(gained, 0.05));
   }
@@ -130,8 +130,8 @@ TEST_CASE("what few runs say of an effect's visibility is below its bound in nin
     const Surrogate surrogate(p.data);
     const Weighting w(p.covariance, surrogate);
     for (const int j : {0, 1, 2}) {
-      const Visibility seen(p, surrogate, w, u, j);
-      const double truth = Visibility(p, right, w, u, j).lambda();
+      const Visibility seen(p, surrogate, w, {u}, j);
+      const double truth = Visibility(p, right, w, {u}, j).lambda();
       below.at(static_cast<std::size_t>(j)) += truth <= seen.lambda_high() ? 1 : 0;
       if (j == 0) mean += seen.lambda() / 100, mean_right += truth / 100;
     }

@@ -120,7 +120,7 @@ TEST_CASE("the stronger a candidate the more often it is named, and visibility f
       const Problem problem = trial(seed, truth);
       const Surrogate surrogate(problem.data);
       const Weighting weighting(problem.covariance, surrogate);
-      seen[k] += std::sqrt(Visibility(problem, surrogate, weighting, VectorXd::Zero(kParameters), 0).at(strengths[k])) / 10;
+      seen[k] += std::sqrt(Visibility(problem, surrogate, weighting, {VectorXd::Zero(kParameters)}, 0).at(strengths[k])) / 10;
     }
   }
   CAPTURE(right, seen);

@@ -55,6 +55,10 @@ TEST_CASE("what they give at the ends of their ranges") {
   CHECK(binary_logarithm(0.0) == -1022.0);
   CHECK(exponential(-1e6) == Approx(std::exp2(-1022)));
   CHECK(std::isfinite(exponential(1e6)));
+  const double none = std::nan("");
+  for (const double value : {binary_logarithm(none), binary_power(none), exponential(none), logarithm(none), power(none, 0.3)})
+    CHECK(std::isnan(value));
+  CHECK(std::isnan(lane_sum(power(Pack(none), 0.3))));
 }
 
 TEST_CASE("packs give the same bits as doubles") {

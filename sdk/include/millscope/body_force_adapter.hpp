@@ -7,7 +7,8 @@
 //   };
 //   constexpr Descriptor kDescriptor = describe<MyDrag>({.name = "my_drag", .doc = "…", .parameters = kParameters});
 //
-// Faster: `template <class R> void act(const BeadState<R>&, BeadResponse<R>&) const`, for R = double or Pack, which is several beads at once.
+// Faster: `template <class R> void act(const BeadState<R>&, BeadResponse<R>&) const`, for R = double or Pack, which is several beads at
+// once.
 #pragma once
 
 #include "millscope/body_force.hpp"
@@ -74,8 +75,13 @@ void add_at(double* const (&p)[3], std::int64_t i, const Vec<R>& value) {
 template <class R, class F>
 R act_at(const F& force, BodyForceBatch& b, std::int64_t i) {
   const R zero(0.0);
-  const BeadState<R> bead{b.time, b.time_step, vector_at<R>(b.position, i), vector_at<R>(b.velocity, i), vector_at<R>(b.spin, i),
-                          load<R>(b.radius + i), load<R>(b.mass + i)};
+  const BeadState<R> bead{b.time,
+                          b.time_step,
+                          vector_at<R>(b.position, i),
+                          vector_at<R>(b.velocity, i),
+                          vector_at<R>(b.spin, i),
+                          load<R>(b.radius + i),
+                          load<R>(b.mass + i)};
   BeadResponse<R> out{{zero, zero, zero}, {zero, zero, zero}, zero, zero};
   force.act(bead, out);
   add_at(b.force, i, out.force);
@@ -89,9 +95,10 @@ void act_on_beads(const void* self, BodyForceBatch* b) {
   b->power_sum = 0.0;
   std::int64_t i = 0;
   if constexpr (HasWideAct<F>) {
-    Pack power(0.0);
-    for (; i + kPackWidth <= b->count; i += kPackWidth) power += act_at<Pack>(*static_cast<const F*>(self), *b, i);
-    b->power_sum = lane_sum(power);
+    for (; i + kPackWidth <= b->count; i += kPackWidth) {
+      const Pack power = act_at<Pack>(*static_cast<const F*>(self), *b, i);
+      for (int lane = 0; lane < kPackWidth; ++lane) b->power_sum += power.v[lane];  // bead by bead: the same bits at every width
+    }
   }
   if constexpr (HasAct<F>) {
     for (; i < b->count; ++i) b->power_sum += act_at<double>(*static_cast<const F*>(self), *b, i);

@@ -1,11 +1,11 @@
-// exp, log and powers for packs, from operations that IEEE fixes: the same bits on `double` and on `Pack` of every width, a few times faster
-// than the standard library lane by lane.
+// exp, log and powers for packs, from operations that IEEE fixes: the same bits on `double` and on `Pack` of every width, a few times
+// faster than the standard library lane by lane.
 //
 //   log₂ x: x = 2^e m with √½ ≤ m < √2, log₂ x = e + 2/ln 2 · (s + s³/3 + s⁵/5 + …), s = (m − 1)/(m + 1), |s| < 0.172
 //   2^t: t = n + f with n whole and |f| ≤ ½, 2^t = 2^n Σ (f ln 2)^k/k!
 //
 // Both series are cut where what they leave is below 1e-17. Relative errors: of 2^t below 4e-16, of e^x below 3e-16 (1 + |x|), of x^y below
-// 1e-15 (1 + |y log₂ x|).
+// 1e-15 (1 + |y log₂ x|) while that is within 2^±1022. What is no number stays none; infinite ones are outside.
 #pragma once
 
 #include <cstdint>
@@ -60,21 +60,22 @@ R binary_logarithm(R x) {
   const R s = (m - R(1.0)) / (m + R(1.0)), square = s * s;
   R sum(1.0 / 21.0);
   for (int k = 9; k >= 0; --k) sum = R(1.0 / (2 * k + 1)) + square * sum;
-  return e + R(2.0 * std::numbers::log2e) * (s * sum);
+  return select(x <= x, e + R(2.0 * std::numbers::log2e) * (s * sum), x);
 }
 
 /// 2^t; t is taken to lie from −1022 to 1023.
 template <class R>
-R binary_power(R t) {
-  t = maximum(R(-1022.0), minimum(t, R(1023.0)));
+R binary_power(R exponent) {
+  const R t = maximum(R(-1022.0), minimum(exponent, R(1023.0)));
   const R shifted = t + R(detail::kWhole);
   const R f = R(std::numbers::ln2) * (t - (shifted - R(detail::kWhole)));
   R sum(1.0);
   for (int k = 14; k >= 1; --k) sum = R(1.0) + f * sum * R(1.0 / k);
-  return sum * detail::from_bits<R>((detail::bits_of(shifted) - detail::kWholeBits + detail::kExponentBias) << detail::kMantissaBits);
+  const R whole = detail::from_bits<R>((detail::bits_of(shifted) - detail::kWholeBits + detail::kExponentBias) << detail::kMantissaBits);
+  return select(exponent <= exponent, sum * whole, exponent);
 }
 
-/// e^x for −708 ≤ x ≤ 709; beyond, what it is at these ends.
+/// e^x for −708 ≤ x ≤ 709; beyond, 2^−1022 and 2^1023.
 template <class R>
 R exponential(R x) {
   return binary_power(R(std::numbers::log2e) * x);
@@ -89,7 +90,7 @@ R logarithm(R x) {
 /// x^y for x ≥ 0 and y > 0; 0 where x is 0.
 template <class R>
 R power(R x, double y) {
-  return select(x > R(0.0), binary_power(R(y) * binary_logarithm(x)), R(0.0));
+  return select(x <= R(0.0), R(0.0), binary_power(R(y) * binary_logarithm(x)));
 }
 
 }  // namespace millscope

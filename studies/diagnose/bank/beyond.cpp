@@ -8,12 +8,14 @@ namespace {
 
 constexpr int kPartOfBase = 3, kPartOfEach = 2;
 
-double& end_of(Question& question, const End& end) {
+/// Of a question that may be changed or not.
+template <class AnyQuestion>
+auto& end_of(AnyQuestion& question, const End& end) {
   if (end.candidate) {
-    naming::StrengthRange& range = question.candidates[*end.candidate].range;
+    auto& range = question.candidates[*end.candidate].range;
     return end.upper ? range.high : range.low;
   }
-  calibrate::Parameter& p = question.study.parameters[*end.parameter];
+  auto& p = question.study.parameters[*end.parameter];
   return end.upper ? p.high : p.low;
 }
 
@@ -23,10 +25,7 @@ int count_of(const BankSize& bank, const End& end) {
 
 }  // namespace
 
-double place_of(const Question& question, const End& end) {
-  Question copy = question;
-  return end_of(copy, end);
-}
+double place_of(const Question& question, const End& end) { return end_of(question, end); }
 
 double farthest_of(const Question& question, const End& end) {
   if (end.candidate) {

@@ -48,6 +48,7 @@ Model::Model(const BankData& data, const Surrogate& surrogate, const Weighting& 
       weighting_(&weighting),
       active_(switched.on),
       columns_(surrogate.features().columns(switched.on)),
+      exact_(switched.exact),
       theta_(std::ssize(data.theta)) {
   use(surrogate.coefficients());
   const Index all = theta_ + std::ssize(active_);
@@ -72,7 +73,7 @@ void Model::use(const MatrixXd& coefficients) {
   const Eigen::HouseholderQR<MatrixXd> qr(w * coefficients(columns_, Eigen::all).transpose());
   r_ = qr.matrixQR().topRows(kept).triangularView<Eigen::Upper>();
   qt_ = (qr.householderQ() * MatrixXd::Identity(w.rows(), kept)).transpose();
-  if (r_.cols() > features_->base_size() && r_.rows() == r_.cols()) correct();
+  if (!exact_ && r_.cols() > features_->base_size() && r_.rows() == r_.cols()) correct();
 }
 
 /// tr(Σ⁻¹ S) (h(u, s) − h(u, 0)) = xᵀ D x with the features x and D = tr(Σ⁻¹ S) C less its block of the base. What of the candidates'

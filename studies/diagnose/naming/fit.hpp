@@ -59,6 +59,7 @@ struct Switched {
   std::vector<Index> on = {};              ///< candidates
   std::vector<StrengthRange> ranges = {};  ///< of all candidates
   std::optional<Index> freed = {};         ///< a nuisance whose prior does not count
+  bool exact = false;                      ///< fitted to data without noise: the bank's chance adds nothing that would have to be taken off
 };
 
 /// Surrogate and weighting must outlive it.
@@ -96,7 +97,8 @@ class Model {
   const Weighting* weighting_;
   MatrixXd r_, qt_;
   std::vector<Index> active_;
-  std::vector<Index> columns_;            ///< of all features those that are in use
+  std::vector<Index> columns_;  ///< of all features those that are in use
+  bool exact_ = false;
   VectorXd low_, high_, prior_, weight_;  ///< of (u, s); weight 1/σ in coded units, 0: flat
   Index theta_ = 0;
 };

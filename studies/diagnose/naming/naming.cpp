@@ -146,7 +146,7 @@ class Namer {
 
   void visibility(Index j) {
     Judged& judged = out_.judged[j];
-    const Visibility seen(p_, pseudo_.surrogate(), pseudo_.weighting(), judged.fit.coded, j);
+    const Visibility seen(p_, pseudo_.surrogate(), pseudo_.weighting(), {judged.fit.coded}, j);
     const double found = judged.fit.strengths.empty() ? judged.fit.coded[*p_.alternatives[j].freed] : judged.fit.strengths.front();
     for (const BankRow& row : p_.data.rows) {
       for (const ActiveCandidate& e : row.active) judged.runs += e.candidate == p_.alternatives[j].candidate ? 1 : 0;
@@ -236,43 +236,20 @@ class Namer {
     return a != b && !has(one.excludes, other.name) && !has(other.excludes, one.name) && !(one.freed && other.freed);
   }
 
-  /// How far the noise-free data of the best and another at full strength stay from the best alone, refitted, less what the surrogate's own
-  /// noise adds to that (as in visibility.hpp): what hides behind the best.
-  void visible_beside(Index first, Index other) {
-    const std::optional<Index> candidate = p_.alternatives[other].candidate;
-    if (!candidate) return;
-    const Surrogate& surrogate = pseudo_.surrogate();
-    const FitResult& found = out_.judged[first].fit;
-    const StrengthRange& range = p_.alternatives[other].range;
-    double most = 0;
-    for (const double end : {range.low, range.high}) {
-      if (end == 0) continue;
-      std::vector<ActiveCandidate> both = active_of(p_.alternatives[first], found);
-      both.push_back({*candidate, end});
-      const VectorXd y = surrogate.at(found.coded, both);
-      const FitResult alone = pseudo_.fit({first}, y);
-      const std::vector<ActiveCandidate> on = active_of(p_.alternatives[first], alone);
-      std::vector<ActiveCandidate> differ{{*candidate, end}};
-      if (!on.empty()) differ.push_back({on.front().candidate, on.front().strength - both.front().strength});
-      const double noise = pseudo_.weighting().run_noise * surrogate.leverage_of(found.coded, differ);
-      most = std::max(most, (pseudo_.weighting().whitener * (y - surrogate.at(alone.coded, on))).squaredNorm() - noise);
-    }
-    out_.judged[other].lambda_beside = most;
-  }
-
   /// Forward selection: a second candidate beside the best, and the best tested again beside it.
   void look_for_second() {
     const Index first = *out_.best;
+    const FitResult& alone = out_.judged[first].fit;
     std::vector<Index> others;
     std::vector<Choice> choices{{first}};
     for (Index k = 0; k < count(); ++k) {
       if (!tested(k) || !together(first, k)) continue;
       others.push_back(k);
       choices.push_back({first, k});
-      visible_beside(first, k);
+      const Visibility beside(p_, pseudo_.surrogate(), pseudo_.weighting(), {alone.coded, active_of(p_.alternatives[first], alone)}, k);
+      out_.judged[k].lambda_beside = beside.lambda();
     }
     if (others.empty()) return;
-    const FitResult& alone = out_.judged[first].fit;
     const auto drawn = pseudo_.draw(pseudo_.truth({first}, alone), choices, {o_.comparison_draws, 500});
     const auto gain = collect(drawn, [](const auto& d) {
       double most = 0;

@@ -25,9 +25,10 @@ namespace millscope::naming {
 /// What may be named: a candidate, or a nuisance that leaves its prior.
 struct Alternative {
   std::string name;
-  std::optional<Index> candidate = {};  ///< of the bank
-  std::optional<Index> freed = {};      ///< else: the coordinate whose prior does not count
-  StrengthRange range = {};             ///< of the candidate's strength
+  std::optional<Index> candidate = {};      ///< of the bank
+  std::optional<Index> freed = {};          ///< else: the coordinate whose prior does not count
+  StrengthRange range = {};                 ///< of the candidate's strength, within which it is fitted
+  std::optional<StrengthRange> prior = {};  ///< full strength is its end, where `range` reaches farther
   std::vector<std::string> excludes = {};
   bool screened_out = false;  ///< its first runs showed that it cannot matter: it is not tested
 };

@@ -44,8 +44,6 @@ class PseudoData {
   const Weighting& weighting() const { return *weighting_; }
   /// The observations themselves, or draw `b` of `truth`.
   FitResult fit(const Choice& choice) const;
-  /// The same to other numbers.
-  FitResult fit(const Choice& choice, const VectorXd& observed) const { return model(*surrogate_, choice).fit(observed); }
   Truth truth(const Choice& choice, const FitResult& fit) const;
 
   /// Fits of the choices to one draw each: [draws][choices]. Draw b has the noise of law b % laws(). `stream` keeps draws of different

@@ -20,31 +20,42 @@ BankData about(BankData data, const VectorXd& coded, std::optional<Index> freed)
   return data;
 }
 
+/// What is refitted: θ, and what is on besides.
+Switched refitted(const Problem& problem, const std::vector<ActiveCandidate>& beside) {
+  Switched out{{}, std::vector<StrengthRange>(problem.data.candidates), {}, true};
+  for (const Alternative& a : problem.alternatives) {
+    if (a.candidate) out.ranges[*a.candidate] = a.range;
+  }
+  for (const ActiveCandidate& a : beside) out.on.push_back(a.candidate);
+  return out;
+}
+
 }  // namespace
 
-Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const Weighting& weighting, const VectorXd& coded,
-                       Index alternative)
+Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const Weighting& weighting, const About& at, Index alternative)
     : problem_(problem),
       surrogate_(surrogate),
       weighting_(weighting),
-      coded_(coded),
+      coded_(at.coded),
+      beside_(at.beside),
       alternative_(problem.alternatives[alternative]),
-      base_(about(problem.data, coded, alternative_.freed), surrogate, weighting, {}) {
+      base_(about(problem.data, coded_, alternative_.freed), surrogate, weighting, refitted(problem, beside_)) {
   const auto n = static_cast<double>(weighting.whitener.rows());
   run_covariance_ = weighting.whitener * weighting.run * weighting.whitener.transpose();
-  run_noise_ = weighting.run_noise * (n - static_cast<double>(coded.size())) / n;
+  run_noise_ = weighting.run_noise * (n - static_cast<double>(coded_.size())) / n;
   const std::vector<double> far = ends();
   const double full = far.front();
-  lambda_ = at(full);
+  lambda_ = this->at(full);
   const double whole = std::max(0.0, (weighting.whitener * (observed(full) - observed(none()))).squaredNorm() - noise(full));
   kappa_ = whole > 0 ? std::min(1.0, std::sqrt(lambda_ / whole)) : 0;
-  if (far.size() > 1) lambda_ = std::max(lambda_, at(far.back()));
+  if (far.size() > 1) lambda_ = std::max(lambda_, this->at(far.back()));
 }
 
 std::vector<double> Visibility::ends() const {
   if (alternative_.freed) return {1, -1};
-  if (alternative_.range.low < 0) return {alternative_.range.high, alternative_.range.low};
-  return {alternative_.range.high};
+  const StrengthRange full = alternative_.prior.value_or(alternative_.range);
+  if (full.low < 0) return {full.high, full.low};
+  return {full.high};
 }
 
 double Visibility::none() const {
@@ -64,16 +75,19 @@ double Visibility::noise(double strength) const {
 }
 
 VectorXd Visibility::observed(double strength) const {
-  if (!alternative_.freed) return surrogate_.at(coded_, {{*alternative_.candidate, strength}});
+  std::vector<ActiveCandidate> on = beside_;
   VectorXd moved = coded_;
-  moved[*alternative_.freed] = strength;
-  return surrogate_.at(moved);
+  if (alternative_.freed)
+    moved[*alternative_.freed] = strength;
+  else
+    on.push_back({*alternative_.candidate, strength});
+  return surrogate_.at(moved, on);
 }
 
 Visibility::Rest Visibility::rest(double strength) const {
   const VectorXd y = observed(strength);
   const FitResult fit = base_.fit(y);
-  return {weighting_.whitener * (y - surrogate_.at(fit.coded)), fit.q};
+  return {weighting_.whitener * (y - surrogate_.at(fit.coded, base_.active(fit))), fit.q};
 }
 
 double Visibility::high(double strength) const {

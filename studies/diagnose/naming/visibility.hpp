@@ -19,10 +19,14 @@ namespace millscope::naming {
 
 class Visibility {
  public:
-  /// About the coded θ: best that which was fitted with it.
-  Visibility(const Problem& problem, const Surrogate& surrogate, const Weighting& weighting, const VectorXd& coded, Index alternative);
-  Visibility(const Problem&, Surrogate&&, const Weighting&, const VectorXd&, Index) = delete;
-  Visibility(const Problem&, const Surrogate&, Weighting&&, const VectorXd&, Index) = delete;
+  /// A model about which something is looked for: the coded θ, best that which was fitted with it, and what is on besides and is refitted.
+  struct About {
+    VectorXd coded;
+    std::vector<ActiveCandidate> beside = {};
+  };
+  Visibility(const Problem& problem, const Surrogate& surrogate, const Weighting& weighting, const About& about, Index alternative);
+  Visibility(const Problem&, Surrogate&&, const Weighting&, const About&, Index) = delete;
+  Visibility(const Problem&, const Surrogate&, Weighting&&, const About&, Index) = delete;
 
   double lambda() const { return lambda_; }  ///< at full strength, the better visible end of a two-sided range
   double kappa() const { return kappa_; }
@@ -49,6 +53,7 @@ class Visibility {
   const Surrogate& surrogate_;
   const Weighting& weighting_;
   VectorXd coded_;
+  std::vector<ActiveCandidate> beside_;
   const Alternative& alternative_;
   Model base_;
   MatrixXd run_covariance_;  ///< M

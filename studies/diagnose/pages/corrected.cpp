@@ -62,9 +62,14 @@ std::string study_text(const Told& t, const VectorXd& theta, const fs::path& fol
       fmt::format_to(std::back_inserter(out), "      {}: {}\n", s.substr(0, s.find('=')), s.substr(s.find('=') + 1));
   }
   out += "\nparameters:\n";
-  for (const calibrate::Parameter& p : t.question.study.parameters)
-    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], tied: [{}]}}\n", p.path, p.name, p.low, p.high,
-                   fmt::join(p.tied, ", "));
+  for (std::size_t i = 0; i < t.question.study.parameters.size(); ++i) {
+    const calibrate::Parameter& p = t.question.study.parameters[i];
+    const double value = rounded(theta[static_cast<Index>(i)]);
+    const bool outside = value < p.low || value > p.high;
+    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], tied: [{}]}}{}\n", p.path, p.name,
+                   std::min(p.low, value), std::max(p.high, value), fmt::join(p.tied, ", "),
+                   outside ? "  # wider than asked: the fit lies outside" : "");
+  }
   if (!t.question.nuisances.empty()) out += "\nnuisances:\n";
   const double* fitted = theta.data() + t.question.study.parameters.size();
   for (const Nuisance& n : t.question.nuisances) {

@@ -25,6 +25,7 @@ struct Candidate {
   double null_value = 0, far = 1;  ///< where it vanishes; the far end of its prior range, strength 1
   naming::StrengthRange range;     ///< of the strength (value − null)/(far − null)
   std::vector<std::string> excludes = {};
+  naming::StrengthRange prior = {};     ///< `range` as it was asked
   naming::StrengthRange farthest = {};  ///< as far beyond its prior as the case allows, at most as far again
 
   bool on_or_off() const { return paths.empty(); }

@@ -46,7 +46,7 @@ void find_farthest(const host::Registry& registry, Question& question) {
         {farthest(question.study, registry, p.low, -step, settings), farthest(question.study, registry, p.high, step, settings)});
   }
   for (Candidate& c : question.candidates) {
-    c.farthest = c.range;
+    c.prior = c.farthest = c.range;
     if (c.on_or_off()) continue;
     const auto settings = [&](double strength) { return settings_of(c, strength); };
     c.farthest.high = farthest(question.study, registry, c.range.high, c.range.high, settings);

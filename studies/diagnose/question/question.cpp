@@ -17,7 +17,7 @@ namespace {
 
 using config::Node;
 
-constexpr double kLeastLevel = 1e-4, kMostLevel = 0.2;
+constexpr double kLeastLevel = 0.01, kMostLevel = 0.2;
 
 double number(const Node& node) {
   const config::Quantity quantity = config::read_quantity(node);

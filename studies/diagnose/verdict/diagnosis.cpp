@@ -15,7 +15,8 @@
 namespace millscope::diagnose {
 namespace {
 
-constexpr int kSeeds = 6;  // of every model in a held-out condition
+constexpr std::ptrdiff_t kFewestBeyond = 3;  // parameter sets beyond an end, for a range to be widened
+constexpr int kSeeds = 6;                    // of every model in a held-out condition
 constexpr double kMargin =
     0.7;  // of the noise units: at other frictions, or other values of what is varied apart, it may act more strongly
 
@@ -57,7 +58,7 @@ Screened screened(const Question& question, const calibrate::Machinery& machiner
       machinery.say(fmt::format("{}: none of its first simulations came to its end: it is not tested", question.candidates[j].name));
       continue;
     }
-    const naming::Visibility seen(problem, surrogate, weighting, base.coded, j);
+    const naming::Visibility seen(problem, surrogate, weighting, {base.coded}, j);
     const double most = std::sqrt(seen.lambda_high());
     const std::string what =
         fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate, below {:.1f} with 95 %",
@@ -70,24 +71,38 @@ Screened screened(const Question& question, const calibrate::Machinery& machiner
   return out;
 }
 
+/// Parameter sets of a group that came to their end in every condition.
+std::ptrdiff_t finished(const Bank& bank, const std::string& group) {
+  std::ptrdiff_t count = 0;
+  for (std::size_t i = 0; i < bank.points.size(); ++i) {
+    const auto& seen = bank.seen[i];
+    if (bank.points[i].group == group && std::all_of(seen.begin(), seen.end(), [](const auto& o) { return o.has_value(); })) ++count;
+  }
+  return count;
+}
+
 naming::Problem problem_after(const Screened& screening, const Diagnosis& diagnosis) {
   naming::Problem problem = problem_of(diagnosis.question, diagnosis.evidence, diagnosis.bank, diagnosis.fit);
   for (naming::Alternative& r : problem.alternatives) r.screened_out = r.candidate && screening.candidate[*r.candidate];
   return problem;
 }
 
-/// Where a fit stands at an end of a range, simulations beyond it: once.
-void reach_farther(const calibrate::Machinery& machinery, Screened& screening, double noise_units, Diagnosis& diagnosis) {
-  const std::vector<End> ends = ends_reached(diagnosis.question, diagnosis.problem, noise_units);
-  if (ends.empty()) return;
-  Question wider = diagnosis.question;
-  for (const End& end : ends) {
+/// Where a fit stands at an end of a range, simulations beyond it: once. The bank is that of the question as it was asked, whose plan says
+/// where each of its simulations begins; only what is learnt from it has the wider ranges.
+void reach_farther(const calibrate::Machinery& machinery, Screened& screening, Diagnosis& diagnosis) {
+  std::vector<std::pair<End, std::vector<BankPoint>>> beyond;
+  for (const End& end : ends_reached(diagnosis.question, diagnosis.problem)) {
+    std::vector<BankPoint> points = plan_beyond(diagnosis.question, end);
+    if (std::ssize(points) < kFewestBeyond) continue;  // the study's constraints leave too little
     note(machinery, {sentence_of(diagnosis.question, end)}, diagnosis);
-    for (BankPoint& p : plan_beyond(diagnosis.question, end)) screening.points.push_back(std::move(p));
-    wider = widened(std::move(wider), end);
+    screening.points.insert(screening.points.end(), points.begin(), points.end());
+    beyond.emplace_back(end, std::move(points));
   }
-  diagnosis.question = std::move(wider);
+  if (beyond.empty()) return;
   diagnosis.bank = filled(diagnosis.question, machinery, screening.points, diagnosis.bank.conditions, diagnosis);
+  for (const auto& [end, points] : beyond) {
+    if (finished(diagnosis.bank, points.front().group) >= kFewestBeyond) diagnosis.question = widened(std::move(diagnosis.question), end);
+  }
   diagnosis.problem = problem_after(screening, diagnosis);
 }
 
@@ -151,7 +166,7 @@ Diagnosis diagnose(const Question& asked, const calibrate::Machinery& given, Evi
   diagnosis.bank = filled(question, machinery, screening.points, all, diagnosis);
   note(machinery, unsettled(question, diagnosis.bank, diagnosis.held), diagnosis);
   diagnosis.problem = problem_after(screening, diagnosis);
-  reach_farther(machinery, screening, options.noise_units, diagnosis);
+  reach_farther(machinery, screening, diagnosis);
   diagnosis.naming = naming::name_candidates(diagnosis.problem, options);
   const HeldOutRequest request{.question = question,
                                .machinery = machinery,

@@ -7,6 +7,8 @@
 namespace millscope::diagnose {
 namespace {
 
+constexpr double kHelps = 4;  // of Q: less is no sign of anything
+
 const std::string& name_of(const Question& question, const End& end) {
   return end.candidate ? question.candidates[*end.candidate].name : question.study.parameters[*end.parameter].name;
 }
@@ -28,7 +30,7 @@ void add_parameters(const Question& question, const naming::FitResult& fit, std:
 
 }  // namespace
 
-std::vector<End> ends_reached(const Question& question, const naming::Problem& problem, double noise_units) {
+std::vector<End> ends_reached(const Question& question, const naming::Problem& problem) {
   const naming::Surrogate surrogate(problem.data);
   const naming::Weighting weighting(problem.covariance, surrogate);
   std::vector<naming::StrengthRange> ranges;
@@ -42,7 +44,7 @@ std::vector<End> ends_reached(const Question& question, const naming::Problem& p
   for (const naming::Alternative& a : problem.alternatives) {
     if (!a.candidate || a.screened_out || surrogate.features().count(*a.candidate) == 0) continue;
     const naming::FitResult with = fit({*a.candidate});
-    if (base.q - with.q < noise_units * noise_units) continue;
+    if (base.q - with.q < kHelps) continue;
     add_parameters(question, with, ends);
     const double strength = with.strengths.front();
     if (naming::at_limit(strength, ranges[*a.candidate])) add_new(ends, {.candidate = a.candidate, .upper = strength > 0});

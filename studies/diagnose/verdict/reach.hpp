@@ -10,8 +10,8 @@
 namespace millscope::diagnose {
 
 /// Ends at which fits stand and beyond which the case allows more: of parameters where the base's fit does, or that of a candidate that
-/// helps by `noise_units` squared; of priors where such a candidate's does.
-std::vector<End> ends_reached(const Question& question, const naming::Problem& problem, double noise_units);
+/// helps; of priors where such a candidate's does.
+std::vector<End> ends_reached(const Question& question, const naming::Problem& problem);
 
 /// "bead_friction: a fit stands at the upper end of its range, 0.6; simulated up to 0.85".
 std::string sentence_of(const Question& before, const End& end);

@@ -71,8 +71,11 @@ std::vector<naming::Alternative> alternatives_of(const Question& question) {
   std::vector<naming::Alternative> alternatives;
   for (Index j = 0; j < std::ssize(question.candidates); ++j) {
     const Candidate& c = question.candidates[j];
-    alternatives.push_back(
-        {.name = c.name, .candidate = j, .range = c.on_or_off() ? naming::StrengthRange{1, 1} : c.range, .excludes = c.excludes});
+    alternatives.push_back({.name = c.name,
+                            .candidate = j,
+                            .range = c.on_or_off() ? naming::StrengthRange{1, 1} : c.range,
+                            .prior = c.on_or_off() ? naming::StrengthRange{1, 1} : c.prior,
+                            .excludes = c.excludes});
   }
   Index coordinate = std::ssize(question.study.parameters);
   for (const Nuisance& n : question.nuisances) alternatives.push_back({.name = n.name, .freed = coordinate++});

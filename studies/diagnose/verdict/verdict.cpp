@@ -69,7 +69,7 @@ std::string to_separate(const Question& question, const Diagnosis& diagnosis) {
 double lambda_if(const Diagnosis& diagnosis, Index alternative, double longer) {
   const naming::Surrogate s(diagnosis.problem.data);
   const naming::Weighting weighting(diagnosis.problem.covariance, s, longer);
-  return naming::Visibility(diagnosis.problem, s, weighting, diagnosis.naming.judged[alternative].fit.coded, alternative).lambda();
+  return naming::Visibility(diagnosis.problem, s, weighting, {diagnosis.naming.judged[alternative].fit.coded}, alternative).lambda();
 }
 
 std::string to_see(const Diagnosis& diagnosis, double noise_units) {
@@ -93,7 +93,8 @@ std::string to_see(const Diagnosis& diagnosis, double noise_units) {
 
 /// Contact parameters of the base that the study neither fits nor doubts, with their values: "pairs.glass~glass.restitution (0.8)".
 std::vector<std::string> taken_for_granted(const Question& question) {
-  const config::Case base = config::read_case(question.study.base.string(), question.study.conditions.front().settings);
+  const std::size_t first = question.study.with_role(calibrate::Role::fit).front();
+  const config::Case base = config::read_case(question.study.base.string(), question.study.conditions[first].settings);
   std::set<std::string> doubted;
   for (const calibrate::Parameter& p : question.study.parameters) {
     doubted.insert(p.path);
@@ -106,7 +107,10 @@ std::vector<std::string> taken_for_granted(const Question& question) {
     for (const char* name : {"restitution", "static_friction"}) {
       const std::string path = fmt::format("pairs.{}.{}", key, name);
       if (doubted.contains(path) || !base.pairs.section().at(key).has(name)) continue;
-      out.push_back(fmt::format("{} ({:.4g})", path, value_in(base, path, base.root.where())));
+      try {
+        out.push_back(fmt::format("{} ({:.4g})", path, value_in(base, path, base.root.where())));
+      } catch (const base::UserError&) {  // no plain number: nothing to ask for
+      }
     }
   }
   return out;
@@ -180,9 +184,11 @@ void tell_ranges(const Question& asked, Diagnosis& diagnosis) {
 void tell_hidden(double noise_units, Diagnosis& diagnosis) {
   if (!diagnosis.naming.best || diagnosis.two_effects || diagnosis.verdict == Verdict::outside_library) return;
   std::vector<std::string> hidden;
-  for (std::size_t j = 0; j < diagnosis.naming.judged.size(); ++j) {
+  for (Index j = 0; j < std::ssize(diagnosis.naming.judged); ++j) {
     const naming::Judged& g = diagnosis.naming.judged[j];
-    if (!g.undetectable && g.lambda_beside < noise_units * noise_units)
+    const bool named = std::find(diagnosis.naming.kept.begin(), diagnosis.naming.kept.end(), j) != diagnosis.naming.kept.end();
+    const bool physics = diagnosis.problem.alternatives[j].candidate.has_value();
+    if (physics && !named && !g.undetectable && g.lambda_beside < noise_units * noise_units)
       hidden.push_back(fmt::format("{} ({:.1f} noise units)", diagnosis.problem.alternatives[j].name, std::sqrt(g.lambda_beside)));
   }
   if (hidden.empty()) return;
@@ -198,7 +204,8 @@ void tell_hidden(double noise_units, Diagnosis& diagnosis) {
 void tell_sum(double level, Diagnosis& diagnosis) {
   if (diagnosis.naming.pairs.empty()) return;
   const naming::Pair& pair = diagnosis.naming.pairs.front();
-  if (pair.p > level || pair.p_first > level) return;
+  const auto physics = [&](Index k) { return diagnosis.problem.alternatives[k].candidate.has_value(); };
+  if (pair.p > level || pair.p_first > level || !physics(pair.first) || !physics(pair.second)) return;
   const std::string first = name_of(diagnosis, pair.first), second = name_of(diagnosis, pair.second);
   diagnosis.sentence += fmt::format(
       " {} beside it helps significantly, too (p = {:.2g}), but the sum of the two does not suffice either: each was simulated alone, and "
