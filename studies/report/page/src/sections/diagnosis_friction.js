@@ -16,7 +16,8 @@ export function frictionBlock({ contact_parameters: parameters, hypotheses = [] 
   if (unmasked) groups.push({ name: `with ${best ? best.name.replace(/_/g, " ") : "the best candidate"}`, values: frictions.map((name) => point(name, unmasked[name])) });
   return block(`${key}-friction`, "Friction, retuned and unmasked",
     paragraph(unmasked ? "Retuning friction can conceal missing physics; what friction is once that physics is there is called unmasked."
-      : "No candidate is significant, so there is no unmasked friction: these are the retuned values."),
+      : best ? "The fit with the best candidate stands at an end of what was simulated, so what friction is beside it is not known: these are the retuned values."
+        : "No candidate is significant, so there is no unmasked friction: these are the retuned values."),
     frictions.length ? figure("Fitted to all conditions together, with 90 % intervals.", intervals(`${key}-friction`, {
       label: `Contact parameters: ${frictions.map((name) => `${name} ${told(name, retuned[name])}`).join(", ")}`, rows: frictions.map(titleOf), groups,
       x: { name: "value of the parameter" } })) : null,
