@@ -50,11 +50,6 @@ int diagnose_study(const Arguments& arguments) {
   const host::Registry registry = options.registry();
   const diagnose::Question question = diagnose::read_question(options.text("STUDY.yaml"), options.list("set"), registry);
   const calibrate::SessionOptions session_of = study_session(options, output);
-  naming.level = question.level;
-  constexpr double kDrawsBeyond = 6;  // of two laws of noise, three each beyond the level
-  if (naming.draws * naming.level < kDrawsBeyond)
-    throw UserError(fmt::format("--draws {}: too few for the study's level of {:.3g}; give {:.0f} or more", naming.draws, naming.level,
-                                std::ceil(kDrawsBeyond / naming.level)));
   calibrate::Session session(question.study, registry, session_of);
   naming.say = session_of.say;
   const diagnose::Diagnosis found =

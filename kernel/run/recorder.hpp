@@ -13,6 +13,7 @@
 #include "kernel/run/window.hpp"
 
 namespace millscope::run {
+
 /// Which beads are followed where the case has tracks, once they are in: the user's, or a seeded draw, in the order of their ids or as
 /// given.
 std::vector<std::uint32_t> tracked_beads(const Assembly& a);

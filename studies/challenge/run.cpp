@@ -12,9 +12,8 @@ namespace {
 namespace fs = std::filesystem;
 
 void diagnose_set(const fs::path& folder, const host::Registry& registry, const calibrate::SessionOptions& session_of,
-                  naming::Options naming) {
+                  const naming::Options& naming) {
   const diagnose::Question question = diagnose::read_question(folder / "study.yaml", {}, registry);
-  naming.level = question.level;
   calibrate::Session session(question.study, registry, session_of);
   const diagnose::Diagnosis found =
       diagnose::diagnose(question, session.machinery(), diagnose::evidence_of(question, registry, session), naming);

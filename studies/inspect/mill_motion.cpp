@@ -21,10 +21,10 @@ constexpr std::size_t kDraws = 120;
 // What resampling rides cannot see, because it is in all of them: beads that do not quite touch the shell (part of its radius), and that
 // roll on between two lifters (part of its speed). From thirty recordings of a mill whose axis and speed are known.
 constexpr double kLooseness = 0.001;
+constexpr double kRolling = 0.006;
 // The axis besides: beads that ride on the lifters' tops, press into a soft liner or leave it lie within the noise of the shell's circle
 // and pull it. Part of the radius; 0.1 to 0.5 % in simulated mills of 150 mm with 3 to 10 mm high lifters (docs/inspect.md).
 constexpr double kAxisPull = 0.003;
-constexpr double kRolling = 0.006;
 
 /// What the steps share.
 struct Work {
@@ -186,7 +186,6 @@ void report_enclosing(const Work& work, MillMotion& motion) {
   });
   const std::string basis = why_no_wall(work) + ": from the circle that encloses the points";
   const double floor = 0.01 * work.circle.radius;
-  motion.axis_scatter = {deviation[0], deviation[1]};
   motion.axis[0] = {interval(work.circle.x, deviation[0], 30, floor), basis};
   motion.axis[1] = {interval(work.circle.y, deviation[1], 30, floor), basis};
   base::Interval90 radius = interval(work.circle.radius, deviation[2], 30, floor);

@@ -17,8 +17,8 @@ namespace millscope::inspect {
 struct MillMotion {
   int sense = 0;                ///< of turning, seen with z towards the viewer: +1 counter-clockwise, −1 clockwise, 0 not recognised
   std::array<Finding, 2> axis;  ///< x and y in the frame of the file, m
-  /// Standard error of the axis by the choice of rides alone, m: what two recordings of one mill differ by. All of them are off together
-  /// as well, by beads that ride on lifters, press into the liner or leave it; the intervals of `axis` allow for that.
+  /// Standard error of the axis by the choice of rides alone, m: what two recordings of one mill differ by; 0 without rides. All are off
+  /// together as well, by beads that ride on lifters, press into the liner or leave it; the intervals of `axis` allow for that.
   std::array<double, 2> axis_scatter{};
   Finding speed;              ///< |Ω| of the shell, rad/s
   Finding path_radius;        ///< of the circle on which the tracer's centre rides along the shell, m: the shell's less a bead's radius

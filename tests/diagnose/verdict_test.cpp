@@ -330,3 +330,11 @@ TEST_CASE("a mill that is stiffer than the fitted one is no missing physics wher
   // The practice retunes friction alone: its mill is as soft as it was.
   for (const Score& s : doubted.held_out.front().scores) CHECK(s.prediction.failure.empty());
 }
+
+TEST_CASE("draws that cannot resolve the study's level are refused before anything is simulated") {
+  const Scratch folder;
+  const Question q = question_of(folder, kSections + "level: 1 %\n");
+  MadeUpMill mill(q, usual(), kTheta);
+  CHECK_THAT(testing::refusal([&] { found(q, mill); }), Contains("--draws 240: too few for the study's level of 0.01; give 600 or more"));
+  CHECK(mill.computed() == 0);
+}

@@ -56,37 +56,22 @@ concept HasWideAct = requires(const F& f, const BeadState<Pack>& beads, BeadResp
   f.act(beads, out);
 };
 
-template <class R>
-Vec<R> vector_at(const double* const (&p)[3], std::int64_t i) {
-  return {load<R>(p[0] + i), load<R>(p[1] + i), load<R>(p[2] + i)};
-}
-template <class R>
-void add_at(double* p, const R& value) {
-  store(p, load<R>(p) + value);
-}
-template <class R>
-void add_at(double* const (&p)[3], std::int64_t i, const Vec<R>& value) {
-  add_at(p[0] + i, value.x);
-  add_at(p[1] + i, value.y);
-  add_at(p[2] + i, value.z);
-}
-
 /// Bead i, or the pack that begins there; what it takes from them, W.
 template <class R, class F>
 R act_at(const F& force, BodyForceBatch& b, std::int64_t i) {
   const R zero(0.0);
   const BeadState<R> bead{b.time,
                           b.time_step,
-                          vector_at<R>(b.position, i),
-                          vector_at<R>(b.velocity, i),
-                          vector_at<R>(b.spin, i),
+                          load_vector<R>(b.position, i),
+                          load_vector<R>(b.velocity, i),
+                          load_vector<R>(b.spin, i),
                           load<R>(b.radius + i),
                           load<R>(b.mass + i)};
   BeadResponse<R> out{{zero, zero, zero}, {zero, zero, zero}, zero, zero};
   force.act(bead, out);
-  add_at(b.force, i, out.force);
-  add_at(b.moment, i, out.moment);
-  add_at(b.added_mass + i, out.added_mass);
+  add_vector(b.force, i, out.force);
+  add_vector(b.moment, i, out.moment);
+  add_to(b.added_mass + i, out.added_mass);
   return out.power;
 }
 

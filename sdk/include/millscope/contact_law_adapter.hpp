@@ -58,8 +58,8 @@ void evaluate_contacts(const void* self, ContactBatch* b) {
   for (std::int64_t s = 0; s < count; s += width) {
     Contact<R> c;
     c.overlap = load<R>(b->overlap + s);
-    c.normal = {load<R>(b->normal[0] + s), load<R>(b->normal[1] + s), load<R>(b->normal[2] + s)};
-    c.velocity = {load<R>(b->velocity[0] + s), load<R>(b->velocity[1] + s), load<R>(b->velocity[2] + s)};
+    c.normal = load_vector<R>(b->normal, s);
+    c.velocity = load_vector<R>(b->velocity, s);
     c.radius = load<R>(b->radius + s);
     c.mass = load<R>(b->mass + s);
     c.restitution = b->restitution ? load<R>(b->restitution + s) : R(law.restitution());

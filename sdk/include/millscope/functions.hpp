@@ -9,7 +9,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 #include <numbers>
 
 #include "millscope/pack.hpp"

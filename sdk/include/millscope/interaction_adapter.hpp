@@ -70,21 +70,6 @@ concept HasPost = requires(const I& i, const PairState<double>& s, double (&h)[I
 };
 
 template <class R>
-Vec<R> load_vector(const double* const (&p)[3], std::int64_t s) {
-  return {load<R>(p[0] + s), load<R>(p[1] + s), load<R>(p[2] + s)};
-}
-template <class R>
-void add_to(double* p, const R& value) {
-  store(p, load<R>(p) + value);
-}
-template <class R>
-void add_vector(double* const (&p)[3], std::int64_t s, const Vec<R>& value) {
-  add_to(p[0] + s, value.x);
-  add_to(p[1] + s, value.y);
-  add_to(p[2] + s, value.z);
-}
-
-template <class R>
 PairState<R> load_pair(const InteractionBatch& b, std::int64_t s) {
   PairState<R> p;
   p.overlap = load<R>(b.overlap + s);

@@ -147,6 +147,21 @@ template <class R>
 R length(const Vec<R>& a) {
   return square_root(dot(a, a));
 }
+/// Slot s of three arrays, or the pack that begins there.
+template <class R>
+Vec<R> load_vector(const double* const (&p)[3], std::int64_t s) {
+  return {load<R>(p[0] + s), load<R>(p[1] + s), load<R>(p[2] + s)};
+}
+template <class R>
+void add_to(double* p, const R& value) {
+  store(p, load<R>(p) + value);
+}
+template <class R>
+void add_vector(double* const (&p)[3], std::int64_t s, const Vec<R>& value) {
+  add_to(p[0] + s, value.x);
+  add_to(p[1] + s, value.y);
+  add_to(p[2] + s, value.z);
+}
 template <class R>
 Vec<R> select(const typename MaskOf<R>::type& m, const Vec<R>& a, const Vec<R>& b) {
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};

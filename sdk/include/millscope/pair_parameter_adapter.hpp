@@ -41,8 +41,8 @@ void evaluate_pair_parameter(const void* self, PairParameterBatch* b) {
   for (std::int64_t s = 0; s < b->count; s += kWidthOf<R>) {
     ParameterState<R> state;
     state.overlap = load<R>(b->overlap + s);
-    state.normal = {load<R>(b->normal[0] + s), load<R>(b->normal[1] + s), load<R>(b->normal[2] + s)};
-    state.velocity = {load<R>(b->velocity[0] + s), load<R>(b->velocity[1] + s), load<R>(b->velocity[2] + s)};
+    state.normal = load_vector<R>(b->normal, s);
+    state.velocity = load_vector<R>(b->velocity, s);
     state.radius = load<R>(b->radius + s);
     state.mass = load<R>(b->mass + s);
     state.time_step = R(b->time_step);

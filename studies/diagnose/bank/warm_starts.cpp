@@ -116,9 +116,10 @@ std::vector<campaign::Simulation> simulations_of(const Question& question, const
   }
   std::vector<campaign::Simulation> simulations;
   for (const BankPoint& p : points) {
-    for (const std::size_t c : conditions)
-      simulations.push_back(question.bank.develop && !is_beyond(p.group) ? *chains.at({p.group, c}).at(p.index)
-                                                                         : simulation_of(question, p, c));
+    for (const std::size_t c : conditions) {
+      const auto chain = chains.find({p.group, c});
+      simulations.push_back(chain == chains.end() ? simulation_of(question, p, c) : *chain->second.at(p.index));
+    }
   }
   return simulations;
 }

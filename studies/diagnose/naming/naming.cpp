@@ -158,9 +158,8 @@ class Namer {
     judged.undetectable = alternative.screened_out || std::sqrt(judged.lambda) < o_.noise_units;
     judged.strength = without_interval(found);
     judged.at_end = alternative.candidate && at_limit(found, alternative.range);
-    for (Index i = 0; i < judged.fit.coded.size(); ++i)
-      judged.at_end = judged.at_end || (!p_.data.theta[i].nuisance() && at_limit(judged.fit.coded[i], {-1, 1}));
     for (Index i = 0; i < judged.fit.coded.size(); ++i) {
+      judged.at_end = judged.at_end || (!p_.data.theta[i].nuisance() && at_limit(judged.fit.coded[i], {-1, 1}));
       judged.theta.push_back(without_interval(p_.data.theta[i].natural(judged.fit.coded[i])));
     }
   }
@@ -177,10 +176,11 @@ class Namer {
     const VectorXd base = pseudo_.surrogate().at(out_.base.coded), z = (p_.observed - base).cwiseQuotient(sd);
     const Family family({collect(drawn, [](const auto& d) { return d.fit[0].q; }), largest}, pseudo_.laws());
     const double q = out_.base.q;
-    out_.base_p = std::min(family.p(0, {q, z.cwiseAbs().maxCoeff()}), family.p(1, {q, z.cwiseAbs().maxCoeff()}));
     for (Index i = 0; i < n; ++i) out_.mismatch.push_back({i, base[i], z[i], family.p(1, {q, std::fabs(z[i])})});
     std::stable_sort(out_.mismatch.begin(), out_.mismatch.end(),
                      [](const Mismatch& a, const Mismatch& b) { return std::fabs(a.z) > std::fabs(b.z); });
+    const Mismatch& most = out_.mismatch.front();
+    out_.base_p = std::min(family.p(0, {q, std::fabs(most.z)}), most.p);
   }
 
   void choose_best() {
@@ -280,6 +280,14 @@ class Namer {
 };
 
 }  // namespace
+
+std::vector<StrengthRange> ranges_of(const Problem& problem) {
+  std::vector<StrengthRange> ranges(problem.data.candidates);
+  for (const Alternative& r : problem.alternatives) {
+    if (r.candidate) ranges[*r.candidate] = r.range;
+  }
+  return ranges;
+}
 
 Result name_candidates(const Problem& problem, const Options& options) { return Namer(problem, options).run(); }
 

@@ -47,6 +47,9 @@ struct Problem {
   std::vector<MatrixXd> noise;  ///< laws that the recording's noise may have; every p is the largest over them. Empty: `covariance`
 };
 
+/// Within which each candidate of the bank is fitted.
+std::vector<StrengthRange> ranges_of(const Problem& problem);
+
 struct Options {
   int draws = 2016;            ///< behind the null
   int comparison_draws = 500;  ///< behind every comparison of two candidates

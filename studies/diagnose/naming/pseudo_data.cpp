@@ -18,14 +18,6 @@ constexpr std::size_t kEnoughWith = 12;  // runs with a candidate, for intervals
 constexpr double kFaint = 0.1;           // of a strength: the bank has no runs with less
 constexpr double kSingular = 1e-12;
 
-std::vector<StrengthRange> ranges_of(const Problem& problem) {
-  std::vector<StrengthRange> ranges(problem.data.candidates);
-  for (const Alternative& r : problem.alternatives) {
-    if (r.candidate) ranges[*r.candidate] = r.range;
-  }
-  return ranges;
-}
-
 /// Of a symmetric matrix A without negative eigenvalues, which may be singular: F with F Fᵀ = A, and G with Gᵀ F F ᵀ G = 1 where A is not
 /// 0.
 struct Root {

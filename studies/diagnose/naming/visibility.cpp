@@ -22,10 +22,7 @@ BankData about(BankData data, const VectorXd& coded, std::optional<Index> freed)
 
 /// What is refitted: θ, and what is on besides.
 Switched refitted(const Problem& problem, const std::vector<ActiveCandidate>& beside) {
-  Switched out{{}, std::vector<StrengthRange>(problem.data.candidates), {}, true};
-  for (const Alternative& a : problem.alternatives) {
-    if (a.candidate) out.ranges[*a.candidate] = a.range;
-  }
+  Switched out{{}, ranges_of(problem), {}, true};
   for (const ActiveCandidate& a : beside) out.on.push_back(a.candidate);
   return out;
 }

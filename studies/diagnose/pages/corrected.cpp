@@ -84,17 +84,8 @@ std::string study_text(const Told& t, const VectorXd& theta, const fs::path& fol
 }  // namespace
 
 void write_corrected(const Told& t, const fs::path& folder) {
-  const naming::Result& n = t.diagnosis.naming;
-  if (!n.best || t.diagnosis.verdict == Verdict::outside_library) return;
-  const bool two = t.diagnosis.two_effects;
-  const naming::FitResult& fit = two ? n.pairs.front().fit : n.judged[*n.best].fit;
-  std::vector<naming::ActiveCandidate> active;
-  std::vector<Index> found{*n.best};
-  if (two) found.push_back(n.pairs.front().second);
-  for (const Index alternative : found) {
-    const std::optional<Index> candidate = t.diagnosis.problem.alternatives[alternative].candidate;
-    if (candidate) active.push_back({*candidate, fit.strengths.at(active.size())});
-  }
+  if (!t.diagnosis.naming.best || t.diagnosis.verdict == Verdict::outside_library) return;
+  const auto [fit, active] = fit_of(t.diagnosis);
   const VectorXd theta = t.diagnosis.problem.data.natural(fit.coded);
   std::vector<std::string> settings = base_speeds(t.question.study.base);
   for (const std::string& s : t.question.settings(theta, active)) settings.push_back(s);

@@ -11,7 +11,7 @@ namespace millscope::diagnose {
 /// The case of the first fitted condition with some settings, written out; throws base::UserError where plugins or reader refuse it.
 std::string resolved(const calibrate::Study& study, const std::vector<std::string>& settings, const host::Registry& registry);
 
-/// Fills Question::farthest and Candidate::farthest: how far the bank may reach where a fit stands at an end.
+/// Fills Question::farthest and Candidate::prior and ::farthest: how far the bank may reach where a fit stands at an end.
 void find_farthest(const host::Registry& registry, Question& question);
 
 }  // namespace millscope::diagnose

@@ -90,18 +90,18 @@ naming::Problem problem_after(const Screened& screening, const Diagnosis& diagno
 /// Where a fit stands at an end of a range, simulations beyond it: once. The bank is that of the question as it was asked, whose plan says
 /// where each of its simulations begins; only what is learnt from it has the wider ranges.
 void reach_farther(const calibrate::Machinery& machinery, Screened& screening, Diagnosis& diagnosis) {
-  std::vector<std::pair<End, std::vector<BankPoint>>> beyond;
+  std::vector<std::pair<End, std::string>> beyond;  // the group of its simulations
   for (const End& end : ends_reached(diagnosis.question, diagnosis.problem)) {
-    std::vector<BankPoint> points = plan_beyond(diagnosis.question, end);
+    const std::vector<BankPoint> points = plan_beyond(diagnosis.question, end);
     if (std::ssize(points) < kFewestBeyond) continue;  // the study's constraints leave too little
     note(machinery, {sentence_of(diagnosis.question, end)}, diagnosis);
     screening.points.insert(screening.points.end(), points.begin(), points.end());
-    beyond.emplace_back(end, std::move(points));
+    beyond.emplace_back(end, points.front().group);
   }
   if (beyond.empty()) return;
   diagnosis.bank = filled(diagnosis.question, machinery, screening.points, diagnosis.bank.conditions, diagnosis);
-  for (const auto& [end, points] : beyond) {
-    if (finished(diagnosis.bank, points.front().group) >= kFewestBeyond) diagnosis.question = widened(std::move(diagnosis.question), end);
+  for (const auto& [end, group] : beyond) {
+    if (finished(diagnosis.bank, group) >= kFewestBeyond) diagnosis.question = widened(std::move(diagnosis.question), end);
   }
   diagnosis.problem = problem_after(screening, diagnosis);
 }
@@ -120,6 +120,16 @@ void note_recordings(const Question& question, Diagnosis& diagnosis) {
     }
   }
   for (const auto& [what, where] : lines) diagnosis.notes.push_back(fmt::format("recording of {}: {}", where, what));
+}
+
+/// The study's level, which the draws have to resolve.
+naming::Options at_level_of(const Question& question, naming::Options options) {
+  constexpr double kDrawsBeyond = 6;  // of two laws of noise, three each beyond the level
+  options.level = question.level;
+  if (options.draws * options.level < kDrawsBeyond)
+    throw base::UserError(fmt::format("--draws {}: too few for the study's level of {:.3g}; give {:.0f} or more", options.draws,
+                                      options.level, std::ceil(kDrawsBeyond / options.level)));
+  return options;
 }
 
 /// The same machinery, which notes where the simulations are that it is asked for.
@@ -151,7 +161,8 @@ const char* name_of(Verdict verdict) {
   return "";
 }
 
-Diagnosis diagnose(const Question& asked, const calibrate::Machinery& given, Evidence evidence, const naming::Options& options) {
+Diagnosis diagnose(const Question& asked, const calibrate::Machinery& given, Evidence evidence, const naming::Options& how) {
+  const naming::Options options = at_level_of(asked, how);
   std::set<std::filesystem::path> runs;
   const calibrate::Machinery machinery = noting(given, runs);
   Diagnosis diagnosis;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "studies/calibrate/session.hpp"
@@ -38,8 +39,11 @@ struct Diagnosis {
 /// What the session's recordings show; what they tell of a frame that the study doubts is part of it.
 Evidence evidence_of(const Question& question, const host::Registry& registry, const calibrate::Session& session);
 
-/// Everything from the bank on.
-Diagnosis diagnose(const Question& asked, const calibrate::Machinery& machinery, Evidence evidence, const naming::Options& options);
+/// Everything from the bank on, at the question's level. Throws base::UserError where the draws are too few for that.
+Diagnosis diagnose(const Question& asked, const calibrate::Machinery& machinery, Evidence evidence, const naming::Options& how);
+
+/// The fit that the verdict speaks of, with the candidates that are on: of two together, of the best, or the base's.
+std::pair<naming::FitResult, std::vector<naming::ActiveCandidate>> fit_of(const Diagnosis& diagnosis);
 
 /// Whether one candidate would be named if the held-out conditions confirm it: significant, sufficient, alone in its class, and no second
 /// beside it.

@@ -33,8 +33,7 @@ void add_parameters(const Question& question, const naming::FitResult& fit, std:
 std::vector<End> ends_reached(const Question& question, const naming::Problem& problem) {
   const naming::Surrogate surrogate(problem.data);
   const naming::Weighting weighting(problem.covariance, surrogate);
-  std::vector<naming::StrengthRange> ranges;
-  for (const Candidate& c : question.candidates) ranges.push_back(c.on_or_off() ? naming::StrengthRange{1, 1} : c.range);
+  const std::vector<naming::StrengthRange> ranges = naming::ranges_of(problem);
   const auto fit = [&](std::vector<Index> on) {
     return naming::Model(problem.data, surrogate, weighting, {std::move(on), ranges, {}}).fit(problem.observed);
   };

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <optional>
 #include <set>
-#include <utility>
 
 #include "studies/diagnose/naming/visibility.hpp"
 #include "studies/diagnose/verdict/diagnosis.hpp"
@@ -153,23 +152,9 @@ const naming::Pair* second_beside(const naming::Result& naming, double level) {
   return pair.p <= level && pair.p_first <= level && pair.goodness_p > level ? &pair : nullptr;
 }
 
-/// The fit that the verdict speaks of, with the candidates that are on.
-std::pair<naming::FitResult, std::vector<naming::ActiveCandidate>> last_fit(const Diagnosis& diagnosis) {
-  const naming::Result& n = diagnosis.naming;
-  if (!n.best) return {n.base, {}};
-  const auto& alternatives = diagnosis.problem.alternatives;
-  if (!diagnosis.two_effects) return {n.judged[*n.best].fit, naming::active_of(alternatives[*n.best], n.judged[*n.best].fit)};
-  const naming::Pair& pair = n.pairs.front();
-  std::vector<naming::ActiveCandidate> active;
-  for (const Index k : {pair.first, pair.second}) {
-    if (alternatives[k].candidate) active.push_back({*alternatives[k].candidate, pair.fit.strengths.at(active.size())});
-  }
-  return {pair.fit, active};
-}
-
 /// What lies outside the ranges that the study gave, and what stands at the end of all that was simulated.
 void tell_ranges(const Question& asked, Diagnosis& diagnosis) {
-  const auto [fit, active] = last_fit(diagnosis);
+  const auto [fit, active] = fit_of(diagnosis);
   const std::vector<std::string> outside = outside_ranges(asked, diagnosis.problem, fit, active);
   if (!outside.empty()) {
     diagnosis.sentence += fmt::format(" The range is too narrow: {}.", fmt::join(outside, "; "));
@@ -192,11 +177,10 @@ void tell_hidden(double noise_units, Diagnosis& diagnosis) {
       hidden.push_back(fmt::format("{} ({:.1f} noise units)", diagnosis.problem.alternatives[j].name, std::sqrt(g.lambda_beside)));
   }
   if (hidden.empty()) return;
-  diagnosis.notes.push_back(
-      fmt::format("beside {}, these data could not show even at its strongest: {}. It may be there as well; another speed, filling or a "
-                  "longer recording "
-                  "would tell",
-                  name_of(diagnosis, *diagnosis.naming.best), fmt::join(hidden, ", ")));
+  diagnosis.notes.push_back(fmt::format(
+      "beside {}, these data could not show even at its strongest: {}. It may be there as well; another speed, filling or a longer "
+      "recording would tell",
+      name_of(diagnosis, *diagnosis.naming.best), fmt::join(hidden, ", ")));
 }
 
 /// Two that are both asked for but whose sum does not describe the recordings: the bank has each alone, and together they may act
@@ -287,15 +271,6 @@ void nothing_named(const Question& question, double level, double noise_units, D
   tell_held_out(question, level, diagnosis);
 }
 
-}  // namespace
-
-bool about_to_name(const naming::Result& naming, double level) {
-  return naming.best && second_beside(naming, level) == nullptr && naming.judged[*naming.best].goodness_p > level &&
-         naming.kept.size() == 1;
-}
-
-namespace {
-
 void decide(double level, double noise_units, Diagnosis& diagnosis) {
   const Question& question = diagnosis.question;
   if (!diagnosis.naming.best) return nothing_named(question, level, noise_units, diagnosis);
@@ -348,6 +323,24 @@ void decide(double level, double noise_units, Diagnosis& diagnosis) {
 }
 
 }  // namespace
+
+bool about_to_name(const naming::Result& naming, double level) {
+  return naming.best && second_beside(naming, level) == nullptr && naming.judged[*naming.best].goodness_p > level &&
+         naming.kept.size() == 1;
+}
+
+std::pair<naming::FitResult, std::vector<naming::ActiveCandidate>> fit_of(const Diagnosis& diagnosis) {
+  const naming::Result& n = diagnosis.naming;
+  if (!n.best) return {n.base, {}};
+  const auto& alternatives = diagnosis.problem.alternatives;
+  if (!diagnosis.two_effects) return {n.judged[*n.best].fit, naming::active_of(alternatives[*n.best], n.judged[*n.best].fit)};
+  const naming::Pair& pair = n.pairs.front();
+  std::vector<naming::ActiveCandidate> active;
+  for (const Index k : {pair.first, pair.second}) {
+    if (alternatives[k].candidate) active.push_back({*alternatives[k].candidate, pair.fit.strengths.at(active.size())});
+  }
+  return {pair.fit, active};
+}
 
 void conclude(const Question& asked, double level, double noise_units, Diagnosis& diagnosis) {
   reservations(diagnosis);
