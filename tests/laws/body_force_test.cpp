@@ -6,7 +6,7 @@
 using namespace laws_test;
 
 TEST_CASE("gravity points down, where it is told, and turns about z") {
-  const Descriptor& d = force_plugin("gravity");
+  const Descriptor& d = plugin("gravity");
   CHECK(Force(ValueSet(d)).uniform() == std::array<double, 3>{0.0, -9.81, 0.0});
   ValueSet tilted(d);
   tilted.set("angle", 0.5);
@@ -20,7 +20,7 @@ TEST_CASE("gravity points down, where it is told, and turns about z") {
 }
 
 TEST_CASE("air drag is Stokes's at low speed, Schiller and Naumann's above, Newton's at high") {
-  const Descriptor& d = force_plugin("air_drag");
+  const Descriptor& d = plugin("air_drag");
   const Force drag{ValueSet(d)};
   const double stokes = 6 * 3.14159265358979 * 1.82e-5 * 1e-5 * 1e-4;
   CHECK(drag.on({}, {1e-4, 0, 0}, 1e-5)[0] == Approx(-stokes).epsilon(1e-3));
@@ -32,7 +32,7 @@ TEST_CASE("air drag is Stokes's at low speed, Schiller and Naumann's above, Newt
 }
 
 TEST_CASE("a fluid that turns with the mill does not brake a bead that turns with it") {
-  const Descriptor& d = force_plugin("air_drag");
+  const Descriptor& d = plugin("air_drag");
   ValueSet values(d);
   values.set("flow", "turning").set("angular_velocity", -6.0);
   const Force drag(values);

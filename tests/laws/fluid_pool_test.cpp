@@ -11,7 +11,7 @@ constexpr double kPi = 3.14159265358979323846, kRadius = 2.5e-3, kLevel = -0.02;
 constexpr double kVolume = 4.0 / 3.0 * kPi * kRadius * kRadius * kRadius;
 
 ValueSet pool_values() {
-  ValueSet values(force_plugin("fluid_pool"));
+  ValueSet values(plugin("fluid_pool"));
   values.set("level", kLevel);
   return values;
 }
@@ -94,7 +94,7 @@ TEST_CASE("a liquid that turns with the mill carries a bead of its own density a
 }
 
 TEST_CASE("the hypothesis of a pool needs its own parameter only") {
-  const Descriptor& d = force_plugin("fluid_pool");
+  const Descriptor& d = plugin("fluid_pool");
   REQUIRE(d.hypothesis_count == 1);
   CHECK(std::string(d.hypotheses[0].parameter) == "fluid_density");
   for (std::uint64_t k = 0; k < d.parameter_count; ++k) CHECK_FALSE(std::isnan(d.parameters[k].fallback));

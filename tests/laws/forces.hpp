@@ -8,8 +8,6 @@
 
 namespace laws_test {
 
-inline const Descriptor& force_plugin(const std::string& name) { return open_plugin(plugin_directory() + "/lib" + name + ".so", name); }
-
 class Force {
  public:
   explicit Force(const ValueSet& values) : table_(static_cast<const BodyForceTable*>(values.descriptor().table)) {
