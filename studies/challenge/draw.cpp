@@ -24,12 +24,13 @@ double draw_nuisance(const diagnose::Nuisance& n, base::RandomStream& random) {
   return n.mean;
 }
 
-/// A nuisance apart is what the challenge sets it to, else what the case says.
-double made(const Challenge& challenge, const SetsOf& sets, const diagnose::Question& q, const diagnose::Nuisance& n) {
+/// What the challenge sets it to, else what the case says.
+double made(const Challenge& challenge, const SetsOf& sets, const diagnose::Question& q, const std::string& path,
+            const base::Location& where) {
   std::vector<std::string> settings = q.study.conditions.front().settings;
   settings.insert(settings.end(), challenge.truth.begin(), challenge.truth.end());
   settings.insert(settings.end(), sets.settings.begin(), sets.settings.end());
-  return diagnose::value_in(config::read_case(q.study.base.string(), settings), n.path, n.where);
+  return diagnose::value_in(config::read_case(q.study.base.string(), settings), path, where);
 }
 
 Eigen::VectorXd draw_theta(const Challenge& challenge, const SetsOf& sets, const diagnose::Question& q, base::RandomStream& random) {
@@ -46,7 +47,13 @@ Eigen::VectorXd draw_theta(const Challenge& challenge, const SetsOf& sets, const
   }
   for (std::size_t i = 0; i < q.nuisances.size(); ++i) {
     const diagnose::Nuisance& n = q.nuisances[i];
-    theta[parameters + static_cast<Eigen::Index>(i)] = n.usual ? made(challenge, sets, q, n) : diagnose::rounded(draw_nuisance(n, random));
+    theta[parameters + static_cast<Eigen::Index>(i)] =
+        n.usual ? made(challenge, sets, q, n.path, n.where) : diagnose::rounded(draw_nuisance(n, random));
+  }
+  for (Eigen::Index i = 0; sets.kind == Kind::decoy && i < theta.size(); ++i) {
+    const std::string& path = i < parameters ? q.study.parameters[i].path : q.nuisances[i - parameters].path;
+    const bool is_set = std::any_of(sets.settings.begin(), sets.settings.end(), [&](const auto& s) { return s.starts_with(path + "="); });
+    if (is_set) theta[i] = made(challenge, sets, q, path, sets.where);
   }
   return theta;
 }
@@ -65,7 +72,9 @@ std::vector<Truth> draw_truths(const Challenge& challenge, const diagnose::Quest
     for (int i = 0; i < sets.count; ++i) {
       const std::uint64_t stream = kConditions * (1 + truths.size());
       base::RandomStream random(challenge.seed, stream);
-      Truth t{sets.kind, sets.name, draw_theta(challenge, sets, question, random), {}, sets.settings, stream};
+      Truth t{sets.kind, sets.name,     draw_theta(challenge, sets, question, random),
+              {},        sets.settings, sets.camera.empty() ? challenge.camera : sets.camera,
+              stream};
       for (const std::string& name : sets.hypotheses) t.effects.push_back(draw_effect(sets, name, question, random));
       truths.push_back(std::move(t));
     }

@@ -15,7 +15,8 @@ struct Truth {
   std::string name;
   Eigen::VectorXd theta;  ///< natural units, rounded as the bank rounds
   std::vector<naming::ActiveCandidate> effects;
-  std::vector<std::string> settings;  ///< of what lies outside
+  std::vector<std::string> settings;  ///< of what lies outside, of a decoy
+  std::filesystem::path camera;       ///< through which it is recorded
   std::uint64_t stream = 0;           ///< of the random numbers of its runs
 };
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "kernel/output/file.hpp"
 #include "studies/challenge/answer.hpp"
 #include "studies/challenge/draw.hpp"
@@ -46,7 +48,7 @@ struct Maker {
   const diagnose::Question& question;
   const host::Registry& registry;
   const fs::path& output;
-  camera::Camera camera;
+  std::map<fs::path, camera::Camera> cameras;
 
   /// One condition of a set: what the camera and the meter make of the truth.
   Json record(const Truth& truth, std::size_t condition, const campaign::Outcome& outcome, const fs::path& folder) const {
@@ -58,7 +60,7 @@ struct Maker {
     RecordingOf what{outcome.folder, folder, "r_" + question.study.conditions[condition].name, believed(question, condition, registry),
                      camera_seed};
     what.condition.power = recording::MeasuredPower{measured, power.sem};
-    write_recording(what, camera, registry);
+    write_recording(what, cameras.at(truth.camera), registry);
     return {{"power_W", power.value}, {"measured_power_W", measured}, {"camera_seed", camera_seed}, {"run", outcome.key}};
   }
 };
@@ -79,8 +81,9 @@ void make(const Challenge& challenge, const diagnose::Question& question, const 
   };
   if (fs::exists(options.output / "manifest.json"))
     throw UserError(fmt::format("{}: holds sealed sets already; choose another folder", options.output.string()));
-  const Maker maker{challenge, question, registry, options.output, camera::read_camera(challenge.camera, registry)};
   const std::vector<Truth> truths = draw_truths(challenge, question);
+  Maker maker{challenge, question, registry, options.output, {}};
+  for (const Truth& truth : truths) maker.cameras.try_emplace(truth.camera, camera::read_camera(truth.camera, registry));
   const std::size_t conditions = question.study.conditions.size();
   std::vector<campaign::Simulation> simulations;
   for (std::size_t t = 0; t < truths.size(); ++t) {
@@ -104,6 +107,7 @@ void make(const Challenge& challenge, const diagnose::Question& question, const 
       Json& made = answer.made[question.study.conditions[c].name];
       made = maker.record(truths[t], c, outcomes[t * conditions + c], folder);
       made["settings"] = simulations[t * conditions + c].settings;
+      made["camera"] = truths[t].camera.filename().string();
     }
     output::write_file(folder / "study.yaml", study_text(question, folder));
     answers.push_back(std::move(answer));

@@ -38,6 +38,7 @@ void add_counts(const Score& s, std::string& out) {
   line("physics outside the list: said to lie outside (right abstention)", s.outside_abstained);
   line("physics outside the list: something of the list named (wrong)", s.outside_named);
   line("physics outside the list: not noticed", s.outside_missed);
+  line("decoy (another camera, or what is believed is wrong): physics is named (wrong)", s.decoys_named);
   if (std::isfinite(s.mean_class))
     add(out, "\nWhere one effect is hidden and something is named, {:.2f} candidates are named in the mean.\n", s.mean_class);
 }
@@ -115,6 +116,7 @@ Json score_json(const Page& page) {
           {"outside_abstained", count_json(s.outside_abstained)},
           {"outside_named", count_json(s.outside_named)},
           {"outside_missed", count_json(s.outside_missed)},
+          {"decoys_named", count_json(s.decoys_named)},
           {"strength_coverage", count_json(s.strength)},
           {"parameter_coverage", theta},
           {"power", power},

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "kernel/base/nearest.hpp"
 #include "kernel/config/existing_file.hpp"
@@ -18,6 +20,7 @@ using config::Node;
 
 constexpr int kMostSets = 999;
 constexpr int kMostBeads = 100000;
+constexpr Kind kKinds[] = {Kind::none, Kind::effect, Kind::two, Kind::outside, Kind::decoy};
 
 std::vector<std::string> settings_of(const Node& set) {
   if (!set.is_map()) set.fail("is no map; write e.g. {stiffness_factor: 0.01}");
@@ -25,8 +28,8 @@ std::vector<std::string> settings_of(const Node& set) {
 }
 
 Kind read_kind(const Node& node) {
-  const std::string kind = config::read_choice(node, "none|effect|two|outside");
-  return kind == "none" ? Kind::none : kind == "effect" ? Kind::effect : kind == "two" ? Kind::two : Kind::outside;
+  const std::string kind = config::read_choice(node, "none|effect|two|outside|decoy");
+  return *std::find_if(std::begin(kKinds), std::end(kKinds), [&](Kind k) { return kind == name_of(k); });
 }
 
 void read_strength(const Node& node, SetsOf& sets) {
@@ -38,11 +41,20 @@ void read_strength(const Node& node, SetsOf& sets) {
   if (!(sets.low <= sets.high)) node.fail("has its lower end above the upper one; turn them round");
 }
 
+void read_decoy(const Node& node, SetsOf& sets) {
+  node.expect({"kind", "count", "name", "set", "camera"});
+  sets.name = node.at("name", "what it is called in the score").text();
+  if (const auto set = node.find("set")) sets.settings = settings_of(*set);
+  if (const auto camera = node.find("camera")) sets.camera = config::existing_file(*camera);
+  if (sets.settings.empty() && sets.camera.empty())
+    node.fail("is like any set without an effect; give another 'camera', or 'set' what the study varies beyond what is believed of it");
+}
+
 SetsOf read_sets(const Node& node) {
   if (!node.is_map()) node.fail("is no set; write e.g. {kind: none, count: 5}");
   SetsOf s;
   s.where = node.where();
-  s.kind = read_kind(node.at("kind", "none, effect, two or outside"));
+  s.kind = read_kind(node.at("kind", "none, effect, two, outside or decoy"));
   if (const auto count = node.find("count")) s.count = static_cast<int>(config::read_integer(*count, between(1, kMostSets)));
   switch (s.kind) {
     case Kind::none:
@@ -62,6 +74,9 @@ SetsOf read_sets(const Node& node) {
       node.expect({"kind", "count", "name", "set"});
       s.name = node.at("name", "what it is called in the score").text();
       s.settings = settings_of(node.at("set", "the physics that the study's list lacks"));
+      break;
+    case Kind::decoy:
+      read_decoy(node, s);
       break;
   }
   if (const auto strength = node.find("strength")) read_strength(*strength, s);
@@ -86,6 +101,16 @@ void check_hypothesis(const SetsOf& sets, const std::string& name, const diagnos
 
 std::string path_of(const std::string& setting) { return setting.substr(0, setting.find('=')); }
 
+/// Whether it is a parameter of the study or a nuisance that is drawn.
+bool varies(const diagnose::Question& question, const std::string& path) {
+  const auto& [parameters, nuisances] = std::tie(question.study.parameters, question.nuisances);
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [&](const calibrate::Parameter& p) {
+                       return p.path == path || std::find(p.tied.begin(), p.tied.end(), path) != p.tied.end();
+                     }) ||
+         std::any_of(nuisances.begin(), nuisances.end(), [&](const diagnose::Nuisance& n) { return !n.usual && n.path == path; });
+}
+
 /// Whether a setting is what the hypothesis stands for: its value, its switch, or its plugin under another name.
 bool stands_for(const diagnose::Candidate& c, const std::string& setting) {
   const std::string path = path_of(setting), kind = setting.substr(path.size());
@@ -95,6 +120,15 @@ bool stands_for(const diagnose::Candidate& c, const std::string& setting) {
     if (c.on_or_off() && other == path) return true;
     return path.ends_with(".kind") && other.ends_with(".kind") && on.substr(other.size()) == kind;
   });
+}
+
+/// A decoy sets what the study varies, and nothing else.
+void check_decoy(const SetsOf& sets, const diagnose::Question& question) {
+  for (const std::string& setting : sets.settings) {
+    if (!varies(question, path_of(setting)))
+      throw base::UserError(
+          sets.where, fmt::format("sets '{}', which the study does not vary: that is no decoy; its kind is outside", path_of(setting)));
+  }
 }
 
 /// What is drawn, or what a hypothesis stands for: set beside them it would be scored as what it is not.
@@ -108,12 +142,7 @@ void check_settings(const std::vector<std::string>& settings, const base::Locati
                                "without '{}'",
                                path, c.name, c.name));
     }
-    const auto drawn = [&](const calibrate::Parameter& p) {
-      return p.path == path || std::find(p.tied.begin(), p.tied.end(), path) != p.tied.end();
-    };
-    const auto& nuisances = question.nuisances;
-    if (std::any_of(question.study.parameters.begin(), question.study.parameters.end(), drawn) ||
-        std::any_of(nuisances.begin(), nuisances.end(), [&](const diagnose::Nuisance& n) { return !n.usual && n.path == path; }))
+    if (varies(question, path))
       throw base::UserError(where, fmt::format("sets '{}', which the study looks for and the challenge draws; leave it out", path));
   }
 }
@@ -130,6 +159,8 @@ const char* name_of(Kind kind) {
       return "two";
     case Kind::outside:
       return "outside";
+    case Kind::decoy:
+      return "decoy";
   }
   return "";
 }
@@ -182,7 +213,10 @@ diagnose::Question question_of(const Challenge& challenge, const host::Registry&
   }
   check_settings(challenge.truth, challenge.truth_where, question);
   for (const SetsOf& sets : challenge.sets) {
-    check_settings(sets.settings, sets.where, question);
+    if (sets.kind == Kind::decoy)
+      check_decoy(sets, question);
+    else
+      check_settings(sets.settings, sets.where, question);
     for (const std::string& name : sets.hypotheses) check_hypothesis(sets, name, question);
   }
   return question;

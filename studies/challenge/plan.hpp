@@ -11,6 +11,7 @@
 //     - {kind: effect, hypothesis: rolling_resistance, strength: [0.3, 1], count: 3}
 //     - {kind: two, hypotheses: [rolling_resistance, lifter_wear]}
 //     - {kind: outside, name: brittle_glass, set: {pairs.glass~glass.restitution: 0.3}}
+//     - {kind: decoy, name: clock, camera: ../cameras/slow_clock.yaml}
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,8 @@
 
 namespace millscope::challenge {
 
-enum class Kind { none, effect, two, outside };
+/// A decoy has no physics beyond the base: its camera is another one, or what the study varies lies beyond what is believed of it.
+enum class Kind { none, effect, two, outside, decoy };
 const char* name_of(Kind kind);
 
 /// One line of `sets`.
@@ -31,8 +33,9 @@ struct SetsOf {
   Kind kind = Kind::none;
   std::vector<std::string> hypotheses;
   double low = 0.3, high = 1;         ///< of the share of the prior range
-  std::string name;                   ///< of what lies outside the study's list
+  std::string name;                   ///< of what lies outside the study's list, of a decoy
   std::vector<std::string> settings;  ///< that make it
+  std::filesystem::path camera = {};  ///< of a decoy; empty: that of the challenge
   int count = 1;
   base::Location where;
 };

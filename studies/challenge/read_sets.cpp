@@ -45,6 +45,7 @@ Found found_from(const Json& j) {
     for (const Json& point : h.at("lambda_at")) t.lambda_curve.emplace_back(number(point.at("strength")), number(point.at("lambda")));
     const Json& of = h.at("parameters");
     if (!of.empty()) t.strength = interval_from(of.begin().value());
+    t.physics = h.value("kind", "physics") == "physics";
     f.hypotheses.push_back(std::move(t));
   }
   f.retuned = parameters(j.at("contact_parameters"), "retuned");

@@ -55,6 +55,10 @@ void score_outside(const Found& f, Score& s) {
   s.outside_missed.add(f.verdict == "no_mismatch" || f.verdict == "undetectable");
 }
 
+void score_decoy(const Found& f, Score& s) {
+  if (f.failure.empty()) s.decoys_named.add(f.names_physics());
+}
+
 void add_power(const Marked& m, Score& s) {
   for (const TrueEffect& e : m.answer.effects) {
     const Tested* tested = m.found->find(e.hypothesis);
@@ -192,6 +196,13 @@ const Tested* Found::best() const {
 
 bool Found::names(const std::string& name) const { return std::find(named.begin(), named.end(), name) != named.end(); }
 
+bool Found::names_physics() const {
+  return std::any_of(named.begin(), named.end(), [&](const std::string& name) {
+    const Tested* tested = find(name);
+    return tested == nullptr || tested->physics;
+  });
+}
+
 double upper_bound(const Count& c, double confidence) {
   if (c.hits >= c.of) return 1;
   return boost::math::quantile(boost::math::beta_distribution<>(c.hits + 1, c.of - c.hits), confidence);
@@ -204,7 +215,7 @@ double lower_bound(const Count& c, double confidence) {
 
 std::string label_of(const Answer& a) {
   if (a.kind == Kind::none) return "none";
-  if (a.kind == Kind::outside) return "outside: " + a.name;
+  if (a.kind == Kind::outside || a.kind == Kind::decoy) return fmt::format("{}: {}", name_of(a.kind), a.name);
   std::string out;
   for (const TrueEffect& e : a.effects) out += (out.empty() ? "" : " + ") + e.hypothesis;
   return out;
@@ -228,6 +239,7 @@ Score score(const std::vector<Marked>& sets) {
     if (m.answer.kind == Kind::none) score_none(m, s);
     if (m.answer.kind == Kind::two) score_two(m, s);
     if (m.answer.kind == Kind::outside) score_outside(*m.found, s);
+    if (m.answer.kind == Kind::decoy) score_decoy(*m.found, s);
     if (m.answer.kind == Kind::effect) {
       const std::size_t size = score_effect(m, s);
       class_sum += static_cast<double>(size);

@@ -19,6 +19,7 @@ struct Tested {
   std::string name, class_of;                           ///< "best", "not rejected", …
   std::vector<std::pair<double, double>> lambda_curve;  ///< (strength, λ), strengths rising
   std::optional<base::Interval90> strength;
+  bool physics = true;  ///< else a nuisance that leaves its prior
 
   /// λ at a strength, by its root between those of the curve.
   double lambda(double strength) const;
@@ -41,6 +42,7 @@ struct Found {
   const Tested* find(const std::string& name) const;
   const Tested* best() const;
   bool names(const std::string& name) const;
+  bool names_physics() const;
 };
 
 /// A set with its diagnosis; nothing: not diagnosed yet.
@@ -109,6 +111,7 @@ struct Score {
   Count abstained_on_effect;                                     ///< outside_library, though the truth is in the list
   Count two_both, two_one;                                       ///< two effects: both, at least one named
   Count outside_abstained, outside_named, outside_missed;
+  Count decoys_named;  ///< decoys in which physics is named: wrong
 
   Count strength;                                    ///< truth in the 90 % interval
   std::vector<std::pair<std::string, Count>> theta;  ///< the same, by parameter
@@ -125,7 +128,7 @@ struct Score {
 
 Score score(const std::vector<Marked>& sets);
 
-/// "none", "rolling_resistance", "a + b", "outside: x".
+/// "none", "rolling_resistance", "a + b", "outside: x", "decoy: x".
 std::string label_of(const Answer& answer);
 /// The verdict; with its names where there are some: "named: a", "ambiguous: a, b".
 std::string label_of(const Found& found);

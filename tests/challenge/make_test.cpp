@@ -118,6 +118,27 @@ TEST_CASE("a nuisance apart is in every truth what the challenge makes it, or th
   for (const Truth& t : draw_truths(c, q)) CHECK(t.theta[2] == (t.kind == challenge::Kind::outside ? 0.0001 : 0.001));
 }
 
+TEST_CASE("a decoy is made with what it sets, and its answer says so") {
+  Made made;
+  std::string text = kChallenge;
+  text.replace(text.find("{kind: none}"), std::string("{kind: none}").size(),
+               "{kind: decoy, name: fuller, set: {fill.filling: 45 %}}, {kind: decoy, name: noisy, camera: noisy.yaml}");
+  std::ofstream(made.folder / "noisy.yaml") << "observations: {}\n";
+  std::ofstream(made.folder / "c.yaml") << text;
+  Challenge c = read_challenge(made.folder / "c.yaml");
+  const diagnose::Question q = question_of(c, made.registry);
+  for (const Truth& t : draw_truths(c, q)) {
+    CHECK((t.name == "fuller" ? t.theta[1] == 0.45 : t.theta[1] < 0.42));
+    CHECK(t.camera.filename() == (t.name == "noisy" ? "noisy.yaml" : "camera.yaml"));
+    const std::vector<std::string> settings = simulation_of(c, q, t, 0, "").settings;
+    const auto set_there = std::find(settings.begin(), settings.end(), "fill.filling=45 %");
+    CHECK((set_there != settings.end()) == (t.name == "fuller"));
+  }
+  c.sets[0].settings = {"pairs.glass~glass.restitution=0.3"};
+  CHECK(testing::refusal([&] { question_of(c, made.registry); }).find("which the study does not vary: that is no decoy") !=
+        std::string::npos);
+}
+
 TEST_CASE("a set whose diagnosis throws is noted, and the others are tried") {
   Made made;
   seal(made.sets, {{"set_001", challenge::Kind::none, "", {}, {}, {}}, {"set_002", challenge::Kind::none, "", {}, {}, {}}},

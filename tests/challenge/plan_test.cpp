@@ -20,7 +20,8 @@ const std::string kText =
     "  - {kind: none, count: 3}\n"
     "  - {kind: effect, hypothesis: wear, strength: [50 %, 1]}\n"
     "  - {kind: two, hypotheses: [wear, rolling]}\n"
-    "  - {kind: outside, name: soft, set: {pairs.glass~glass.restitution: 0.3, contact.law.cap: sum}}\n";
+    "  - {kind: outside, name: soft, set: {pairs.glass~glass.restitution: 0.3, contact.law.cap: sum}}\n"
+    "  - {kind: decoy, name: fuller, camera: camera.yaml, set: {fill.filling: 40 %}}\n";
 
 std::filesystem::path write(const testing::Scratch& folder, const std::string& text) {
   std::ofstream(folder / "study.yaml") << "base: x\n";
@@ -50,11 +51,14 @@ TEST_CASE("a challenge reads as it is written") {
   CHECK(c.seed == 9);
   CHECK(c.seconds == 0.5);
   CHECK(c.truth == std::vector<std::string>{"stiffness_factor=0.01", "contact.law.cap=sum"});
-  REQUIRE(c.sets.size() == 4);
+  REQUIRE(c.sets.size() == 5);
   CHECK(c.sets[0].count == 3);
   CHECK(c.sets[1].low == 0.5);
   CHECK(c.sets[2].hypotheses == std::vector<std::string>{"wear", "rolling"});
   CHECK(c.sets[3].settings == std::vector<std::string>{"pairs.glass~glass.restitution=0.3", "contact.law.cap=sum"});
+  CHECK(c.sets[4].kind == Kind::decoy);
+  CHECK(c.sets[4].settings == std::vector<std::string>{"fill.filling=40 %"});
+  CHECK(c.sets[4].camera.filename() == "camera.yaml");
 }
 
 TEST_CASE("another engine may play the truth, with settings or without") {
@@ -75,6 +79,8 @@ TEST_CASE("challenges that cannot work are refused with their place") {
   CHECK(begins(refused("[50 %, 1]", "[0.5, 2]"), "c.yaml:9: "));
   CHECK(begins(refused("[wear, rolling]", "[wear, wear]"), "c.yaml:10: 'sets.2.hypotheses' is no list of two"));
   CHECK(begins(refused("name: soft, ", ""), "c.yaml:11: "));
+  CHECK(begins(refused("camera: camera.yaml, set: {fill.filling: 40 %}", "count: 2"), "c.yaml:12: 'sets.4' is like any set without"));
+  CHECK(begins(refused("camera: camera.yaml, set", "camera: eye.yaml, set"), "c.yaml:12: 'sets.4.camera' is 'eye.yaml': no such file"));
   CHECK(begins(refused("study: study.yaml", "study: other.yaml"), "c.yaml:1: 'study' is 'other.yaml': no such file"));
   CHECK(begins(refused("camera: camera.yaml", "camera: eye.yaml"), "c.yaml:2: 'camera' is 'eye.yaml': no such file"));
   CHECK(begins(refused("seed: 4", "seed: -4"), "c.yaml:3: "));

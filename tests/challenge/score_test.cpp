@@ -103,6 +103,16 @@ TEST_CASE("hits, misses and abstentions are counted") {
   check(s.outside_missed, 0, 1);
 }
 
+TEST_CASE("a decoy goes wrong where physics is named, and not where what was believed is") {
+  Found filling = found("named", {"filling"});
+  filling.hypotheses = {{"filling", "best", {}, {}, false}};
+  const Score s = score({{answer("s1", Kind::decoy), filling},
+                         {answer("s2", Kind::decoy), found("named", {"rolling"})},
+                         {answer("s3", Kind::decoy), found("no_mismatch", {})}});
+  check(s.decoys_named, 1, 3);
+  check(s.false_alarms, 0, 0);
+}
+
 TEST_CASE("strengths, parameters, power and gains") {
   const Score s = score(ten_sets());
   check(s.strength, 1, 1);

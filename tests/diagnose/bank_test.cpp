@@ -122,6 +122,23 @@ TEST_CASE("strengths cover what they are meant to, and agree with the rounded va
   for (const BankPoint& p : plan_group(q, {}, 8)) CHECK(p.active.empty());
 }
 
+TEST_CASE("two candidates are simulated together, alike in either order") {
+  const Scratch folder;
+  const Question q = question_of(folder, kNuisance + "hypotheses: {rolling_resistance: {}, capillary_bridge: {}}\n");
+  const Index rolling = candidate(q, "rolling_resistance"), bridge = candidate(q, "capillary_bridge");
+  const std::vector<BankPoint> one = plan_pair(q, rolling, bridge), other = plan_pair(q, bridge, rolling);
+  REQUIRE(std::ssize(one) == q.bank.each);
+  double sum = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    CHECK(one[i].group == "capillary_bridge+rolling_resistance");
+    CHECK(other[i].theta == one[i].theta);
+    REQUIRE(one[i].active.size() == 2);
+    CHECK(simulation_of(q, one[i], 0).settings == simulation_of(q, other[i], 0).settings);
+    sum += (one[i].active[0].strength - 0.55) * (one[i].active[1].strength - 0.55);
+  }
+  CHECK(std::fabs(sum) < 0.04 * static_cast<double>(one.size()));  // neither goes along with the other
+}
+
 TEST_CASE("parameters stay within their ranges, have four digits and break no constraint") {
   const Scratch folder;
   const Question q = question_of(folder, kSections + "constraints: [wall_friction < bead_friction]\n");

@@ -87,10 +87,11 @@ calibrate::Observation MadeUpMill::observation(std::size_t condition, const std:
     y += (3 - static_cast<double>(i)) * direction(own + i) * u + 0.4 * direction(own + 10 + i) * u * u;
   }
   for (const Physics& p : physics_) {
-    const auto found = settings.find(p.path);
+    const auto found = settings.find(p.path), other = settings.find(p.beside);
+    const double share = p.beside.empty() ? 1 : other == settings.end() ? 0 : std::stod(other->second) / p.beside_far;
     if (found != settings.end())
-      y += p.size * (1 + p.growth * (1 + coded.at(p.coordinate))) * (std::stod(found->second) - p.null_value) / (p.far - p.null_value) *
-           direction(p.direction.at(condition));
+      y += share * p.size * (1 + p.growth * (1 + coded.at(p.coordinate))) * (std::stod(found->second) - p.null_value) /
+           (p.far - p.null_value) * direction(p.direction.at(condition));
   }
   base::RandomStream random(std::hash<std::string>{}(key) + seed, condition);
   y += noise * random.normals(kObservables);

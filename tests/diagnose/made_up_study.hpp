@@ -27,6 +27,8 @@ struct Physics {
   std::vector<std::uint64_t> direction;  ///< of each condition
   std::size_t coordinate = 0;            ///< of θ, on which the size depends …
   double growth = 0;                     ///< … for every step of its coded value above −1
+  std::string beside = {};               ///< it is there with this setting alone …
+  double beside_far = 1;                 ///< … as much as that has of this
 };
 
 class MadeUpMill {

@@ -335,6 +335,7 @@ TEST_CASE("draws that cannot resolve the study's level are refused before anythi
   const Scratch folder;
   const Question q = question_of(folder, kSections + "level: 1 %\n");
   MadeUpMill mill(q, usual(), kTheta);
-  CHECK_THAT(testing::refusal([&] { found(q, mill); }), Contains("--draws 240: too few for the study's level of 0.01; give 600 or more"));
+  CHECK_THAT(testing::refusal([&] { found(q, mill); }),
+             Contains("--draws 240: too few for 4 candidates and nuisances at the study's level of 0.01; give 800 or more"));
   CHECK(mill.computed() == 0);
 }

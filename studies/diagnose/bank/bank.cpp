@@ -30,7 +30,9 @@ MatrixXd unit_points(Index points, Index dimensions) {
 
 std::string name_of(const Question& question, const Group& group) {
   if (group.base()) return "base";
-  return group.candidate ? question.candidates[*group.candidate].name : question.coordinates()[*group.nuisance].name;
+  if (group.nuisance) return question.coordinates()[*group.nuisance].name;
+  const std::string& name = question.candidates[*group.candidate].name;
+  return group.second ? name + "+" + question.candidates[*group.second].name : name;
 }
 
 /// Where a nuisance that is varied apart stands beside a candidate, coded. A case near the middle of the range: its two ends, in Thue's and
@@ -40,12 +42,18 @@ double far_from(double usual, int turn) {
   return std::copysign(std::array{1.0, 0.5, 0.0}[turn % 3], -usual);
 }
 
-/// Coordinates of the case, then what is varied in this group alone (the strength of a candidate, a nuisance), then those of the camera.
+naming::ActiveCandidate drawn_strength(const Question& question, Index candidate, double unit) {
+  const Candidate& c = question.candidates[candidate];
+  const double low = c.range.low < 0 ? c.range.low : kLeastStrength;
+  return {candidate, rounded_strength(c, c.on_or_off() ? 1 : low + (1 - low) * unit)};
+}
+
+/// Coordinates of the case, then what is varied in this group alone (strengths of candidates, a nuisance), then those of the camera.
 VectorXd theta_of(const Question& question, const VectorXd& unit, const Group& group) {
   VectorXd theta(question.dimensions());
   const std::vector<naming::Coordinate> coordinates = question.coordinates();
   const Index own = question.case_dimensions();
-  Index next = own + (group.base() ? 0 : 1);
+  Index next = own + group.size();
   for (Index i = 0; i < theta.size(); ++i) {
     const naming::Coordinate& c = coordinates[i];
     if (i == group.nuisance)
@@ -79,7 +87,7 @@ std::vector<std::string> leave_out_too_few(const Question& question, std::vector
   for (const Index nuisance : varied_apart(question)) {
     const double usual = *question.coordinates()[nuisance].usual;
     for (Index j = 0; j < std::ssize(question.candidates); ++j) {
-      const auto with = [&](const naming::BankRow& row) { return row.candidate() == j; };
+      const auto with = [&](const naming::BankRow& row) { return row.candidate() == j && row.active.size() == 1; };
       const auto together = [&](const naming::BankRow& row) { return with(row) && row.theta[nuisance] != usual; };
       const auto runs = std::count_if(rows.begin(), rows.end(), together), all = std::count_if(rows.begin(), rows.end(), with);
       if (runs == 0 || std::min(runs, all - runs) >= naming::kLeastTogether) continue;
@@ -128,19 +136,13 @@ std::vector<BankPoint> plan_group(const Question& question, const Group& of, int
   const std::string group = name_of(question, of);
   const auto offset = of.base() ? 0 : static_cast<Index>(kOffsets * (base::Hash().add(group).value() % kOffsets));
   const Index d = question.dimensions() - varied_apart(question).size();
-  const MatrixXd unit = unit_points(offset + count, d + (of.base() ? 0 : 1));
+  const MatrixXd unit = unit_points(offset + count, d + of.size());
   std::vector<BankPoint> points;
   for (int i = 0; i < count; ++i) {
     const VectorXd u = unit.row(offset + i).transpose();
     BankPoint point{group, i, theta_of(question, u, of), {}};
-    if (of.candidate) {
-      const Candidate& c = question.candidates[*of.candidate];
-      const double unit_strength = u[question.case_dimensions()];
-      const double strength = c.on_or_off()     ? 1
-                              : c.range.low < 0 ? c.range.low + (1 - c.range.low) * unit_strength
-                                                : kLeastStrength + (1 - kLeastStrength) * unit_strength;
-      point.active = {{*of.candidate, rounded_strength(c, strength)}};
-    }
+    if (of.candidate) point.active.push_back(drawn_strength(question, *of.candidate, u[question.case_dimensions()]));
+    if (of.second) point.active.push_back(drawn_strength(question, *of.second, u[question.case_dimensions() + 1]));
     if (question.study.allowed(point.theta.head(std::ssize(question.study.parameters)))) points.push_back(std::move(point));
   }
   return points;
@@ -186,6 +188,11 @@ std::vector<BankPoint> plan_rest(const Question& question, Index candidate) {
   std::erase_if(all, [&](const BankPoint& p) { return p.index < question.bank.first; });
   for (const Index nuisance : varied_apart(question)) append(all, plan_together(question, candidate, nuisance));
   return all;
+}
+
+std::vector<BankPoint> plan_pair(const Question& question, Index one, Index other) {
+  if (question.candidates[other].name < question.candidates[one].name) std::swap(one, other);
+  return plan_group(question, {.candidate = one, .second = other}, question.bank.each);
 }
 
 std::vector<BankPoint> plan_bank(const Question& question) {

@@ -17,17 +17,20 @@ inline constexpr double kLeastStrength = 0.1;  ///< of a one-sided candidate's s
 
 /// One parameter set of the bank.
 struct BankPoint {
-  std::string group;  ///< "base", "again", a candidate's or a nuisance's name, "candidate*nuisance"; with > or < where it is beyond.hpp's
+  std::string group;  ///< "base", "again", a candidate's or a nuisance's name, "candidate*nuisance", "candidate+candidate"; with > or <
+                      ///< where it is beyond.hpp's
   int index = 0;      ///< within the group
   VectorXd theta;
   std::vector<naming::ActiveCandidate> active;
 };
 
-/// What is varied in some of the bank's simulations beside the parameters: nothing, a candidate's strength, or a nuisance.
+/// What is varied in some of the bank's simulations beside the parameters: nothing, the strength of a candidate or of two, or a nuisance.
 struct Group {
   std::optional<Index> candidate = {};
   std::optional<Index> nuisance = {};  ///< coordinate of θ
+  std::optional<Index> second = {};    ///< candidate
   bool base() const { return !candidate && !nuisance; }
+  Index size() const { return (candidate ? 1 : 0) + (nuisance ? 1 : 0) + (second ? 1 : 0); }
 };
 /// The coordinates of nuisances that are varied apart, in groups of their own.
 std::vector<Index> varied_apart(const Question& question);
@@ -45,6 +48,8 @@ std::vector<BankPoint> plan_screening(const Question& question);
 std::vector<BankPoint> plan_together(const Question& question, Index candidate, Index nuisance);
 /// What a candidate that may matter has besides: the rest of those with it alone, and those with it and each nuisance that is varied apart.
 std::vector<BankPoint> plan_rest(const Question& question, Index candidate);
+/// Two candidates at once, as many as with one: whether they add up. Named and seeded alike in either order.
+std::vector<BankPoint> plan_pair(const Question& question, Index one, Index other);
 /// Both, for all candidates.
 std::vector<BankPoint> plan_bank(const Question& question);
 

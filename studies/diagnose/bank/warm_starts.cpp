@@ -60,6 +60,9 @@ std::vector<BankPoint> group_of(const Question& question, const std::string& nam
   for (Index j = 0; j < std::ssize(question.candidates); ++j) {
     const std::string& candidate = question.candidates[j].name;
     if (name == candidate) return plan_group(question, {j, {}}, last + 1);
+    for (Index k = 0; k < std::ssize(question.candidates); ++k) {
+      if (name == candidate + "+" + question.candidates[k].name) return plan_group(question, {.candidate = j, .second = k}, last + 1);
+    }
     for (const Index nuisance : varied_apart(question)) {
       if (name == candidate + "*" + coordinates[nuisance].name) return plan_together(question, j, nuisance);
     }

@@ -127,6 +127,7 @@ VectorXd Model::features(const VectorXd& t) const {
     x.segment(next, n) = features_->block(active_[k], u, t[theta_ + k]);
     next += n;
   }
+  if (next < x.size()) x[next] = t[theta_] * t[theta_ + 1];  // the product of two that have runs together
   return x;
 }
 

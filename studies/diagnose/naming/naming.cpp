@@ -228,14 +228,6 @@ class Namer {
     }
   }
 
-  bool together(Index a, Index b) const {
-    const Alternative &one = p_.alternatives[a], &other = p_.alternatives[b];
-    const auto has = [](const std::vector<std::string>& list, const std::string& name) {
-      return std::find(list.begin(), list.end(), name) != list.end();
-    };
-    return a != b && !has(one.excludes, other.name) && !has(other.excludes, one.name) && !(one.freed && other.freed);
-  }
-
   /// Forward selection: a second candidate beside the best, and the best tested again beside it.
   void look_for_second() {
     const Index first = *out_.best;
@@ -243,7 +235,7 @@ class Namer {
     std::vector<Index> others;
     std::vector<Choice> choices{{first}};
     for (Index k = 0; k < count(); ++k) {
-      if (!tested(k) || !together(first, k)) continue;
+      if (!tested(k) || !together(p_.alternatives[first], p_.alternatives[k])) continue;
       others.push_back(k);
       choices.push_back({first, k});
       const Visibility beside(p_, pseudo_.surrogate(), pseudo_.weighting(), {alone.coded, active_of(p_.alternatives[first], alone)}, k);
@@ -280,6 +272,13 @@ class Namer {
 };
 
 }  // namespace
+
+bool together(const Alternative& one, const Alternative& other) {
+  const auto has = [](const std::vector<std::string>& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  return one.name != other.name && !has(one.excludes, other.name) && !has(other.excludes, one.name) && !(one.freed && other.freed);
+}
 
 std::vector<StrengthRange> ranges_of(const Problem& problem) {
   std::vector<StrengthRange> ranges(problem.data.candidates);

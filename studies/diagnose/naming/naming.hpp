@@ -33,6 +33,9 @@ struct Alternative {
   bool screened_out = false;  ///< its first runs showed that it cannot matter: it is not tested
 };
 
+/// Whether two may be there at once.
+bool together(const Alternative& one, const Alternative& other);
+
 /// What a fit of this alternative alone has on; nothing for a nuisance.
 inline std::vector<ActiveCandidate> active_of(const Alternative& alternative, const FitResult& fit) {
   if (!alternative.candidate) return {};
@@ -51,7 +54,7 @@ struct Problem {
 std::vector<StrengthRange> ranges_of(const Problem& problem);
 
 struct Options {
-  int draws = 2016;            ///< behind the null
+  int draws = 2016;            ///< behind the null; 0: diagnose() takes as many as the level asks for
   int comparison_draws = 500;  ///< behind every comparison of two candidates
   double level = 0.05;         ///< for all candidates together
   double noise_units = 3;      ///< a candidate that does less, orthogonal to θ, cannot be seen

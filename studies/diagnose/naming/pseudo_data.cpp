@@ -54,7 +54,6 @@ PseudoData::PseudoData(const Problem& problem, const Options& options)
     left.deviation = data.value.row(r).transpose() - left.surrogate->at(u, active);
     left.leverage = left.surrogate->leverage(u, active);
     left.active = active;
-    left.candidate = data.rows[r].candidate();
     base += active.empty() && data.usual(data.rows[r]) ? 1 : 0;
     left_out_.push_back(std::move(left));
   }
@@ -72,10 +71,13 @@ double PseudoData::scatter_of(const std::vector<ActiveCandidate>& active) const 
 std::vector<const PseudoData::LeftOut*> PseudoData::runs_for(const Truth& truth, bool for_intervals) const {
   std::vector<const LeftOut*> out, with;
   for (const LeftOut& left : left_out_) {
-    const auto has = [&](const ActiveCandidate& e) { return e.candidate == left.candidate && std::fabs(e.strength) >= kFaint; };
-    const bool shared = std::any_of(truth.active.begin(), truth.active.end(), has);
-    if (shared) with.push_back(&left);
-    if (shared || !left.candidate) out.push_back(&left);
+    const bool has_all = std::all_of(left.active.begin(), left.active.end(), [&](const ActiveCandidate& own) {
+      return std::any_of(truth.active.begin(), truth.active.end(),
+                         [&](const ActiveCandidate& e) { return e.candidate == own.candidate && std::fabs(e.strength) >= kFaint; });
+    });
+    if (!has_all) continue;
+    out.push_back(&left);
+    if (!left.active.empty()) with.push_back(&left);
   }
   return for_intervals && with.size() >= kEnoughWith ? with : out;
 }

@@ -69,7 +69,6 @@ class PseudoData {
     VectorXd deviation;  ///< y_r − m₋r(θ_r, s_r)
     double leverage = 0;
     std::vector<ActiveCandidate> active;
-    std::optional<Index> candidate;  ///< that the run has on
   };
   /// A left-out run's models of some choices, and what draws under a truth do with its bank.
   struct Refit {
@@ -83,8 +82,8 @@ class PseudoData {
   double reliability(const Truth& truth, const ActiveCandidate& candidate) const;
   /// Scatter of runs with candidates over that of runs without.
   double scatter_of(const std::vector<ActiveCandidate>& active) const;
-  /// Runs whose deviations stand for the surrogate's error under a truth: those without a candidate, and those with the candidates that it
-  /// has. For intervals these alone where there are enough: what the surrogate cannot follow of a candidate lies along it.
+  /// Runs whose deviations stand for the surrogate's error under a truth: those whose candidates it has, too, and those without
+  /// one. For intervals these alone where there are enough: what the surrogate cannot follow of a candidate lies along it.
   std::vector<const LeftOut*> runs_for(const Truth& truth, bool for_intervals) const;
   double allowed(const std::vector<Drawn>& drawn, const Model& fitted, Index coordinate) const;
   static VectorXd rise(const Model& model, const Truth& truth, double least, const VectorXd& y);

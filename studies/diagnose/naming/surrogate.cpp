@@ -146,6 +146,7 @@ Features::Features(const BankData& data) {
   base_size_ = 1 + d + std::ssize(products_);
   size_ = base_size_;
   for (Index j = 0; j < data.candidates; ++j) add_candidate(data, j);
+  add_products(data);
 }
 
 /// Its runs decide which columns it has: first those of nuisances that some of them vary apart, then those of the parameters, all or none.
@@ -177,6 +178,21 @@ void Features::add_candidate(const BankData& data, Index candidate) {
   multiply_.push_back(std::move(multiply));
 }
 
+void Features::add_products(const BankData& data) {
+  std::map<std::pair<Index, Index>, Index> runs;
+  for (const BankRow& row : data.rows) {
+    if (row.active.size() == 2) ++runs[std::minmax(row.active[0].candidate, row.active[1].candidate)];
+  }
+  for (const auto& [both, count] : runs) {
+    if (count >= kLeastTogether) together_[both] = size_++;
+  }
+}
+
+std::optional<Index> Features::product(Index a, Index b) const {
+  const auto found = together_.find(std::minmax(a, b));
+  return found == together_.end() ? std::nullopt : std::optional(found->second);
+}
+
 VectorXd Features::base(const VectorXd& u) const {
   VectorXd x(base_size_);
   Index k = 0;
@@ -200,6 +216,9 @@ VectorXd Features::all(const VectorXd& u, const std::vector<ActiveCandidate>& ac
   VectorXd x = VectorXd::Zero(size_);
   x.head(base_size_) = base(u);
   for (const ActiveCandidate& e : active) x.segment(first(e.candidate), count(e.candidate)) = block(e.candidate, u, e.strength);
+  if (active.size() == 2) {
+    if (const auto column = product(active[0].candidate, active[1].candidate)) x[*column] = active[0].strength * active[1].strength;
+  }
   return x;
 }
 
@@ -208,6 +227,9 @@ std::vector<Index> Features::columns(const std::vector<Index>& candidates) const
   std::iota(out.begin(), out.end(), 0);
   for (const Index j : candidates) {
     for (Index k = 0; k < count(j); ++k) out.push_back(first(j) + k);
+  }
+  if (candidates.size() == 2) {
+    if (const auto column = product(candidates[0], candidates[1])) out.push_back(*column);
   }
   return out;
 }
@@ -252,12 +274,7 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
 }
 
 VectorXd Surrogate::at(const VectorXd& coded, const std::vector<ActiveCandidate>& active) const {
-  VectorXd y = coefficients_.topRows(features_.base_size()).transpose() * features_.base(coded);
-  for (const ActiveCandidate& e : active) {
-    const Index n = features_.count(e.candidate);
-    if (n > 0) y += coefficients_.middleRows(features_.first(e.candidate), n).transpose() * features_.block(e.candidate, coded, e.strength);
-  }
-  return y;
+  return coefficients_.transpose() * features_.all(coded, active);
 }
 
 double Surrogate::leverage(const VectorXd& coded, const std::vector<ActiveCandidate>& active) const {

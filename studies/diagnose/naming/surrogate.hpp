@@ -1,10 +1,14 @@
 // One emulator for the whole bank: quadratic in θ; for each candidate linear and square in its strength, and its product with the fitted
-// parameters and with the nuisances that are varied apart. All observables share the runs, so that one factorisation serves them all.
+// parameters and with the nuisances that are varied apart; for two candidates that have runs together the product of their strengths. All
+// observables share the runs, so that one factorisation serves them all.
 //
-//   m(u, s) = b₀ + Σ b_i u_i + Σ b_ij u_i u_j + Σ_j (c_j s_j + d_j s_j² + Σ_i e_ji s_j u_i),  u: coded θ, s: strengths
+//   m(u, s) = b₀ + Σ b_i u_i + Σ b_ij u_i u_j + Σ_j (c_j s_j + d_j s_j² + Σ_i e_ji s_j u_i) + Σ f_jk s_j s_k,  u: coded θ, s: strengths
 #pragma once
 
+#include <map>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "studies/diagnose/naming/bank_data.hpp"
 
@@ -25,17 +29,21 @@ class Features {
   Index count(Index candidate) const { return count_[candidate]; }
   VectorXd block(Index candidate, const VectorXd& coded, double strength) const;
   VectorXd all(const VectorXd& coded, const std::vector<ActiveCandidate>& active) const;
-  /// Of all columns those of the base and of some candidates, one after the other.
+  /// Column of the product of two candidates' strengths; nothing: too few runs have both.
+  std::optional<Index> product(Index a, Index b) const;
+  /// Of all columns those of the base, of some candidates one after the other, and where they are two of their product.
   std::vector<Index> columns(const std::vector<Index>& candidates) const;
 
  private:
   void add_candidate(const BankData& data, Index candidate);
+  void add_products(const BankData& data);
 
   Index size_ = 0, base_size_ = 0, coordinates_ = 0;
   std::vector<std::pair<Index, Index>> products_;  ///< of coordinates, squares among them
   std::vector<Index> first_, count_;
   std::vector<bool> square_;                  ///< of candidates: enough different strengths
   std::vector<std::vector<Index>> multiply_;  ///< of candidates: coordinates that multiply the strength, as far as there are runs enough
+  std::map<std::pair<Index, Index>, Index> together_;  ///< of two candidates, the lower first: column of their product
 };
 
 class Surrogate {

@@ -114,7 +114,7 @@ MatrixXd left_out_deviations(const BankData& data, std::optional<Index> candidat
   const Features features(data);
   std::vector<std::size_t> rows;
   for (std::size_t r = 0; r < data.rows.size(); ++r) {
-    if (data.rows[r].candidate() == candidate) rows.push_back(r);
+    if (data.rows[r].candidate() == candidate && data.rows[r].active.size() < 2) rows.push_back(r);
   }
   const std::vector<bool> all(data.rows.size(), true);
   if (std::ssize(points_of(data, all)) <= features.size() + 1) return {};

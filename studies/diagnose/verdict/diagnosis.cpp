@@ -106,6 +106,21 @@ void reach_farther(const calibrate::Machinery& machinery, Screened& screening, D
   diagnosis.problem = problem_after(screening, diagnosis);
 }
 
+/// Simulations of two candidates at once, of the question as it was asked.
+void simulate_pairs(const Question& asked, const calibrate::Machinery& machinery, double noise_units, Screened& screening,
+                    Diagnosis& diagnosis) {
+  const auto pairs = pairs_asked_for(diagnosis.problem, kMargin * noise_units);
+  if (pairs.empty()) return;
+  const auto& alternatives = diagnosis.problem.alternatives;
+  machinery.say(fmt::format("{} helps: it is simulated together with each other candidate", alternatives[pairs.front().first].name));
+  for (const auto& [first, second] : pairs) {
+    const std::vector<BankPoint> points = plan_pair(asked, *alternatives[first].candidate, *alternatives[second].candidate);
+    screening.points.insert(screening.points.end(), points.begin(), points.end());
+  }
+  diagnosis.bank = filled(asked, machinery, screening.points, diagnosis.bank.conditions, diagnosis);
+  diagnosis.problem = problem_after(screening, diagnosis);
+}
+
 /// What was noted of the recordings; what holds for several is said once.
 void note_recordings(const Question& question, Diagnosis& diagnosis) {
   std::vector<std::pair<std::string, std::string>> lines;  // what; of which conditions
@@ -122,13 +137,21 @@ void note_recordings(const Question& question, Diagnosis& diagnosis) {
   for (const auto& [what, where] : lines) diagnosis.notes.push_back(fmt::format("recording of {}: {}", where, what));
 }
 
-/// The study's level, which the draws have to resolve.
+/// The study's level, which the draws have to resolve: the smallest family-wise p of n alternatives is n in half the draws, for each of
+/// two laws of noise.
 naming::Options at_level_of(const Question& question, naming::Options options) {
-  constexpr double kDrawsBeyond = 6;  // of two laws of noise, three each beyond the level
+  constexpr int kFiner = 2;  // than what would just do
+  constexpr double kComparisons = 10;
   options.level = question.level;
-  if (options.draws * options.level < kDrawsBeyond)
-    throw base::UserError(fmt::format("--draws {}: too few for the study's level of {:.3g}; give {:.0f} or more", options.draws,
-                                      options.level, std::ceil(kDrawsBeyond / options.level)));
+  const auto alternatives = static_cast<double>(question.candidates.size() + question.nuisances.size());
+  const int least = static_cast<int>(std::ceil(2 * alternatives / options.level));
+  if (options.draws == 0) {
+    options.draws = std::max(naming::Options{}.draws, kFiner * least);
+    options.comparison_draws = std::max(options.comparison_draws, static_cast<int>(std::ceil(kComparisons / options.level)));
+  }
+  if (options.draws < least)
+    throw base::UserError(fmt::format("--draws {}: too few for {} candidates and nuisances at the study's level of {:.3g}; give {} or more",
+                                      options.draws, alternatives, options.level, least));
   return options;
 }
 
@@ -178,6 +201,7 @@ Diagnosis diagnose(const Question& asked, const calibrate::Machinery& given, Evi
   note(machinery, unsettled(question, diagnosis.bank, diagnosis.held), diagnosis);
   diagnosis.problem = problem_after(screening, diagnosis);
   reach_farther(machinery, screening, diagnosis);
+  simulate_pairs(asked, machinery, options.noise_units, screening, diagnosis);
   diagnosis.naming = naming::name_candidates(diagnosis.problem, options);
   const HeldOutRequest request{.question = question,
                                .machinery = machinery,

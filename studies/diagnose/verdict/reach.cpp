@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "studies/diagnose/naming/visibility.hpp"
 
 namespace millscope::diagnose {
 namespace {
 
-constexpr double kHelps = 4;  // of Q: less is no sign of anything
+constexpr double kHelpsSurely = 12;  // about what a level of 1 % asks of the best of a few
+constexpr double kHelps = 4;         // of Q: less is no sign of anything
 
 const std::string& name_of(const Question& question, const End& end) {
   return end.candidate ? question.candidates[*end.candidate].name : question.study.parameters[*end.parameter].name;
@@ -50,6 +54,37 @@ std::vector<End> ends_reached(const Question& question, const naming::Problem& p
   }
   std::erase_if(ends, [&](const End& end) { return place_of(question, end) == farthest_of(question, end); });
   return ends;
+}
+
+std::vector<std::pair<Index, Index>> pairs_asked_for(const naming::Problem& problem, double noise_units) {
+  const naming::Surrogate surrogate(problem.data);
+  const naming::Weighting weighting(problem.covariance, surrogate);
+  const std::vector<naming::StrengthRange> ranges = naming::ranges_of(problem);
+  const auto& alternatives = problem.alternatives;
+  const auto fit = [&](std::vector<Index> on) {
+    return naming::Model(problem.data, surrogate, weighting, {std::move(on), ranges, {}}).fit(problem.observed);
+  };
+  const naming::FitResult base = fit({});
+  std::vector<Index> tested;
+  for (Index a = 0; a < std::ssize(alternatives); ++a) {
+    const auto& candidate = alternatives[a].candidate;
+    if (candidate && !alternatives[a].screened_out && surrogate.features().count(*candidate) > 0) tested.push_back(a);
+  }
+  std::optional<Index> first;
+  double least = base.q - kHelpsSurely;
+  for (const Index a : tested) {
+    const double own = fit({*alternatives[a].candidate}).q;
+    if (own < least) least = own, first = a;
+  }
+  if (!first) return {};
+  const auto may_matter = [&](Index a) {
+    return std::sqrt(naming::Visibility(problem, surrogate, weighting, {base.coded}, a).lambda_high()) >= noise_units;
+  };
+  std::vector<std::pair<Index, Index>> out;
+  for (const Index a : tested) {
+    if (naming::together(alternatives[*first], alternatives[a]) && may_matter(a)) out.emplace_back(*first, a);
+  }
+  return out;
 }
 
 std::string sentence_of(const Question& before, const End& end) {

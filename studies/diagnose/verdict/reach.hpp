@@ -1,7 +1,9 @@
-// Ranges that turn out too narrow: where a fit stands at an end, the bank reaches beyond it.
+// What a first look at the fits asks of the bank: simulations beyond a range that turns out too narrow, and with two candidates at once.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "studies/diagnose/bank/beyond.hpp"
@@ -12,6 +14,11 @@ namespace millscope::diagnose {
 /// Ends at which fits stand and beyond which the case allows more: of parameters where the base's fit does, or that of a candidate that
 /// helps; of priors where such a candidate's does.
 std::vector<End> ends_reached(const Question& question, const naming::Problem& problem);
+
+/// Alternatives: the candidate that helps most, where it helps by enough to be named, with each other that may be there beside it. What a
+/// second does beside the first may be quite another thing than what it does alone (worn lifters where beads resist rolling), so that
+/// without simulations of both it cannot be looked for. `noise_units`: what surely does less, by itself, is left out.
+std::vector<std::pair<Index, Index>> pairs_asked_for(const naming::Problem& problem, double noise_units);
 
 /// "bead_friction: a fit stands at the upper end of its range, 0.6; simulated up to 0.85".
 std::string sentence_of(const Question& before, const End& end);
