@@ -6,7 +6,7 @@ CMAKE_OPTIONS ?=
 SOURCES = $(shell git ls-files '*.cpp' '*.hpp')
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench figures verify docs install format tidy asan tsan clean packages packages-test binary
+.PHONY: help demo test bench figures verify proof docs install format tidy asan tsan clean packages packages-test binary
 
 help: ## list these targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -33,6 +33,9 @@ figures: packages-test ## tables that tests print for docs/analysis.md, docs/ana
 
 verify: packages-test binary ## the long checks (hours), written to docs/validation.md; VERIFY="crosscheck memory" for some
 	tools/verify.py --build $(BUILD) $(VERIFY)
+
+proof: packages-test binary ## make, diagnose and count the blinded sets of the proof (hours, stops and goes on); PART="a_story" for one part
+	tools/proof.py --build $(BUILD) $(PART)
 
 docs: ## the documentation as a site: build/docs/index.html
 	@tools/install_packages.sh docs

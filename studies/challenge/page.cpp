@@ -39,6 +39,7 @@ void add_counts(const Score& s, std::string& out) {
   line("physics outside the list: something of the list named (wrong)", s.outside_named);
   line("physics outside the list: not noticed", s.outside_missed);
   line("decoy (another camera, or what is believed is wrong): physics is named (wrong)", s.decoys_named);
+  line("decoy: said to lie outside the library (wrong)", s.decoys_outside);
   if (std::isfinite(s.mean_class))
     add(out, "\nWhere one effect is hidden and something is named, {:.2f} candidates are named in the mean.\n", s.mean_class);
 }
@@ -117,6 +118,7 @@ Json score_json(const Page& page) {
           {"outside_named", count_json(s.outside_named)},
           {"outside_missed", count_json(s.outside_missed)},
           {"decoys_named", count_json(s.decoys_named)},
+          {"decoys_outside", count_json(s.decoys_outside)},
           {"strength_coverage", count_json(s.strength)},
           {"parameter_coverage", theta},
           {"power", power},

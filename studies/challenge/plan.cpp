@@ -122,12 +122,18 @@ bool stands_for(const diagnose::Candidate& c, const std::string& setting) {
   });
 }
 
-/// A decoy sets what the study varies, and nothing else.
+/// A decoy sets what the study varies, and nothing else. What is tied goes with its parameter.
 void check_decoy(const SetsOf& sets, const diagnose::Question& question) {
+  const auto& [parameters, nuisances] = std::tie(question.study.parameters, question.nuisances);
   for (const std::string& setting : sets.settings) {
-    if (!varies(question, path_of(setting)))
+    const auto is_of = [path = path_of(setting)](const calibrate::Parameter& p) { return p.path == path && p.tied.empty(); };
+    if (std::none_of(parameters.begin(), parameters.end(), is_of) &&
+        std::none_of(nuisances.begin(), nuisances.end(),
+                     [&](const diagnose::Nuisance& n) { return !n.usual && n.path == path_of(setting); }))
       throw base::UserError(
-          sets.where, fmt::format("sets '{}', which the study does not vary: that is no decoy; its kind is outside", path_of(setting)));
+          sets.where,
+          fmt::format("sets '{}', which is no parameter or drawn nuisance of the study by itself: that is no decoy; its kind is outside",
+                      path_of(setting)));
   }
 }
 

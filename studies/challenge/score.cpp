@@ -56,7 +56,9 @@ void score_outside(const Found& f, Score& s) {
 }
 
 void score_decoy(const Found& f, Score& s) {
-  if (f.failure.empty()) s.decoys_named.add(f.names_physics());
+  if (!f.failure.empty()) return;
+  s.decoys_named.add(f.names_physics());
+  s.decoys_outside.add(f.verdict == "outside_library");
 }
 
 void add_power(const Marked& m, Score& s) {

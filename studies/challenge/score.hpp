@@ -111,7 +111,7 @@ struct Score {
   Count abstained_on_effect;                                     ///< outside_library, though the truth is in the list
   Count two_both, two_one;                                       ///< two effects: both, at least one named
   Count outside_abstained, outside_named, outside_missed;
-  Count decoys_named;  ///< decoys in which physics is named: wrong
+  Count decoys_named, decoys_outside;  ///< decoys in which physics is named, or said to lie outside: wrong
 
   Count strength;                                    ///< truth in the 90 % interval
   std::vector<std::pair<std::string, Count>> theta;  ///< the same, by parameter

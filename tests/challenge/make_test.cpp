@@ -135,8 +135,9 @@ TEST_CASE("a decoy is made with what it sets, and its answer says so") {
     CHECK((set_there != settings.end()) == (t.name == "fuller"));
   }
   c.sets[0].settings = {"pairs.glass~glass.restitution=0.3"};
-  CHECK(testing::refusal([&] { question_of(c, made.registry); }).find("which the study does not vary: that is no decoy") !=
-        std::string::npos);
+  CHECK(testing::refusal([&] {
+          question_of(c, made.registry);
+        }).find("which is no parameter or drawn nuisance of the study by itself: that is no decoy") != std::string::npos);
 }
 
 TEST_CASE("a set whose diagnosis throws is noted, and the others are tried") {

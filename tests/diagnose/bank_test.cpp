@@ -186,6 +186,20 @@ TEST_CASE("a parameter set of which one condition failed is left out, and said")
              Contains("no simulation of the bank has come to its end; the first: base_0_speed75: a bead ran away; correct the base case"));
 }
 
+TEST_CASE("two candidates of which too few runs together came to their end are known by those alone, and that is said") {
+  const Scratch folder;
+  const Question q = question_of(folder, kNuisance + "hypotheses: {rolling_resistance: {}, capillary_bridge: {}}\n");
+  MadeUpMill mill(q, {}, {});
+  std::vector<BankPoint> points = plan_group(q, {}, 24), both = plan_pair(q, 0, 1);
+  both.resize(2);
+  points.insert(points.end(), both.begin(), both.end());
+  const naming::BankData data = data_of(q, fill_bank(q, mill.machinery(), mill.evidence(), points, {0, 1}), {0, 1});
+  CHECK(data.rows.size() == 24);
+  CHECK(data.value.rows() == 24);
+  REQUIRE(data.left_out.size() == 1);
+  CHECK_THAT(data.left_out[0], Contains("rolling_resistance was left out: 2 simulations of both came to their end, 3 are needed"));
+}
+
 TEST_CASE("numbers stand under their condition when the first parameter set has failed") {
   const Scratch folder;
   const Question q = question_of(folder, kSections);

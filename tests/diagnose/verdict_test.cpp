@@ -213,7 +213,10 @@ TEST_CASE("a candidate whose every simulation fails is left out and said, the di
   CHECK(d.named == std::vector<std::string>{"rolling_resistance"});
   CHECK(judged(d, "capillary_bridge").undetectable);
   REQUIRE_FALSE(d.notes.empty());
-  CHECK_THAT(d.notes[0], Contains("simulations of the bank failed") && Contains("capillary_bridge_0_speed75: a bead ran away"));
+  CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
+    return note.find("simulations of the bank failed") != std::string::npos &&
+           note.find("capillary_bridge_0_speed75: a bead ran away") != std::string::npos;
+  }));
 }
 
 TEST_CASE("what simulations leave undefined is compared nowhere, and that is said") {

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "kernel/base/random.hpp"
 #include "made_up_bank.hpp"
 #include "studies/diagnose/naming/fit.hpp"
 #include "studies/diagnose/naming/shrinkage.hpp"
@@ -39,7 +40,7 @@ TEST_CASE("how much more runs with an effect scatter is told without bias, and s
       for (std::uint64_t seed = 1; seed <= kBanks; ++seed) {
         const Problem p = made_up_problem(mill, point(0, 0, 0), {0, 0, 0}, 40 + seed);
         const Surrogate s(p.data);
-        ratio += s.scatter_with(0) / kBanks;
+        ratio += s.scatter_of({{0, 1}}) / kBanks;
         covariance += s.residual_covariance(p.covariance).diagonal().mean() / kBanks;
       }
       CAPTURE(chancier, small, ratio, covariance);
@@ -107,6 +108,33 @@ TEST_CASE("a run that is left out is predicted without its repeats, with the can
   }
   CHECK(repeated == 8);
   CHECK(alone > 1.5 * beside);
+}
+
+TEST_CASE("two candidates that have runs together are more than their sum, and leave what each does alone as it is") {
+  MadeUp mill;
+  mill.run_noise = 0.05, mill.each = 16;
+  const Problem alone = made_up_problem(mill, point(0, 0, 0), {0, 0, 0}, 5);
+  Problem both = alone;
+  const VectorXd beyond = VectorXd::Constant(both.observed.size(), 3.0);  // what the two do besides at full strength
+  base::RandomStream random(8);
+  for (int k = 0; k < 16; ++k) {
+    const double a = 0.1 + 0.9 * random.uniform(), b = 0.1 + 0.9 * random.uniform();
+    const VectorXd u = point(2 * random.uniform() - 1, 2 * random.uniform() - 1, 0);
+    const Index row = both.data.value.rows();
+    both.data.rows.push_back({both.data.natural(u), {{2, b}, {0, a}}});
+    both.data.value.conservativeResize(row + 1, Eigen::NoChange);
+    // Together they are chancier: that is no reason to believe the runs of each alone less.
+    both.data.value.row(row) = (truth_of(mill, u, {a, 0, b}) + a * b * beyond + 0.5 * random.normals(beyond.size())).transpose();
+  }
+  const Surrogate one(alone.data), two(both.data);
+  const VectorXd u = point(0.2, -0.1, 0);
+  const VectorXd more = two.at(u, {{0, 0.8}, {2, 0.5}}) - two.at(u, {{0, 0.8}}) - two.at(u, {{2, 0.5}}) + two.at(u);
+  CHECK((more - 0.4 * beyond).norm() < 0.15 * 0.4 * beyond.norm());
+  CHECK(two.at(u, {{0, 0.8}, {2, 0.5}}) == two.at(u, {{2, 0.5}, {0, 0.8}}));
+  CHECK((two.at(u, {{0, 0.8}}) - one.at(u, {{0, 0.8}})).norm() < 0.1);
+  CHECK(two.scatter_of({{0, 0.8}}) < 3);
+  CHECK(two.scatter_of({{0, 0.8}, {2, 0.5}}) > 30);
+  CHECK_FALSE(Features(alone.data).product(0, 2));
 }
 
 TEST_CASE("too few runs to leave one out tell nothing") {

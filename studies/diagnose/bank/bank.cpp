@@ -7,6 +7,8 @@
 #include <bit>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <utility>
 
 #include "kernel/base/hash.hpp"
 #include "kernel/base/parallel.hpp"
@@ -103,6 +105,26 @@ std::vector<std::string> leave_out_too_few(const Question& question, std::vector
     }
   }
   return told;
+}
+
+/// Runs of two candidates together that are too few for the product of the two would be taken for what each does alone.
+void leave_out_few_pairs(const Question& question, std::vector<naming::BankRow>& rows, std::vector<VectorXd>& values,
+                         std::vector<std::string>& told) {
+  std::map<std::pair<Index, Index>, Index> runs;
+  const auto both = [](const naming::BankRow& row) { return std::pair(row.active[0].candidate, row.active[1].candidate); };
+  for (const naming::BankRow& row : rows) {
+    if (row.active.size() == 2) ++runs[both(row)];
+  }
+  for (const auto& [pair, count] : runs) {
+    if (count >= naming::kLeastTogether) continue;
+    told.push_back(fmt::format("{} together with {} was left out: {} simulations of both came to their end, {} are needed",
+                               question.candidates[pair.first].name, question.candidates[pair.second].name, count, naming::kLeastTogether));
+    for (std::size_t r = rows.size(); r-- > 0;) {
+      if (rows[r].active.size() != 2 || both(rows[r]) != pair) continue;
+      rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(r));
+      values.erase(values.begin() + static_cast<std::ptrdiff_t>(r));
+    }
+  }
 }
 
 /// The surrogate has no other runs that tell what a nuisance does that is varied apart.
@@ -273,6 +295,7 @@ naming::BankData data_of(const Question& question, const Bank& bank, const std::
     values.emplace_back(Eigen::Map<const VectorXd>(row.data(), std::ssize(row)));
   }
   data.left_out = leave_out_too_few(question, data.rows, values);
+  leave_out_few_pairs(question, data.rows, values, data.left_out);
   if (!bank.failures.empty())
     data.left_out.insert(data.left_out.begin(), fmt::format("{} simulations of the bank failed and are left out, the first: {}",
                                                             bank.failures.size(), bank.failures.front()));

@@ -63,9 +63,9 @@ PseudoData::PseudoData(const Problem& problem, const Options& options)
 }
 
 double PseudoData::scatter_of(const std::vector<ActiveCandidate>& active) const {
-  double out = 1;
-  for (const ActiveCandidate& e : active) out += std::fabs(e.strength) < kFaint ? 0 : surrogate_->scatter_with(e.candidate) - 1;
-  return out;
+  std::vector<ActiveCandidate> strong = active;
+  std::erase_if(strong, [](const ActiveCandidate& e) { return std::fabs(e.strength) < kFaint; });
+  return surrogate_->scatter_of(strong);
 }
 
 std::vector<const PseudoData::LeftOut*> PseudoData::runs_for(const Truth& truth, bool for_intervals) const {

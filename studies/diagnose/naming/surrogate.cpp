@@ -49,7 +49,7 @@ MatrixXd without_own(MatrixXd residual, const VectorXd& leverage) {
   return residual;
 }
 
-/// The candidate of each row; nothing: it has none.
+/// Which rows scatter alike; nothing: without a candidate.
 using Groups = std::vector<std::optional<Index>>;
 
 /// The scatter of each row's group over that of rows without a candidate.
@@ -61,11 +61,11 @@ VectorXd of_rows(const std::vector<double>& scatter, const Groups& group) {
 
 /// Squared residuals of each group's rows over what they are on average when their scatter is 1, which is a row's 1 − h, summed over the
 /// observables, each over its own of all rows. Rows without a candidate last; NaN: too few rows to tell.
-VectorXd scatter_seen(const MatrixXd& x, const MatrixXd& y, const Groups& group, const VectorXd& scatter, Index candidates) {
+VectorXd scatter_seen(const MatrixXd& x, const MatrixXd& y, const Groups& group, const VectorXd& scatter, Index groups) {
   const Solution solution = solve(x, scatter.cwiseInverse());
   const MatrixXd square = (y - x * (solution.map * y)).cwiseAbs2();
   const VectorXd leverage = leverages(x, solution);
-  const Index last = candidates;
+  const Index last = groups;
   MatrixXd sum = MatrixXd::Zero(last + 1, y.cols());
   VectorXd freedom = VectorXd::Zero(last + 1);
   for (Index r = 0; r < x.rows(); ++r) {
@@ -79,14 +79,14 @@ VectorXd scatter_seen(const MatrixXd& x, const MatrixXd& y, const Groups& group,
   return (freedom.array() >= kLeastFreedom).select((sum * each).cwiseQuotient(freedom), std::nan(""));
 }
 
-/// By how much more the rows of each candidate scatter about the surface than those without, at least 1. Residuals of rows weighed by their
+/// By how much more the rows of each group scatter about the surface than those without, at least 1. Residuals of rows weighed by their
 /// scatter tell it; a few rounds from equal weights on settle it.
-std::vector<double> scatter_of(const MatrixXd& x, const MatrixXd& y, const Groups& group, Index candidates) {
-  std::vector<double> out(candidates, 1.0);
+std::vector<double> scatter_by_group(const MatrixXd& x, const MatrixXd& y, const Groups& group, Index groups) {
+  std::vector<double> out(groups, 1.0);
   for (int round = 0; round < kRounds; ++round) {
-    const VectorXd seen = scatter_seen(x, y, group, of_rows(out, group), candidates);
-    for (Index k = 0; k < candidates; ++k) {
-      const double ratio = seen[k] / seen[candidates];
+    const VectorXd seen = scatter_seen(x, y, group, of_rows(out, group), groups);
+    for (Index k = 0; k < groups; ++k) {
+      const double ratio = seen[k] / seen[groups];
       out[k] = ratio > 1 ? ratio : 1;  // 1, too, where it cannot be told
     }
   }
@@ -159,7 +159,7 @@ void Features::add_candidate(const BankData& data, Index candidate) {
     const auto found = std::find_if(row.active.begin(), row.active.end(), has);
     if (found == row.active.end()) continue;
     strengths.insert(found->strength), ++runs;
-    alone += data.usual(row) ? 1 : 0;
+    alone += data.usual(row) && row.active.size() == 1 ? 1 : 0;
     for (std::size_t i = 0; i < varied.size(); ++i) {
       if (const auto& usual = data.theta[i].usual) varied[i] += row.theta[i] != *usual ? 1 : 0;
     }
@@ -191,6 +191,20 @@ void Features::add_products(const BankData& data) {
 std::optional<Index> Features::product(Index a, Index b) const {
   const auto found = together_.find(std::minmax(a, b));
   return found == together_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<Index> Features::group(const std::vector<ActiveCandidate>& active) const {
+  if (active.size() == 1) return active[0].candidate;
+  if (active.size() != 2) return {};
+  const auto found = together_.find(std::minmax(active[0].candidate, active[1].candidate));
+  if (found == together_.end()) return {};
+  return candidates() + std::distance(together_.begin(), found);
+}
+
+std::vector<Index> Features::product_columns() const {
+  std::vector<Index> out;
+  for (const auto& [both, column] : together_) out.push_back(column);
+  return out;
 }
 
 VectorXd Features::base(const VectorXd& u) const {
@@ -250,13 +264,13 @@ Surrogate::Surrogate(const BankData& data, Features features, const std::vector<
   Index k = 0;
   for (std::size_t r = 0; r < data.rows.size(); ++r) {
     if (!used[r]) continue;
-    group.push_back(data.rows[r].candidate());
+    group.push_back(features_.group(data.rows[r].active));
     x.row(k) = features_.all(data.coded(data.rows[r].theta), data.rows[r].active).transpose();
     y.row(k++) = data.value.row(r);
   }
   // Rows that scatter more weigh less: else what the surface cannot follow of a strong effect would pull the base its way, and a recording
   // without the effect would seem to have some of it.
-  scatter_with_ = scatter_of(x, y, group, features_.candidates());
+  scatter_with_ = scatter_by_group(x, y, group, features_.groups());
   const VectorXd scatter = of_rows(scatter_with_, group);
   const Solution solution = solve(x, scatter.cwiseInverse());
   coefficients_ = solution.map * y;
@@ -277,13 +291,21 @@ VectorXd Surrogate::at(const VectorXd& coded, const std::vector<ActiveCandidate>
   return coefficients_.transpose() * features_.all(coded, active);
 }
 
+double Surrogate::scatter_of(const std::vector<ActiveCandidate>& active) const {
+  if (const auto group = features_.group(active)) return scatter_with_[*group];
+  double out = 1;
+  for (const ActiveCandidate& e : active) out += scatter_with_[e.candidate] - 1;
+  return out;
+}
+
 double Surrogate::leverage(const VectorXd& coded, const std::vector<ActiveCandidate>& active) const {
   const VectorXd x = features_.all(coded, active);
   return x.dot(coefficient_error_ * x);
 }
 
-double Surrogate::leverage_of(const VectorXd& coded, const std::vector<ActiveCandidate>& active) const {
-  const VectorXd x = features_.all(coded, active) - features_.all(coded, {});
+double Surrogate::leverage_of(const VectorXd& coded, const std::vector<ActiveCandidate>& active,
+                              const std::vector<ActiveCandidate>& beside) const {
+  const VectorXd x = features_.all(coded, active) - features_.all(coded, beside);
   return x.dot(coefficient_error_ * x);
 }
 

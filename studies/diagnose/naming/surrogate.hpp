@@ -31,6 +31,11 @@ class Features {
   VectorXd all(const VectorXd& coded, const std::vector<ActiveCandidate>& active) const;
   /// Column of the product of two candidates' strengths; nothing: too few runs have both.
   std::optional<Index> product(Index a, Index b) const;
+  /// Which runs scatter alike: those with the same candidates on. Nothing: with none, or with two that have no product.
+  std::optional<Index> group(const std::vector<ActiveCandidate>& active) const;
+  Index groups() const { return candidates() + std::ssize(together_); }
+  /// Columns of all products.
+  std::vector<Index> product_columns() const;
   /// Of all columns those of the base, of some candidates one after the other, and where they are two of their product.
   std::vector<Index> columns(const std::vector<Index>& candidates) const;
 
@@ -56,19 +61,20 @@ class Surrogate {
   VectorXd at(const VectorXd& coded, const std::vector<ActiveCandidate>& active = {}) const;
   /// Covariance of the coefficients' errors over S: runs that scatter more tell less. Features × features.
   const MatrixXd& coefficient_error() const { return coefficient_error_; }
-  /// By how much larger than S the covariance of runs with a candidate is, at least 1.
-  double scatter_with(Index candidate) const { return scatter_with_[candidate]; }
+  /// By how much larger than S the covariance of runs with these candidates is, at least 1.
+  double scatter_of(const std::vector<ActiveCandidate>& active) const;
   /// Variance of the prediction over that of one run's residual without a candidate.
   double leverage(const VectorXd& coded, const std::vector<ActiveCandidate>& active = {}) const;
-  /// The same of the difference that candidates make.
-  double leverage_of(const VectorXd& coded, const std::vector<ActiveCandidate>& active) const;
+  /// The same of the difference that candidates make, beside others or alone.
+  double leverage_of(const VectorXd& coded, const std::vector<ActiveCandidate>& active,
+                     const std::vector<ActiveCandidate>& beside = {}) const;
   const MatrixXd& coefficients() const { return coefficients_; }  ///< features × observables
   const Features& features() const { return features_; }
   Index degrees() const { return degrees_; }  ///< points − coefficients
   /// Row residuals, each from a fit without that row: (y − m)/(1 − h).
   const MatrixXd& left_out() const { return left_out_; }
   /// S, covariance of one run without a candidate about the surface: the runs' chance and what a quadratic surface cannot follow; that of
-  /// runs with one is `scatter_with` times as large. Correlations are shrunk in coordinates in which the recording's noise has none.
+  /// runs with some is scatter_of() times as large. Correlations are shrunk in coordinates in which the recording's noise has none.
   MatrixXd residual_covariance(const MatrixXd& recording) const;
   /// ρ, the part of S that is chance, of which a recording has its own instead: by what runs of equal parameters and other seeds differ
   /// (pure error; Montgomery 2013, ch. 10). The low end of its 90 % interval, over all observables or in the span of what coordinates
@@ -85,9 +91,9 @@ class Surrogate {
   MatrixXd first_order() const;
 
   MatrixXd coefficients_, coefficient_error_, residual_, left_out_;
-  std::vector<double> scatter_with_;
-  MatrixXd scatter_;   ///< [points, observables], as of runs without a candidate
-  MatrixXd repeated_;  ///< runs about the mean of those at their point
+  std::vector<double> scatter_with_;  ///< of groups
+  MatrixXd scatter_;                  ///< [points, observables], as of runs without a candidate
+  MatrixXd repeated_;                 ///< runs about the mean of those at their point
   double mean_leverage_ = 0;
   Index degrees_ = 0, degrees_repeated_ = 0;
 };

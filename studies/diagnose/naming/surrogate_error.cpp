@@ -88,13 +88,14 @@ double Surrogate::chance(const MatrixXd& recording) const {
   return std::min({1.0, low_end(MatrixXd::Identity(n, n)), low_end(span)});
 }
 
-/// What every coordinate and every candidate does to the observables.
+/// What every coordinate, every candidate, and every two that were simulated together do to the observables.
 MatrixXd Surrogate::first_order() const {
   std::vector<Index> rows;
   for (Index i = 0; i < features_.coordinates(); ++i) rows.push_back(1 + i);
   for (Index j = 0; j < features_.candidates(); ++j) {
     if (features_.count(j) > 0) rows.push_back(features_.first(j));
   }
+  for (const Index column : features_.product_columns()) rows.push_back(column);
   MatrixXd out(rows.size(), coefficients_.cols());
   for (std::size_t k = 0; k < rows.size(); ++k) out.row(k) = coefficients_.row(rows[k]);
   return out;
@@ -105,9 +106,7 @@ MatrixXd Surrogate::error_covariance(const MatrixXd& recording) const {
 }
 
 MatrixXd Surrogate::error_covariance(const MatrixXd& recording, const VectorXd& coded, const std::vector<ActiveCandidate>& active) const {
-  double scatter = 1;
-  for (const ActiveCandidate& e : active) scatter = std::max(scatter, scatter_with(e.candidate));
-  return ((1 - chance(recording)) * scatter + leverage(coded, active)) * residual_covariance(recording);
+  return ((1 - chance(recording)) * scatter_of(active) + leverage(coded, active)) * residual_covariance(recording);
 }
 
 MatrixXd left_out_deviations(const BankData& data, std::optional<Index> candidate) {

@@ -67,9 +67,14 @@ double Visibility::lambda_high() const {
   return most;
 }
 
-double Visibility::noise(double strength) const {
-  return alternative_.freed ? 0 : run_noise_ * surrogate_.leverage_of(coded_, {{*alternative_.candidate, strength}});
+/// Of what the candidate adds to those beside it.
+double Visibility::leverage(double strength) const {
+  std::vector<ActiveCandidate> on = beside_;
+  on.push_back({*alternative_.candidate, strength});
+  return surrogate_.leverage_of(coded_, on, beside_);
 }
+
+double Visibility::noise(double strength) const { return alternative_.freed ? 0 : run_noise_ * leverage(strength); }
 
 VectorXd Visibility::observed(double strength) const {
   std::vector<ActiveCandidate> on = beside_;
@@ -89,8 +94,7 @@ Visibility::Rest Visibility::rest(double strength) const {
 
 double Visibility::high(double strength) const {
   if (alternative_.freed) return at(strength);
-  const double h = surrogate_.leverage_of(coded_, {{*alternative_.candidate, strength}}),
-               degrees = static_cast<double>(surrogate_.degrees());
+  const double h = leverage(strength), degrees = static_cast<double>(surrogate_.degrees());
   const Rest left = rest(strength);
   const double along = left.white.squaredNorm(), seen = std::max(0.0, left.square - noise(strength));
   const double a = 2 * h * h * run_covariance_.squaredNorm() * (1 + 1 / std::max(1.0, degrees));

@@ -44,6 +44,7 @@ class Visibility {
   };
   Rest rest(double strength) const;
   VectorXd observed(double strength) const;
+  double leverage(double strength) const;
   double noise(double strength) const;
   double high(double strength) const;
   double none() const;               ///< strength at which there is nothing

@@ -17,6 +17,12 @@ Json parameters(const Told& t, const std::vector<base::Interval90>& theta) {
   return out;
 }
 
+Json by_name(const Told& t, const VectorXd& theta) {
+  Json out = Json::object();
+  for (Index i = 0; i < theta.size(); ++i) out[t.diagnosis.problem.data.theta[i].name] = theta[i];
+  return out;
+}
+
 /// The fitted value of the candidate's own parameter.
 Json own_parameter(const Told& t, Index j) {
   const naming::Alternative& alternative = t.diagnosis.problem.alternatives[j];
@@ -95,6 +101,7 @@ Json held_out(const Told& t) {
                   {"is", s.prediction.sentence},
                   {"simulated", s.prediction.simulated && !s.prediction.computed},
                   {"from", s.prediction.simulated ? "simulations" : "surrogate"},
+                  {"parameters", by_name(t, s.prediction.theta)},
                   {"misfit", s.misfit},
                   {"power_W", s.prediction.power},
                   {"power_percent", s.power_percent}};

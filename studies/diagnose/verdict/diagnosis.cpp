@@ -1,6 +1,7 @@
 #include "studies/diagnose/verdict/diagnosis.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -112,11 +113,13 @@ void simulate_pairs(const Question& asked, const calibrate::Machinery& machinery
   const auto pairs = pairs_asked_for(diagnosis.problem, kMargin * noise_units);
   if (pairs.empty()) return;
   const auto& alternatives = diagnosis.problem.alternatives;
-  machinery.say(fmt::format("{} helps: it is simulated together with each other candidate", alternatives[pairs.front().first].name));
+  std::vector<std::string> names;
   for (const auto& [first, second] : pairs) {
+    names.push_back(alternatives[first].name + " with " + alternatives[second].name);
     const std::vector<BankPoint> points = plan_pair(asked, *alternatives[first].candidate, *alternatives[second].candidate);
     screening.points.insert(screening.points.end(), points.begin(), points.end());
   }
+  note(machinery, {fmt::format("simulated together: {}", fmt::join(names, ", "))}, diagnosis);
   diagnosis.bank = filled(asked, machinery, screening.points, diagnosis.bank.conditions, diagnosis);
   diagnosis.problem = problem_after(screening, diagnosis);
 }
@@ -143,7 +146,7 @@ naming::Options at_level_of(const Question& question, naming::Options options) {
   constexpr int kFiner = 2;  // than what would just do
   constexpr double kComparisons = 10;
   options.level = question.level;
-  const auto alternatives = static_cast<double>(question.candidates.size() + question.nuisances.size());
+  const auto alternatives = std::max(2.0, static_cast<double>(question.candidates.size() + question.nuisances.size()));
   const int least = static_cast<int>(std::ceil(2 * alternatives / options.level));
   if (options.draws == 0) {
     options.draws = std::max(naming::Options{}.draws, kFiner * least);

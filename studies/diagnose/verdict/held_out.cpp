@@ -34,7 +34,7 @@ Prediction simulate(const HeldOutRequest& r, const Way& way, std::size_t conditi
   for (int replicate = 1; replicate <= r.seeds; ++replicate)
     simulations.push_back(simulation_at(r.question, theta, way.active, condition, replicate, way.name));
   Prediction p;
-  p.name = way.name, p.sentence = way.sentence, p.simulated = true;
+  p.name = way.name, p.sentence = way.sentence, p.theta = theta, p.simulated = true;
   int done = 0;
   std::string message;
   for (const campaign::Outcome& outcome : r.machinery.run(simulations)) {
@@ -120,7 +120,8 @@ class HeldOutTrial {
 
   Prediction predicted(const Way& way) const {
     Prediction p;
-    p.name = way.name, p.sentence = way.sentence, p.value = surrogate_.at(way.coded, way.active);
+    p.name = way.name, p.sentence = way.sentence, p.theta = held_.data.natural(way.coded);
+    p.value = surrogate_.at(way.coded, way.active);
     p.covariance = surrogate_.error_covariance(held_.covariance, way.coded, way.active);
     p.covariance.diagonal() += kFloor * held_.covariance.diagonal();
     p.power = power_in(p.value);

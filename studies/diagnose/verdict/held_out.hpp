@@ -19,6 +19,7 @@ namespace millscope::diagnose {
 struct Prediction {
   std::string name;        ///< "corrected", "retuned to power", …
   std::string sentence;    ///< what it is
+  VectorXd theta;          ///< natural units; of what is computed, of what it is computed from
   VectorXd value;          ///< NaN: some of its simulations leave it undefined
   MatrixXd covariance;     ///< of the simulations' mean, or of the surrogate's error
   double power = 0;        ///< W; NaN: it is not among the observables, and nothing was simulated

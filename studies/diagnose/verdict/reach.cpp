@@ -10,8 +10,8 @@
 namespace millscope::diagnose {
 namespace {
 
-constexpr double kHelpsSurely = 12;  // about what a level of 1 % asks of the best of a few
-constexpr double kHelps = 4;         // of Q: less is no sign of anything
+constexpr double kHelpsSurely = 8;  // about what a level of 5 % asks of the best of a few
+constexpr double kHelps = 4;        // of Q: less is no sign of anything
 
 const std::string& name_of(const Question& question, const End& end) {
   return end.candidate ? question.candidates[*end.candidate].name : question.study.parameters[*end.parameter].name;
@@ -70,19 +70,20 @@ std::vector<std::pair<Index, Index>> pairs_asked_for(const naming::Problem& prob
     const auto& candidate = alternatives[a].candidate;
     if (candidate && !alternatives[a].screened_out && surrogate.features().count(*candidate) > 0) tested.push_back(a);
   }
-  std::optional<Index> first;
-  double least = base.q - kHelpsSurely;
-  for (const Index a : tested) {
-    const double own = fit({*alternatives[a].candidate}).q;
-    if (own < least) least = own, first = a;
-  }
-  if (!first) return {};
+  std::vector<double> q;
+  for (const Index a : tested) q.push_back(fit({*alternatives[a].candidate}).q);
+  const double least = q.empty() ? base.q : *std::min_element(q.begin(), q.end());
+  if (least > base.q - kHelpsSurely) return {};
   const auto may_matter = [&](Index a) {
     return std::sqrt(naming::Visibility(problem, surrogate, weighting, {base.coded}, a).lambda_high()) >= noise_units;
   };
   std::vector<std::pair<Index, Index>> out;
-  for (const Index a : tested) {
-    if (naming::together(alternatives[*first], alternatives[a]) && may_matter(a)) out.emplace_back(*first, a);
+  for (std::size_t k = 0; k < tested.size(); ++k) {
+    if (q[k] > least + kHelps) continue;  // not the first by far
+    for (const Index a : tested) {
+      const bool known = std::find(out.begin(), out.end(), std::pair(a, tested[k])) != out.end();
+      if (!known && naming::together(alternatives[tested[k]], alternatives[a]) && may_matter(a)) out.emplace_back(tested[k], a);
+    }
   }
   return out;
 }

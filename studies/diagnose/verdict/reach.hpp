@@ -15,7 +15,7 @@ namespace millscope::diagnose {
 /// helps; of priors where such a candidate's does.
 std::vector<End> ends_reached(const Question& question, const naming::Problem& problem);
 
-/// Alternatives: the candidate that helps most, where it helps by enough to be named, with each other that may be there beside it. What a
+/// Alternatives: each candidate that helps as much as the best, where that may be named, with each other that may be beside it. What a
 /// second does beside the first may be quite another thing than what it does alone (worn lifters where beads resist rolling), so that
 /// without simulations of both it cannot be looked for. `noise_units`: what surely does less, by itself, is left out.
 std::vector<std::pair<Index, Index>> pairs_asked_for(const naming::Problem& problem, double noise_units);

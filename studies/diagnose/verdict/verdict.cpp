@@ -183,18 +183,21 @@ void tell_hidden(double noise_units, Diagnosis& diagnosis) {
       name_of(diagnosis, *diagnosis.naming.best), fmt::join(hidden, ", ")));
 }
 
-/// Two that are both asked for but whose sum does not describe the recordings: the bank has each alone, and together they may act
-/// otherwise.
+/// Two that are both asked for but do not describe the recordings either, though the bank may have them together.
 void tell_sum(double level, Diagnosis& diagnosis) {
   if (diagnosis.naming.pairs.empty()) return;
   const naming::Pair& pair = diagnosis.naming.pairs.front();
   const auto physics = [&](Index k) { return diagnosis.problem.alternatives[k].candidate.has_value(); };
   if (pair.p > level || pair.p_first > level || !physics(pair.first) || !physics(pair.second)) return;
   const std::string first = name_of(diagnosis, pair.first), second = name_of(diagnosis, pair.second);
-  diagnosis.sentence += fmt::format(
-      " {} beside it helps significantly, too (p = {:.2g}), but the sum of the two does not suffice either: each was simulated alone, and "
-      "together they may act otherwise.",
-      second, pair.p);
+  const bool together =
+      naming::Features(diagnosis.problem.data)
+          .product(*diagnosis.problem.alternatives[pair.first].candidate, *diagnosis.problem.alternatives[pair.second].candidate)
+          .has_value();
+  diagnosis.sentence +=
+      fmt::format(" {} beside it helps significantly, too (p = {:.2g}), but the two do not suffice either{}.", second, pair.p,
+                  together ? ", with simulations of both" : ": each was simulated alone, and together they may act otherwise");
+  if (together) return;
   diagnosis.next_experiment = fmt::format(
       "Put {} into the base case, with a range for its strength under 'parameters', and diagnose again: "
       "then {} is simulated together with it. {}",

@@ -1,0 +1,133 @@
+"""tools/proof.py on a repository of its own, with a program that plays millscope."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[2]
+
+# Answers hold the seed, so that another seed would show; a diagnosis is what was asked for, a set whose name is in fail.txt fails.
+PLAYED = r'''#!/usr/bin/env python3
+import hashlib, json, sys, pathlib
+words = sys.argv[1:]
+if words[:2] == ["challenge", "make"]:
+    out = pathlib.Path(words[words.index("-o") + 1])
+    seed = [line for line in open(words[2]) if line.startswith("seed:")][0].split()[1]
+    for name in ("set_001", "set_002"):
+        (out / name).mkdir(parents=True)
+        (out / name / "r.a").write_text("%s %s" % (name, seed))
+        (out / "answers").mkdir(exist_ok=True)
+        (out / "answers" / (name + ".json")).write_text(json.dumps({"seed": seed, "set": name}))
+    sets = [{"set": n, "answer_hash": hashlib.sha256((out / "answers" / (n + ".json")).read_bytes()).hexdigest()} for n in ("set_001", "set_002")]
+    (out / "manifest.json").write_text(json.dumps({"sets": sets}))
+elif words[:2] == ["challenge", "run"]:
+    for name in ("set_001", "set_002"):
+        found = pathlib.Path(words[2]) / name / "diagnosis"
+        found.mkdir(exist_ok=True)
+        if name == "set_002" and pathlib.Path("fail.txt").exists():
+            (found / "failed.txt").write_text("too few beads\n")
+        elif not (found / "diagnosis.json").exists():
+            (found / "diagnosis.json").write_text(json.dumps({"verdict": "no_mismatch", "times": 1}))
+elif words[:2] == ["challenge", "score"]:
+    folders = words[2:words.index("-o")]
+    for f in folders: assert (pathlib.Path(f) / "answers" / "set_001.json").exists()
+    pathlib.Path(words[words.index("-o") + 1]).write_text("# %s\n" % " ".join(folders))
+'''
+
+
+class Proof(unittest.TestCase):
+    def setUp(self):
+        self.root = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.root)
+        for folder in ("tools", "configs/proof", "kernel", "build/release/bin", "docs"):
+            (self.root / folder).mkdir(parents=True)
+        shutil.copy(SOURCE / "tools" / "proof.py", self.root / "tools")
+        (self.root / "configs/proof/proof.yaml").write_text("# what is made\npart: {challenge: part.yaml, batches: 2}\n")
+        (self.root / "configs/proof/part.yaml").write_text("study: s.yaml\nseed: 1\n")
+        (self.root / "kernel/a.cpp").write_text("int a;\n")
+        (self.root / ".gitignore").write_text("/build/\n")
+        program = self.root / "build/release/bin/millscope"
+        program.write_text(PLAYED)
+        program.chmod(0o755)
+        self.git("init", "-q")
+        self.git("config", "user.email", "a@b.c")
+        self.git("config", "user.name", "a")
+        self.commit()
+
+    def git(self, *words):
+        subprocess.run(["git", "-C", str(self.root)] + list(words), check=True, capture_output=True)
+
+    def commit(self):
+        self.git("add", "-A")
+        self.git("commit", "-q", "--allow-empty", "-m", "step")
+
+    def proof(self, *words):
+        done = subprocess.run([sys.executable, str(self.root / "tools/proof.py")] + list(words), capture_output=True, text=True)
+        return done.returncode, done.stderr
+
+    def public(self, path):
+        return self.root / "docs/proof/part_1" / path
+
+    def test_a_batch_is_published_diagnosed_opened_and_scored_in_this_order(self):
+        self.assertEqual(self.proof("part_1", "--until", "publish"), (0, ""))
+        frozen = json.loads(self.public("frozen.json").read_text())
+        self.assertEqual(sorted(frozen["recordings_sha256"]), ["set_001/r.a", "set_002/r.a"])
+        self.assertFalse(self.public("answers").exists())
+        self.assertIn("commit docs/proof/part_1 first", self.proof("part_1")[1])
+        self.assertFalse(self.public("set_001").exists())
+        self.commit()
+        self.assertIn("commit the diagnoses", self.proof("part_1")[1])
+        self.assertFalse(self.public("answers").exists())
+        self.commit()
+        self.assertEqual(self.proof("part_1")[0], 0)
+        answer = json.loads(self.public("answers/set_001.json").read_text())
+        self.assertEqual(self.public("answers/set_001.json").read_bytes(),
+                         (self.root / "build/release/proof/part_1/answers/set_001.json").read_bytes())
+        self.assertNotEqual(answer["seed"], "1")
+        self.assertEqual((self.root / "docs/proof.md").read_text(), "# docs/proof/part_1\n")
+
+    def test_another_clone_makes_the_same_recordings_and_goes_on(self):
+        self.proof("part_1", "--until", "publish")
+        self.commit()
+        shutil.rmtree(self.root / "build/release/proof")
+        self.assertEqual(self.proof("part_1", "--until", "diagnose")[0], 0)
+        self.assertTrue(self.public("set_002/diagnosis/diagnosis.json").exists())
+        self.assertEqual(self.public("manifest.json").read_bytes(), (self.root / "build/release/proof/part_1/manifest.json").read_bytes())
+
+    def test_recordings_that_were_changed_are_refused(self):
+        self.proof("part_1", "--until", "publish")
+        self.commit()
+        (self.root / "build/release/proof/part_1/set_001/r.a").write_text("other")
+        self.assertIn("not those that were published", self.proof("part_1")[1])
+
+    def test_a_program_that_has_changed_diagnoses_nothing(self):
+        self.proof("part_1", "--until", "publish")
+        self.commit()
+        (self.root / "kernel/a.cpp").write_text("int b;\n")
+        self.assertIn("kernel/a.cpp differs since", self.proof("part_1")[1])
+        self.commit()
+        self.assertIn("kernel/a.cpp differs since", self.proof("part_1")[1])
+        self.assertFalse(self.public("set_001").exists())
+
+    def test_a_failed_set_is_kept_as_one(self):
+        (self.root / "fail.txt").write_text("")
+        self.proof("part_1", "--until", "publish")
+        self.commit()
+        self.proof("part_1", "--until", "diagnose")
+        (self.root / "fail.txt").unlink()
+        self.proof("part_1", "--until", "diagnose")
+        self.assertEqual([p.name for p in self.public("set_002/diagnosis").iterdir()], ["failed.txt"])
+
+    def test_what_is_no_part_is_refused(self):
+        code, said = self.proof("prat")
+        self.assertEqual(code, 1)
+        self.assertIn("'prat' is no part; known: part", said)
+
+
+if __name__ == "__main__":
+    unittest.main()
