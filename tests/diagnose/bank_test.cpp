@@ -122,23 +122,6 @@ TEST_CASE("strengths cover what they are meant to, and agree with the rounded va
   for (const BankPoint& p : plan_group(q, {}, 8)) CHECK(p.active.empty());
 }
 
-TEST_CASE("two candidates are simulated together, alike in either order") {
-  const Scratch folder;
-  const Question q = question_of(folder, kNuisance + "hypotheses: {rolling_resistance: {}, capillary_bridge: {}}\n");
-  const Index rolling = candidate(q, "rolling_resistance"), bridge = candidate(q, "capillary_bridge");
-  const std::vector<BankPoint> one = plan_pair(q, rolling, bridge), other = plan_pair(q, bridge, rolling);
-  REQUIRE(std::ssize(one) == q.bank.each);
-  double sum = 0;
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    CHECK(one[i].group == "capillary_bridge+rolling_resistance");
-    CHECK(other[i].theta == one[i].theta);
-    REQUIRE(one[i].active.size() == 2);
-    CHECK(simulation_of(q, one[i], 0).settings == simulation_of(q, other[i], 0).settings);
-    sum += (one[i].active[0].strength - 0.55) * (one[i].active[1].strength - 0.55);
-  }
-  CHECK(std::fabs(sum) < 0.04 * static_cast<double>(one.size()));  // neither goes along with the other
-}
-
 TEST_CASE("parameters stay within their ranges, have four digits and break no constraint") {
   const Scratch folder;
   const Question q = question_of(folder, kSections + "constraints: [wall_friction < bead_friction]\n");
@@ -184,20 +167,6 @@ TEST_CASE("a parameter set of which one condition failed is left out, and said")
   const Bank none = fill_bank(q, mill.machinery(), mill.evidence(), points, {0});
   CHECK_THAT(testing::refusal([&] { data_of(q, none, {0}); }),
              Contains("no simulation of the bank has come to its end; the first: base_0_speed75: a bead ran away; correct the base case"));
-}
-
-TEST_CASE("two candidates of which too few runs together came to their end are known by those alone, and that is said") {
-  const Scratch folder;
-  const Question q = question_of(folder, kNuisance + "hypotheses: {rolling_resistance: {}, capillary_bridge: {}}\n");
-  MadeUpMill mill(q, {}, {});
-  std::vector<BankPoint> points = plan_group(q, {}, 24), both = plan_pair(q, 0, 1);
-  both.resize(2);
-  points.insert(points.end(), both.begin(), both.end());
-  const naming::BankData data = data_of(q, fill_bank(q, mill.machinery(), mill.evidence(), points, {0, 1}), {0, 1});
-  CHECK(data.rows.size() == 24);
-  CHECK(data.value.rows() == 24);
-  REQUIRE(data.left_out.size() == 1);
-  CHECK_THAT(data.left_out[0], Contains("rolling_resistance was left out: 2 simulations of both came to their end, 3 are needed"));
 }
 
 TEST_CASE("numbers stand under their condition when the first parameter set has failed") {

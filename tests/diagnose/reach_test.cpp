@@ -110,53 +110,6 @@ TEST_CASE("what could be seen for itself but not beside what was found is told")
   }));
 }
 
-TEST_CASE("two effects that are not all that is missing are both told, though neither is named") {
-  std::vector<Physics> physics = usual();
-  physics.push_back({"pairs.glass~glass.restitution", 0.8, 0.5, 2.5, {51, 52, 53}});  // what the two do together besides
-  std::vector<std::string> truth = with(kRolling + "=0.16");
-  truth.push_back(kBridge + "=0.06");
-  truth.push_back("pairs.glass~glass.restitution=0.4");
-  const Diagnosis d = diagnosed(physics, truth);
-  INFO(d.sentence);
-  CHECK(d.verdict == Verdict::outside_library);
-  CHECK(d.named.empty());
-  CHECK_THAT(d.sentence,
-             Contains("beside it helps significantly, too") && Contains("the two do not suffice either, with simulations of both"));
-}
-
-TEST_CASE("two effects that do not add up are both named where the bank has them together") {
-  std::vector<Physics> physics = usual();
-  Physics both{kRolling, 0, 0.2, 3, {51, 52, 53}};
-  both.beside = kBridge, both.beside_far = 0.08;
-  physics.push_back(both);
-  std::vector<std::string> truth = with(kRolling + "=0.16");
-  truth.push_back(kBridge + "=0.06");
-  const Diagnosis d = diagnosed(physics, truth);
-  INFO(d.sentence);
-  CHECK(std::set<std::string>(d.named.begin(), d.named.end()) == std::set<std::string>{"rolling_resistance", "capillary_bridge"});
-  REQUIRE(d.naming.pairs.size() == 1);
-  CHECK(d.naming.pairs[0].goodness_p > 0.05);
-  for (const double strength : d.naming.pairs[0].fit.strengths) CHECK_THAT(strength, WithinAbs(0.775, 0.15));  // 0.8 and 0.75
-  CHECK(std::any_of(d.bank.points.begin(), d.bank.points.end(), [](const BankPoint& p) { return p.active.size() == 2; }));
-}
-
-TEST_CASE("a second effect that shows nothing of what it does alone is found") {
-  std::vector<Physics> physics = usual();
-  Physics both{kHeight, 0.005, 0.003, -2 * physics[2].size, physics[2].direction};  // beside rolling friction the opposite
-  both.beside = kRolling, both.beside_far = 0.16;
-  physics.push_back(both);
-  std::vector<std::string> truth = with(kRolling + "=0.16");
-  truth.push_back(kHeight + "=0.0035");
-  const Diagnosis d = diagnosed(physics, truth);
-  INFO(d.sentence);
-  CHECK(std::set<std::string>(d.named.begin(), d.named.end()) == std::set<std::string>{"rolling_resistance", "lifter_wear"});
-}
-
-TEST_CASE("nothing is simulated together where nothing helps surely") {
-  const Diagnosis d = diagnosed(usual(), kTheta);
-  CHECK(std::none_of(d.bank.points.begin(), d.bank.points.end(), [](const BankPoint& p) { return p.active.size() == 2; }));
-}
-
 TEST_CASE("the bank keeps its simulations where it reaches farther, also those that begin at another's end") {
   const Scratch folder;
   const Question q = question_of(folder, kSections.substr(0, kSections.rfind('}')) + ", develop_s: 0.5 s}\n");
