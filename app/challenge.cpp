@@ -9,6 +9,7 @@
 #include "kernel/output/directory.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
+#include "studies/challenge/concealment.hpp"
 #include "studies/challenge/make.hpp"
 #include "studies/challenge/page.hpp"
 #include "studies/challenge/run.hpp"
@@ -111,9 +112,34 @@ int score_sets(const Arguments& arguments) {
   return kDone;
 }
 
+int look_for_concealment(const Arguments& arguments) {
+  Options options("challenge conceal CHALLENGE.yaml SETS",
+                  "After the answers are opened: what the practice would have seen of each set. Simulates the truth and the base that was "
+                  "retuned to its power for long, and writes SETS/concealment.json, which 'score' shows.",
+                  "millscope challenge conceal configs/story/challenge.yaml sets");
+  options.positional("CHALLENGE.yaml", "the challenge that the sets were made from");
+  options.positional("SETS", "diagnosed sets, with their answers");
+  options.add()("seconds", po::value<double>()->value_name("T"), "of every run that are looked at (default: 40)");
+  add_runner_options(options, "where these simulations are kept (default: SETS/answers/cache)");
+  options.with_plugins();
+  if (!options.parse(arguments)) return kDone;
+  const fs::path sets = options.text("SETS");
+  const host::Registry registry = options.registry();
+  const challenge::Challenge what = challenge::read_challenge(options.text("CHALLENGE.yaml"), {});
+  calibrate::SessionOptions session = study_session(options, "");
+  if (session.cache.empty()) session.cache = sets / "answers" / "cache";
+  challenge::ConcealOptions how{40, calibrate::campaign_of(session)};
+  if (options.has("seconds")) how.seconds = options.number("seconds");
+  if (!(how.seconds > 0)) throw UserError(fmt::format("--seconds {}: give a time above 0", how.seconds));
+  challenge::conceal(what, challenge::question_of(what, registry), sets, registry, how);
+  if (!options.has("quiet")) fmt::print("see {}\n", (sets / "concealment.json").string());
+  return kDone;
+}
+
 constexpr Action kChallengeActions[] = {
     {"make", "draw mills with hidden physics and record them", make_sets},
     {"run", "diagnose the sets", run_sets},
+    {"conceal", "long runs: what the practice would have seen", look_for_concealment},
     {"score", "hold the diagnoses against the sealed answers", score_sets},
 };
 

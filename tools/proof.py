@@ -7,7 +7,7 @@ A batch of sets goes through five steps. Each may be stopped; the next call goes
   publish  docs/proof/BATCH: manifest, hashes of the recordings, the answers and the seed in one sealed file, the commit that is put to the
            test. Commit it: nothing is diagnosed before
   diagnose the sets, with a program that is that commit's in all that decides a verdict
-  open     the answers, once every set has its diagnosis. Commit the diagnoses before
+  open     the answers, once every set has its diagnosis. Commit the diagnoses before. Then long runs say what the practice would have seen
   score    docs/proof.md, from all batches that are open
 
 The sealed file is compressed, not locked: it keeps an answer from being seen by chance, and the manifest's hashes keep it from being
@@ -194,6 +194,10 @@ class Batch:
             if name != "seed.txt":
                 (self.public / name).write_bytes(data)
 
+    def conceal(self):
+        if not (self.public / "concealment.json").exists():
+            self.call("challenge", "conceal", self.challenge, self.public, "--cache", self.cache, "--quiet")
+
     def opened(self):
         return (self.public / "answers").exists()
 
@@ -201,12 +205,15 @@ class Batch:
         """Goes on with this batch as far as may be."""
         if not self.public.exists():
             self.publish()
-        if until == "publish" or self.opened():
+        if until == "publish":
             return
         if not self.complete():
             self.diagnose()
-        if until != "diagnose" and self.complete():
+        if until == "diagnose":
+            return
+        if not self.opened():
             self.open()
+        self.conceal()
 
 
 def main():

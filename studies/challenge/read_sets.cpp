@@ -5,7 +5,7 @@
 
 #include "kernel/base/text.hpp"
 #include "kernel/output/directory.hpp"
-#include "studies/challenge/score.hpp"
+#include "studies/challenge/concealment.hpp"
 
 namespace millscope::challenge {
 namespace {
@@ -36,6 +36,17 @@ std::vector<Gain> gains_from(const Json& held_out) {
   return out;
 }
 
+std::map<std::string, double> practice_from(const Json& held_out) {
+  std::map<std::string, double> out;
+  for (const Json& h : held_out) {
+    for (const Json& model : h.at("models")) {
+      if (model.at("model") != "retuned to power" || !model.contains("parameters")) continue;
+      for (const auto& [name, value] : model.at("parameters").items()) out[name] = number(value);
+    }
+  }
+  return out;
+}
+
 Found found_from(const Json& j) {
   Found f;
   f.verdict = j.at("verdict");
@@ -51,6 +62,7 @@ Found found_from(const Json& j) {
   f.retuned = parameters(j.at("contact_parameters"), "retuned");
   f.unmasked = parameters(j.at("contact_parameters"), "unmasked");
   f.gains = gains_from(j.at("held_out"));
+  f.practice = practice_from(j.at("held_out"));
   return f;
 }
 
@@ -82,9 +94,12 @@ std::optional<Found> read_found(const fs::path& set) {
 
 std::vector<Marked> read_sets(const fs::path& sets) {
   std::vector<Marked> out;
+  const std::map<std::string, Concealment> concealment = read_concealment(sets);
   for (Answer& a : open_answers(sets)) {
     std::optional<Found> found = read_found(sets / a.set);
-    out.push_back({std::move(a), std::move(found)});
+    const auto long_runs = concealment.find(a.set);
+    out.push_back({std::move(a), std::move(found), {}});
+    if (long_runs != concealment.end()) out.back().concealment = long_runs->second;
   }
   return out;
 }

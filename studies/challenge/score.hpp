@@ -38,6 +38,7 @@ struct Found {
   std::vector<Tested> hypotheses;
   std::map<std::string, base::Interval90> retuned, unmasked;  ///< contact parameters and nuisances
   std::vector<Gain> gains;
+  std::map<std::string, double> practice;  ///< parameters of the base that was retuned to power
 
   const Tested* find(const std::string& name) const;
   const Tested* best() const;
@@ -45,10 +46,17 @@ struct Found {
   bool names_physics() const;
 };
 
+/// Retuned base less truth, in long runs (concealment.hpp).
+struct Concealment {
+  double power_percent = 0, shoulder_deg = 0, toe_deg = 0;
+  double chagas = 0;  ///< Eq. 4.3 of Chagas 2015: |ΔP| in W and percent of the distributions, added as cited
+};
+
 /// A set with its diagnosis; nothing: not diagnosed yet.
 struct Marked {
   Answer answer;
   std::optional<Found> found;
+  std::optional<Concealment> concealment = {};
 };
 
 /// Reads what `run` left of a set.

@@ -1,5 +1,6 @@
 // One tiny make: two sets of a small mill, half a second each.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -7,6 +8,7 @@
 #include "kernel/base/text.hpp"
 #include "studies/calibrate/bead_paths.hpp"
 #include "studies/challenge/answer.hpp"
+#include "studies/challenge/concealment.hpp"
 #include "studies/challenge/draw.hpp"
 #include "studies/challenge/make.hpp"
 #include "studies/challenge/run.hpp"
@@ -94,6 +96,54 @@ TEST_CASE("sets are recordings of drawn mills, and tell nothing of what was draw
   CHECK(effects == 1);
   CHECK_NOTHROW(diagnose::read_question(made.sets / "set_001" / "study.yaml", {}, made.registry));
   CHECK(testing::refusal([&] { made.make_sets(); }).find("holds sealed sets already") != std::string::npos);
+}
+
+TEST_CASE("long runs say what the practice would have seen of each set, once") {
+  Made made;
+  std::ofstream(made.folder / "c.yaml")
+      << std::string(kChallenge).replace(kChallenge.find("kind: none}, {"), 14, "kind: none, count: 2}, {");
+  made.challenge = read_challenge(made.folder / "c.yaml");
+  made.make_sets();
+  const std::string diagnosis =
+      R"({"schema_version": 2, "verdict": "no_mismatch", "named": [], "hypotheses": [], "contact_parameters": {}, "held_out":
+[{"condition": "held", "models": [{"model": "retuned to power", "parameters": {"bead_friction": 0.12, "filling": 0.395}}]}]})";
+  for (const Answer& a : open_answers(made.sets)) {
+    fs::create_directories(made.sets / a.set / "diagnosis");
+    std::ofstream(made.sets / a.set / "diagnosis" / "diagnosis.json") << diagnosis;
+  }
+  ConcealOptions options{0.5, {}};
+  options.campaign.cache = made.folder / "cache", options.campaign.program = fs::path(MILLSCOPE_BINARY_DIR) / "bin" / "millscope";
+  options.campaign.quiet = true;
+  const diagnose::Question q = question_of(made.challenge, made.registry);
+  conceal(made.challenge, q, made.sets, made.registry, options);
+  const std::vector<Marked> marked = read_sets(made.sets);
+  for (const Marked& m : marked) {
+    REQUIRE(m.concealment);
+    CHECK(std::fabs(m.concealment->power_percent) > 0);
+    CHECK(std::fabs(m.concealment->power_percent) < 60);
+    CHECK(std::isfinite(m.concealment->toe_deg));
+    CHECK(m.concealment->chagas > 0.05);
+  }
+  const std::string before = base::text_of(made.sets / "concealment.json");
+  fs::remove_all(made.folder / "cache");
+  conceal(made.challenge, q, made.sets, made.registry, options);
+  CHECK(base::text_of(made.sets / "concealment.json") == before);
+  CHECK_FALSE(fs::exists(made.folder / "cache"));
+}
+
+TEST_CASE("concealed is what power, angles and distributions leave unsuspicious") {
+  std::vector<Marked> sets;
+  for (int i = 1; i <= 11; ++i) sets.push_back({{"e", challenge::Kind::none, "", {}, {}, {}}, {}, Concealment{0, 0, 0, 0.1 * i}});
+  const Unsuspicious limits = unsuspicious(sets);
+  CHECK(limits.chagas == Approx(1.0));
+  CHECK(limits.holds({0.9, -1.4, 1.4, 0.9}));
+  CHECK_FALSE(limits.holds({-1.1, 0, 0, 0.9}));
+  CHECK_FALSE(limits.holds({0, 1.6, 0, 0.9}));
+  CHECK_FALSE(limits.holds({0, 0, -1.6, 0.9}));
+  CHECK_FALSE(limits.holds({0, 0, 0, 1.1}));
+  CHECK_FALSE(limits.holds({0, 0, std::nan(""), 0.9}));
+  sets.resize(9);
+  CHECK(std::isinf(unsuspicious(sets).chagas));
 }
 
 TEST_CASE("sets that could not be read back are not sealed") {

@@ -33,6 +33,8 @@ elif words[:2] == ["challenge", "run"]:
             (found / "failed.txt").write_text("too few beads\n")
         elif not (found / "diagnosis.json").exists():
             (found / "diagnosis.json").write_text(json.dumps({"verdict": "no_mismatch", "times": 1}))
+elif words[:2] == ["challenge", "conceal"]:
+    (pathlib.Path(words[3]) / "concealment.json").write_text(words[2])
 elif words[:2] == ["challenge", "score"]:
     folders = words[2:words.index("-o")]
     for f in folders: assert (pathlib.Path(f) / "answers" / "set_001.json").exists()
@@ -89,6 +91,7 @@ class Proof(unittest.TestCase):
         self.assertEqual(self.public("answers/set_001.json").read_bytes(),
                          (self.root / "build/release/proof/part_1/answers/set_001.json").read_bytes())
         self.assertNotEqual(answer["seed"], "1")
+        self.assertTrue(self.public("concealment.json").read_text().endswith("configs/proof/part.yaml"))
         self.assertEqual((self.root / "docs/proof.md").read_text(), "# docs/proof/part_1\n")
 
     def test_another_clone_makes_the_same_recordings_and_goes_on(self):

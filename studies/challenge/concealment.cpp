@@ -1,0 +1,150 @@
+#include "studies/challenge/concealment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/base/statistics.hpp"
+#include "kernel/output/file.hpp"
+#include "kernel/output/summary.hpp"
+#include "studies/analysis/analysis.hpp"
+#include "studies/calibrate/objective.hpp"
+
+namespace millscope::challenge {
+namespace {
+
+namespace fs = std::filesystem;
+using base::UserError;
+using Json = nlohmann::ordered_json;
+
+constexpr double kLongFrameStep = 0.02;  // s
+constexpr std::size_t kEnoughEmpty = 10;
+constexpr double kQuantile = 0.9;
+
+/// What a long run shows.
+struct Look {
+  double shoulder = 0, toe = 0;  ///< degrees
+  calibrate::Observation seen;   ///< power and distributions alone
+};
+
+const std::vector<double>& values_of(const analysis::ResultSet& results, const std::string& analyzer, const std::string& name) {
+  const auto found = std::find_if(results.arrays.begin(), results.arrays.end(),
+                                  [&](const analysis::ResultArray& a) { return a.analyzer == analyzer && a.name == name; });
+  if (found == results.arrays.end()) throw UserError(fmt::format("the analyzer {} tells no '{}' of a long run", analyzer, name));
+  return found->value;
+}
+
+Look look_at(const fs::path& run, const host::Registry& registry) {
+  analysis::AnalysisRequest request;
+  request.path = run;
+  request.only = {"charge_features", "distributions"};
+  request.overrides = {"resampling.draws=20"};  // errors are not asked for
+  const analysis::ResultSet results = analysis::analyze(request, registry);
+  const auto angle = [&](const std::string& name) { return values_of(results, "charge_features", name).at(0); };
+  const auto histogram = [&](const std::string& axis) {
+    return calibrate::Histogram{
+        values_of(results, "distributions", axis + "_edges"), values_of(results, "distributions", axis + "_percent"), {}};
+  };
+  Look look{angle("departure_shoulder"), angle("bulk_toe"), {}};
+  look.seen.power.value = output::read_json(run / "summary.json").at("power_W").at("com").get<double>();
+  look.seen.x = histogram("x"), look.seen.speed = histogram("speed_ratio");
+  return look;
+}
+
+Concealment compared(const Look& truth, const Look& base) {
+  const double power = truth.seen.power.value;
+  return {100 * (base.seen.power.value - power) / power, base.shoulder - truth.shoulder, base.toe - truth.toe,
+          calibrate::chagas2015(truth.seen, base.seen, {}).value()};
+}
+
+std::vector<std::string> for_long(std::vector<std::string> settings, double from, double seconds) {
+  for (const std::string& more : {fmt::format("time.end_s={}", from + seconds), fmt::format("output.frames={{every_s: {}}}", kLongFrameStep),
+                                  std::string("output.tracks=~"), std::string("output.vtk=~")})
+    settings.push_back(more);
+  return settings;
+}
+
+/// The truth as it was recorded, but longer; the base as the practice retuned it.
+std::vector<campaign::Simulation> long_runs(const diagnose::Question& q, const Marked& m, std::size_t condition, double seconds) {
+  const calibrate::Condition& at = q.study.conditions[condition];
+  Eigen::VectorXd theta(static_cast<Eigen::Index>(q.dimensions()));
+  const std::vector<naming::Coordinate> coordinates = q.coordinates();
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const auto found = m.found->practice.find(coordinates[i].name);
+    if (found == m.found->practice.end())
+      throw UserError(fmt::format("{}: its diagnosis does not tell '{}' of the base retuned to power; diagnose it again", m.answer.set,
+                                  coordinates[i].name));
+    theta[static_cast<Eigen::Index>(i)] = found->second;
+  }
+  campaign::Simulation truth, base;
+  truth.case_file = base.case_file = q.study.base;
+  truth.settings = m.answer.made.at(at.name).at("settings").get<std::vector<std::string>>();
+  base.settings = at.settings;
+  for (std::string& setting : q.settings(theta, {})) base.settings.push_back(std::move(setting));
+  const double from = config::read_case(q.study.base.string(), base.settings).time.analyze_from;
+  truth.settings = for_long(std::move(truth.settings), from, seconds), base.settings = for_long(std::move(base.settings), from, seconds);
+  truth.label = m.answer.set + ", truth", base.label = m.answer.set + ", retuned base";
+  return {truth, base};
+}
+
+fs::path file_of(const fs::path& sets) { return sets / "concealment.json"; }
+
+void write(const fs::path& sets, const std::map<std::string, Concealment>& all, const std::string& condition, double seconds) {
+  Json list = Json::object();
+  for (const auto& [set, c] : all)
+    list[set] = {{"power_percent", c.power_percent}, {"shoulder_deg", c.shoulder_deg}, {"toe_deg", c.toe_deg}, {"chagas2015", c.chagas}};
+  output::write_json(file_of(sets), {{"schema_version", 1}, {"condition", condition}, {"seconds", seconds}, {"sets", list}});
+}
+
+}  // namespace
+
+void conceal(const Challenge& challenge, const diagnose::Question& q, const fs::path& sets, const host::Registry& registry,
+             const ConcealOptions& options) {
+  const std::size_t condition = q.study.with_role(calibrate::Role::fit).at(0);
+  std::map<std::string, Concealment> all = read_concealment(sets);
+  std::vector<campaign::Simulation> simulations;
+  std::vector<std::string> names;
+  for (const Marked& m : read_sets(sets)) {
+    if (!m.found || !m.found->failure.empty() || all.count(m.answer.set) > 0) continue;
+    for (campaign::Simulation& s : long_runs(q, m, condition, options.seconds)) simulations.push_back(std::move(s));
+    names.push_back(m.answer.set);
+  }
+  if (names.empty()) return;
+  const std::vector<campaign::Outcome> outcomes = campaign::run(simulations, options.campaign);
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    if (outcomes[i].state == campaign::State::failed)
+      throw UserError(fmt::format("{}: {} ({})", simulations[i].label, outcomes[i].message, challenge.file.string()));
+  }
+  for (std::size_t k = 0; k < names.size(); ++k)
+    all[names[k]] = compared(look_at(outcomes[2 * k].folder, registry), look_at(outcomes[2 * k + 1].folder, registry));
+  write(sets, all, q.study.conditions[condition].name, options.seconds);
+}
+
+std::map<std::string, Concealment> read_concealment(const fs::path& sets) {
+  std::map<std::string, Concealment> out;
+  if (!fs::exists(file_of(sets))) return out;
+  const Json j = output::read_json(file_of(sets));
+  const auto number = [](const Json& value) { return value.is_number() ? value.get<double>() : std::nan(""); };
+  for (const auto& [set, c] : j.at("sets").items())
+    out[set] = {number(c.at("power_percent")), number(c.at("shoulder_deg")), number(c.at("toe_deg")), number(c.at("chagas2015"))};
+  return out;
+}
+
+bool Unsuspicious::holds(const Concealment& c) const {
+  return std::fabs(c.power_percent) <= power_percent && std::fabs(c.shoulder_deg) <= degrees && std::fabs(c.toe_deg) <= degrees &&
+         c.chagas <= this->chagas;
+}
+
+Unsuspicious unsuspicious(const std::vector<Marked>& sets) {
+  std::vector<double> empty;
+  for (const Marked& m : sets) {
+    if (m.answer.kind == Kind::none && m.concealment && std::isfinite(m.concealment->chagas)) empty.push_back(m.concealment->chagas);
+  }
+  Unsuspicious out;
+  std::sort(empty.begin(), empty.end());
+  if (empty.size() >= kEnoughEmpty) out.chagas = base::interpolated_quantile(empty, kQuantile);
+  return out;
+}
+
+}  // namespace millscope::challenge

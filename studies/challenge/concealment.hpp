@@ -1,0 +1,37 @@
+// What the practice sees of a truth before any diagnosis: long runs of the truth and of the base that was retuned to its power, at the
+// condition where that was done. Power, shoulder, toe and Eq. 4.3 of Chagas 2015, of the beads as they were, without a camera.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "studies/campaign/campaign.hpp"
+#include "studies/challenge/score.hpp"
+
+namespace millscope::challenge {
+
+struct ConcealOptions {
+  double seconds = 40;  ///< that are looked at of every run
+  campaign::Options campaign;
+};
+
+/// Two runs for every set with a diagnosis, by its opened answer, into SETS/concealment.json; what stands there is kept. Throws
+/// base::UserError: a diagnosis that does not tell the retuned base, a run that failed.
+void conceal(const Challenge& challenge, const diagnose::Question& question, const std::filesystem::path& sets,
+             const host::Registry& registry, const ConcealOptions& options);
+
+/// By set; empty where nobody has looked.
+std::map<std::string, Concealment> read_concealment(const std::filesystem::path& sets);
+
+/// Limits within which the practice takes base and truth for one.
+struct Unsuspicious {
+  double power_percent = 1, degrees = 1.5;
+  double chagas = std::numeric_limits<double>::infinity();  ///< 90 % quantile of what sets without an effect have, of ten or more
+  bool holds(const Concealment& c) const;
+};
+Unsuspicious unsuspicious(const std::vector<Marked>& sets);
+
+}  // namespace millscope::challenge
