@@ -131,7 +131,7 @@ int look_for_concealment(const Arguments& arguments) {
   challenge::ConcealOptions how{40, calibrate::campaign_of(session)};
   if (options.has("seconds")) how.seconds = options.number("seconds");
   if (!(how.seconds > 0)) throw UserError(fmt::format("--seconds {}: give a time above 0", how.seconds));
-  challenge::conceal(what, challenge::question_of(what, registry), sets, registry, how);
+  challenge::conceal(challenge::question_of(what, registry), sets, registry, how);
   if (!options.has("quiet")) fmt::print("see {}\n", (sets / "concealment.json").string());
   return kDone;
 }

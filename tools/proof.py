@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The proof: tools/proof.py [PART …]. Makes the sets of configs/proof/proof.yaml, diagnoses each once, opens the answers last.
 
-A batch of sets goes through five steps. Each may be stopped; the next call goes on from there, in another clone too.
+All batches go through five steps together. Each may be stopped; the next call goes on from there, in another clone too.
 
   make     draws a seed from the system, makes the recordings in BUILD/proof
   publish  docs/proof/BATCH: manifest, hashes of the recordings, the answers and the seed in one sealed file, the commit that is put to the
@@ -18,6 +18,8 @@ import argparse
 import hashlib
 import io
 import json
+import os
+import re
 import secrets
 import shutil
 import subprocess
@@ -28,10 +30,11 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 PLAN = ROOT / "configs" / "proof" / "proof.yaml"
 SETS = ROOT / "docs" / "proof"
-# What decides a verdict; the rest of the program may change between two calls.
-DECIDES = ["kernel", "sdk", "plugins", "geometry", "analyzers", "configs/proof", "configs/story", "configs/materials", "configs/cameras"] + [
-    "studies/" + room for room in ("recording", "trajectory", "inspect", "analysis", "camera", "calibrate", "campaign", "diagnose", "doe",
-                                   "engine")]
+# What cannot change a verdict; all else has to be as it was when the sets were published.
+FREE = ["docs", "tests", "tools", "bench", "examples", "*.md", "Makefile", "mkdocs.yml", ".gitignore", "configs/proof/proof.yaml", "studies/report",
+        "studies/new", "studies/compare", "studies/crosscheck"] + [
+            "studies/challenge/%s.*" % file for file in ("score", "tables", "page", "concealment", "read_sets")]
+DECIDES = ["."] + [":(exclude)" + path for path in FREE]
 
 
 class Failure(Exception):
@@ -48,21 +51,38 @@ def committed(folder):
     return git("status", "--porcelain", "--", str(folder)) == "" and git("ls-files", "--", str(folder)) != ""
 
 
-def changed_since(commit):
-    """Paths that decide a verdict and are not as in a commit."""
-    differ = git("diff", "--name-only", commit, "--", *DECIDES)
+def changed_since(commit, until=None):
+    """Paths that decide a verdict and are not as in a commit: in the working tree, or in another commit."""
+    differ = git("diff", "--name-only", commit, *([until] if until else []), "--", *DECIDES)
     if differ is None:
         raise Failure("commit %s is not in this clone; fetch it" % commit)
-    return differ.split()
+    return differ.split() + ([] if until else [line[3:] for line in (git("status", "--porcelain", "--", *DECIDES) or "").splitlines()])
+
+
+def built_from(binary):
+    """The commit that a program was built from, which has to be a clean one."""
+    done = subprocess.run([str(binary), "--version"], capture_output=True, text=True)
+    found = re.search(r"commit ([0-9a-f]+)(-dirty)?", done.stdout)
+    if not found or found.group(2):
+        raise Failure("%s was built from no clean commit (%s); commit all changes and build again" % (binary, done.stdout.strip()))
+    return found.group(1)
+
+
+def replace(path, data):
+    """Writes a file at once or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    new = path.with_name(path.name + ".new")
+    new.write_bytes(data)
+    os.replace(new, path)
 
 
 def read_plan():
-    """[(batch, part, challenge)] in the order of the file, which has one line for each part."""
+    """[(batch, part, challenge)] in the order of the file, which has one line for each part below "parts"."""
     out = []
     for line in PLAN.read_text().splitlines():
-        if line.startswith("#") or not line.strip():
+        if not line.startswith("  "):
             continue
-        part, rest = line.split(":", 1)
+        part, rest = line.strip().split(":", 1)
         values = dict(item.split(":") for item in rest.strip(" {}").split(","))
         values = {key.strip(): value.strip() for key, value in values.items()}
         for k in range(int(values["batches"])):
@@ -116,22 +136,38 @@ class Batch:
         return data.getvalue()
 
     def publish(self):
-        seed_file = self.work / "seed.txt"  # an interrupted make goes on with the same truths
-        if not seed_file.exists():
-            self.work.mkdir(parents=True, exist_ok=True)
-            seed_file.write_text(str(secrets.randbelow(9 * 10**15)))
-        seed = int(seed_file.read_text())
+        """Of sets that were made whole by this commit; what another commit left is made again, with a seed of its own."""
+        commit, mark = git("rev-parse", "HEAD"), self.work / "commit.txt"
+        self.check_program(commit)
+        if not mark.exists() or mark.read_text() != commit:
+            shutil.rmtree(self.work, ignore_errors=True)
+            replace(self.work / "seed.txt", str(secrets.randbelow(9 * 10**15)).encode())
+            replace(mark, commit.encode())
+        seed = int((self.work / "seed.txt").read_text())
         if not (self.work / "manifest.json").exists():
             self.make(seed)
-        if git("status", "--porcelain", "--", *DECIDES) != "":
-            raise Failure("the program differs from its commit in what decides a verdict; commit it first")
-        self.public.mkdir(parents=True, exist_ok=True)
-        shutil.copy(self.work / "manifest.json", self.public)
-        (self.public / "sealed.tar.xz").write_bytes(self.seal(seed))
-        frozen = {"commit": git("rev-parse", "HEAD"), "challenge": self.challenge.name, "recordings_sha256": self.recordings()}
-        (self.public / "frozen.json").write_text(json.dumps(frozen, indent=1) + "\n")
+        new = self.public.with_name(self.name + ".new")
+        shutil.rmtree(new, ignore_errors=True)
+        new.mkdir(parents=True)
+        shutil.copy(self.work / "manifest.json", new)
+        (new / "sealed.tar.xz").write_bytes(self.seal(seed))
+        frozen = {"commit": commit, "challenge": self.challenge.name, "recordings_sha256": self.recordings()}
+        (new / "frozen.json").write_text(json.dumps(frozen, indent=1) + "\n")
+        os.replace(new, self.public)
+        self.forget()
         print("%s: published in %s, for commit %s; sha256 of its manifest: %s" %
-              (self.name, self.public.relative_to(ROOT), frozen["commit"][:12], sha256(self.public / "manifest.json")))
+              (self.name, self.public.relative_to(ROOT), commit[:12], sha256(self.public / "manifest.json")))
+
+    def forget(self):
+        """Answers and seed lie open nowhere while the sets are diagnosed."""
+        shutil.rmtree(self.work / "answers")
+        (self.work / "seed.txt").unlink(missing_ok=True)
+
+    def check_program(self, commit):
+        changed = changed_since(commit) or changed_since(commit, built_from(self.binary))
+        if changed:
+            raise Failure("%s is for commit %s, and %s differs since; use a clone and a build of that commit, or make fresh sets" %
+                          (self.name, commit[:12], changed[0]))
 
     def unsealed(self):
         with tarfile.open(self.public / "sealed.tar.xz") as tar:
@@ -141,14 +177,13 @@ class Batch:
         """In another clone the recordings are made again, from the sealed seed, and must be the same to the bit."""
         if not (self.work / "manifest.json").exists():
             self.make(int(self.unsealed()["seed.txt"]))
+            self.forget()
         if self.recordings() != self.frozen()["recordings_sha256"]:
             raise Failure("%s: its recordings are not those that were published; remove %s" % (self.name, self.work))
         shutil.copy(self.public / "manifest.json", self.work)
-        for found in self.public.glob("set_*/diagnosis/*.*"):
-            target = self.work / found.relative_to(self.public)
-            if not target.exists():
-                target.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy(found, target)
+        for name in self.names():
+            for found in (self.public / name / "diagnosis").glob("diagnosis.json"):
+                replace(self.work / name / "diagnosis" / found.name, found.read_bytes())
 
     def frozen(self):
         return json.loads((self.public / "frozen.json").read_text())
@@ -157,30 +192,31 @@ class Batch:
         return [s["set"] for s in json.loads((self.public / "manifest.json").read_text())["sets"]]
 
     def keep(self):
-        """Finished diagnoses, compact, where they are committed; a set that failed keeps its reason, and is not tried again."""
+        """Finished diagnoses, compact, where they are committed; a set that failed keeps its reason, and no later try counts."""
         for name in self.names():
             source, target = self.work / name / "diagnosis", self.public / name / "diagnosis"
-            if target.exists():
+            if self.has(name):
                 continue
             if (source / "diagnosis.json").exists():
-                target.mkdir(parents=True)
                 found = json.loads((source / "diagnosis.json").read_text())
-                (target / "diagnosis.json").write_text(json.dumps(found, separators=(",", ":"), ensure_ascii=False) + "\n")
+                replace(target / "diagnosis.json", (json.dumps(found, separators=(",", ":"), ensure_ascii=False) + "\n").encode())
             elif (source / "failed.txt").exists():
-                target.mkdir(parents=True)
-                shutil.copy(source / "failed.txt", target)
+                replace(target / "failed.txt", (source / "failed.txt").read_bytes())
+
+    def has(self, name):
+        return any((self.public / name / "diagnosis" / file).exists() for file in ("diagnosis.json", "failed.txt"))
 
     def complete(self):
-        return self.public.exists() and all((self.public / n / "diagnosis").exists() for n in self.names())
+        return all(self.has(name) for name in self.names())
 
     def diagnose(self):
-        if not committed(self.public):
-            raise Failure("%s: commit %s first: what is put to the test must be known before" % (self.name, self.public.relative_to(ROOT)))
-        changed = changed_since(self.frozen()["commit"])
-        if changed:
-            raise Failure("%s is for commit %s, and %s differs since; diagnose it with a clone of that commit, or make fresh sets" %
-                          (self.name, self.frozen()["commit"][:12], changed[0]))
+        for file in ("manifest.json", "sealed.tar.xz", "frozen.json"):
+            if not committed(self.public / file):
+                raise Failure("%s: commit %s first: what is put to the test must be known before" %
+                              (self.name, self.public.relative_to(ROOT)))
+        self.check_program(self.frozen()["commit"])
         self.restore()
+        self.keep()
         try:
             self.call("challenge", "run", self.work, "--cache", self.cache, "--quiet")
         finally:
@@ -189,10 +225,13 @@ class Batch:
     def open(self):
         if not committed(self.public):
             raise Failure("%s: commit the diagnoses in %s before the answers are opened" % (self.name, self.public.relative_to(ROOT)))
-        (self.public / "answers").mkdir()
+        new = self.public / "opened.new"
+        shutil.rmtree(new, ignore_errors=True)
         for name, data in self.unsealed().items():
             if name != "seed.txt":
-                (self.public / name).write_bytes(data)
+                replace(new / name, data)
+        os.replace(new / "answers", self.public / "answers")
+        new.rmdir()
 
     def conceal(self):
         if not (self.public / "concealment.json").exists():
@@ -200,20 +239,6 @@ class Batch:
 
     def opened(self):
         return (self.public / "answers").exists()
-
-    def step(self, until):
-        """Goes on with this batch as far as may be."""
-        if not self.public.exists():
-            self.publish()
-        if until == "publish":
-            return
-        if not self.complete():
-            self.diagnose()
-        if until == "diagnose":
-            return
-        if not self.opened():
-            self.open()
-        self.conceal()
 
 
 def main():
@@ -227,9 +252,17 @@ def main():
     if unknown:
         raise Failure("'%s' is no part; known: %s" % (unknown[0], ", ".join(sorted({part for _, part, _ in plan}))))
     batches = [(Batch(arguments.build.resolve(), name, challenge), part) for name, part, challenge in plan]
-    for batch, part in batches:
-        if not arguments.part or part in arguments.part or batch.name in arguments.part:
-            batch.step(arguments.until)
+    asked = [b for b, part in batches if not arguments.part or part in arguments.part or b.name in arguments.part]
+    for batch in asked:
+        if not batch.public.exists():
+            batch.publish()
+    for batch in asked if arguments.until != "publish" else []:
+        if not batch.complete():
+            batch.diagnose()
+    for batch in asked if arguments.until == "score" else []:
+        if not batch.opened():
+            batch.open()
+        batch.conceal()
     ready = [str(b.public.relative_to(ROOT)) for b, _ in batches if b.opened()]
     if arguments.until == "score" and ready:
         batches[0][0].call("challenge", "score", *ready, "-o", "docs/proof.md")

@@ -114,6 +114,8 @@ std::vector<Answer> open_answers(const fs::path& sets) {
   return answers;
 }
 
+std::string study_hash(const fs::path& sets) { return read_manifest(sets).at("study_hash"); }
+
 std::string manifest_hash(const fs::path& sets) {
   read_manifest(sets);
   return campaign::content_hash(base::text_of(sets / "manifest.json"));

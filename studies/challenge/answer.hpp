@@ -43,6 +43,8 @@ void seal(const std::filesystem::path& sets, const std::vector<Answer>& answers,
 std::vector<std::string> set_names(const std::filesystem::path& sets);
 /// Answers as sealed. Throws base::UserError when one is missing or is not what the manifest has the hash of.
 std::vector<Answer> open_answers(const std::filesystem::path& sets);
+/// Of the study that the sets were made for.
+std::string study_hash(const std::filesystem::path& sets);
 /// Of the manifest's bytes: published beforehand, it binds whoever made the sets.
 std::string manifest_hash(const std::filesystem::path& sets);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "kernel/base/statistics.hpp"
 #include "kernel/output/file.hpp"
@@ -20,6 +21,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kLongFrameStep = 0.02;  // s
 constexpr std::size_t kEnoughEmpty = 10;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kQuantile = 0.9;
 
 /// What a long run shows.
@@ -59,22 +61,21 @@ Concealment compared(const Look& truth, const Look& base) {
 }
 
 std::vector<std::string> for_long(std::vector<std::string> settings, double from, double seconds) {
-  for (const std::string& more : {fmt::format("time.end_s={}", from + seconds), fmt::format("output.frames={{every_s: {}}}", kLongFrameStep),
-                                  std::string("output.tracks=~"), std::string("output.vtk=~")})
+  for (const std::string& more :
+       {fmt::format("time.end_s={}", from + seconds), fmt::format("output.frames={{every_s: {}}}", kLongFrameStep),
+        std::string("output.tracks=~"), std::string("output.vtk=~")})
     settings.push_back(more);
   return settings;
 }
 
-/// The truth as it was recorded, but longer; the base as the practice retuned it.
+/// The truth as it was recorded, but longer; the base as the practice retuned it. Nothing: the diagnosis does not tell it.
 std::vector<campaign::Simulation> long_runs(const diagnose::Question& q, const Marked& m, std::size_t condition, double seconds) {
   const calibrate::Condition& at = q.study.conditions[condition];
   Eigen::VectorXd theta(static_cast<Eigen::Index>(q.dimensions()));
   const std::vector<naming::Coordinate> coordinates = q.coordinates();
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const auto found = m.found->practice.find(coordinates[i].name);
-    if (found == m.found->practice.end())
-      throw UserError(fmt::format("{}: its diagnosis does not tell '{}' of the base retuned to power; diagnose it again", m.answer.set,
-                                  coordinates[i].name));
+    if (found == m.found->practice.end()) return {};
     theta[static_cast<Eigen::Index>(i)] = found->second;
   }
   campaign::Simulation truth, base;
@@ -99,25 +100,26 @@ void write(const fs::path& sets, const std::map<std::string, Concealment>& all, 
 
 }  // namespace
 
-void conceal(const Challenge& challenge, const diagnose::Question& q, const fs::path& sets, const host::Registry& registry,
-             const ConcealOptions& options) {
+void conceal(const diagnose::Question& q, const fs::path& sets, const host::Registry& registry, const ConcealOptions& options) {
   const std::size_t condition = q.study.with_role(calibrate::Role::fit).at(0);
   std::map<std::string, Concealment> all = read_concealment(sets);
   std::vector<campaign::Simulation> simulations;
   std::vector<std::string> names;
   for (const Marked& m : read_sets(sets)) {
     if (!m.found || !m.found->failure.empty() || all.count(m.answer.set) > 0) continue;
-    for (campaign::Simulation& s : long_runs(q, m, condition, options.seconds)) simulations.push_back(std::move(s));
+    std::vector<campaign::Simulation> both = long_runs(q, m, condition, options.seconds);
+    all[m.answer.set] = {kUnknown, kUnknown, kUnknown, kUnknown};
+    if (both.empty()) continue;
+    std::move(both.begin(), both.end(), std::back_inserter(simulations));
     names.push_back(m.answer.set);
   }
-  if (names.empty()) return;
-  const std::vector<campaign::Outcome> outcomes = campaign::run(simulations, options.campaign);
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    if (outcomes[i].state == campaign::State::failed)
-      throw UserError(fmt::format("{}: {} ({})", simulations[i].label, outcomes[i].message, challenge.file.string()));
+  const std::vector<campaign::Outcome> outcomes =
+      simulations.empty() ? std::vector<campaign::Outcome>() : campaign::run(simulations, options.campaign);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const campaign::Outcome &truth = outcomes[2 * k], &base = outcomes[2 * k + 1];
+    if (truth.state == campaign::State::failed || base.state == campaign::State::failed) continue;
+    all[names[k]] = compared(look_at(truth.folder, registry), look_at(base.folder, registry));
   }
-  for (std::size_t k = 0; k < names.size(); ++k)
-    all[names[k]] = compared(look_at(outcomes[2 * k].folder, registry), look_at(outcomes[2 * k + 1].folder, registry));
   write(sets, all, q.study.conditions[condition].name, options.seconds);
 }
 
@@ -136,10 +138,11 @@ bool Unsuspicious::holds(const Concealment& c) const {
          c.chagas <= this->chagas;
 }
 
-Unsuspicious unsuspicious(const std::vector<Marked>& sets) {
+Unsuspicious unsuspicious(const std::vector<Marked>& sets, const std::string& study) {
   std::vector<double> empty;
   for (const Marked& m : sets) {
-    if (m.answer.kind == Kind::none && m.concealment && std::isfinite(m.concealment->chagas)) empty.push_back(m.concealment->chagas);
+    if (m.answer.kind == Kind::none && m.study == study && m.concealment && std::isfinite(m.concealment->chagas))
+      empty.push_back(m.concealment->chagas);
   }
   Unsuspicious out;
   std::sort(empty.begin(), empty.end());

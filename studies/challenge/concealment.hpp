@@ -18,20 +18,20 @@ struct ConcealOptions {
   campaign::Options campaign;
 };
 
-/// Two runs for every set with a diagnosis, by its opened answer, into SETS/concealment.json; what stands there is kept. Throws
-/// base::UserError: a diagnosis that does not tell the retuned base, a run that failed.
-void conceal(const Challenge& challenge, const diagnose::Question& question, const std::filesystem::path& sets,
-             const host::Registry& registry, const ConcealOptions& options);
+/// Two runs for every set with a diagnosis, by its opened answer, into SETS/concealment.json; what stands there is kept. Where the
+/// diagnosis does not tell the retuned base, or a run fails, NaN.
+void conceal(const diagnose::Question& question, const std::filesystem::path& sets, const host::Registry& registry,
+             const ConcealOptions& options);
 
 /// By set; empty where nobody has looked.
 std::map<std::string, Concealment> read_concealment(const std::filesystem::path& sets);
 
-/// Limits within which the practice takes base and truth for one.
+/// Limits within which the practice takes base and truth for one, for the sets of one study.
 struct Unsuspicious {
   double power_percent = 1, degrees = 1.5;
   double chagas = std::numeric_limits<double>::infinity();  ///< 90 % quantile of what sets without an effect have, of ten or more
   bool holds(const Concealment& c) const;
 };
-Unsuspicious unsuspicious(const std::vector<Marked>& sets);
+Unsuspicious unsuspicious(const std::vector<Marked>& sets, const std::string& study);
 
 }  // namespace millscope::challenge

@@ -98,7 +98,7 @@ std::vector<Marked> read_sets(const fs::path& sets) {
   for (Answer& a : open_answers(sets)) {
     std::optional<Found> found = read_found(sets / a.set);
     const auto long_runs = concealment.find(a.set);
-    out.push_back({std::move(a), std::move(found), {}});
+    out.push_back({std::move(a), std::move(found), {}, study_hash(sets)});
     if (long_runs != concealment.end()) out.back().concealment = long_runs->second;
   }
   return out;

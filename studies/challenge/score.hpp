@@ -46,7 +46,7 @@ struct Found {
   bool names_physics() const;
 };
 
-/// Retuned base less truth, in long runs (concealment.hpp).
+/// Retuned base less truth, in long runs (concealment.hpp); NaN where it cannot be told.
 struct Concealment {
   double power_percent = 0, shoulder_deg = 0, toe_deg = 0;
   double chagas = 0;  ///< Eq. 4.3 of Chagas 2015: |ΔP| in W and percent of the distributions, added as cited
@@ -57,6 +57,7 @@ struct Marked {
   Answer answer;
   std::optional<Found> found;
   std::optional<Concealment> concealment = {};
+  std::string study = {};  ///< hash of the study that was put to the test
 };
 
 /// Reads what `run` left of a set.

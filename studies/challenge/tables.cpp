@@ -31,21 +31,25 @@ void every_set(const Page& page, std::string& out) {
 /// What practice sees of every set before any diagnosis.
 void concealment(const Page& page, std::string& out) {
   if (std::none_of(page.sets.begin(), page.sets.end(), [](const Marked& m) { return m.concealment.has_value(); })) return;
-  const Unsuspicious limits = unsuspicious(page.sets);
   append(out,
          "## Concealed\n\nLong runs of the truth and of the base whose friction was retuned to its power, at the speed where that was "
          "done: base "
          "less truth. A set with physics that the base lacks is *concealed* where power agrees within {:g} %, shoulder and toe within "
          "{:g}°, and "
-         "Eq. 4.3 of Chagas 2015 is no larger than {} of the sets without an effect.\n\n"
+         "Eq. 4.3 of Chagas 2015 is below the 90 % quantile of the same mill's sets without an effect (where they are ten or more).\n\n"
          "| set | hidden | power | shoulder | toe | Eq. 4.3 | concealed | diagnosis |\n|---|---|---|---|---|---|---|---|\n",
-         limits.power_percent, limits.degrees,
-         std::isfinite(limits.chagas) ? fmt::format("{:.2f}, the 90 % quantile", limits.chagas) : "in any (fewer than ten are known)");
+         Unsuspicious().power_percent, Unsuspicious().degrees);
   Count found;
+  int unknown = 0;
   for (const Marked& m : page.sets) {
-    if (!m.concealment || !m.found) continue;
+    if (!m.found) continue;
+    const bool lacks = m.answer.kind != Kind::none && m.answer.kind != Kind::decoy;
+    if (!m.concealment || !std::isfinite(m.concealment->power_percent)) {
+      unknown += m.answer.kind == Kind::effect ? 1 : 0;
+      continue;
+    }
     const Concealment& c = *m.concealment;
-    const bool lacks = m.answer.kind != Kind::none && m.answer.kind != Kind::decoy, hidden = lacks && limits.holds(c);
+    const bool hidden = lacks && unsuspicious(page.sets, m.study).holds(c);
     append(out, "| {} | {} | {:+.2f} % | {:+.2f}° | {:+.2f}° | {:.2f} | {} | {} |\n", m.answer.set, label_of(m.answer), c.power_percent,
            c.shoulder_deg, c.toe_deg, c.chagas,
            !lacks   ? ""
@@ -55,7 +59,8 @@ void concealment(const Page& page, std::string& out) {
     if (hidden && m.answer.kind == Kind::effect)
       found.add(m.found->names(m.answer.effects.front().hypothesis) && m.found->named.size() <= 2);
   }
-  append(out, "\nOf the concealed sets with one effect it is named, alone or in a class of two, in {}.\n\n", count_text(found));
+  append(out, "\nOf the concealed sets with one effect it is named, alone or in a class of two, in {}.{}\n\n", count_text(found),
+         unknown == 0 ? "" : fmt::format(" Of {} more with one effect it is not known whether they are concealed.", unknown));
 }
 
 void confusion(const Score& s, std::string& out) {

@@ -115,7 +115,7 @@ TEST_CASE("long runs say what the practice would have seen of each set, once") {
   options.campaign.cache = made.folder / "cache", options.campaign.program = fs::path(MILLSCOPE_BINARY_DIR) / "bin" / "millscope";
   options.campaign.quiet = true;
   const diagnose::Question q = question_of(made.challenge, made.registry);
-  conceal(made.challenge, q, made.sets, made.registry, options);
+  conceal(q, made.sets, made.registry, options);
   const std::vector<Marked> marked = read_sets(made.sets);
   for (const Marked& m : marked) {
     REQUIRE(m.concealment);
@@ -126,15 +126,15 @@ TEST_CASE("long runs say what the practice would have seen of each set, once") {
   }
   const std::string before = base::text_of(made.sets / "concealment.json");
   fs::remove_all(made.folder / "cache");
-  conceal(made.challenge, q, made.sets, made.registry, options);
+  conceal(q, made.sets, made.registry, options);
   CHECK(base::text_of(made.sets / "concealment.json") == before);
   CHECK_FALSE(fs::exists(made.folder / "cache"));
 }
 
 TEST_CASE("concealed is what power, angles and distributions leave unsuspicious") {
   std::vector<Marked> sets;
-  for (int i = 1; i <= 11; ++i) sets.push_back({{"e", challenge::Kind::none, "", {}, {}, {}}, {}, Concealment{0, 0, 0, 0.1 * i}});
-  const Unsuspicious limits = unsuspicious(sets);
+  for (int i = 1; i <= 11; ++i) sets.push_back({{"e", challenge::Kind::none, "", {}, {}, {}}, {}, Concealment{0, 0, 0, 0.1 * i}, ""});
+  const Unsuspicious limits = unsuspicious(sets, "");
   CHECK(limits.chagas == Approx(1.0));
   CHECK(limits.holds({0.9, -1.4, 1.4, 0.9}));
   CHECK_FALSE(limits.holds({-1.1, 0, 0, 0.9}));
@@ -143,7 +143,7 @@ TEST_CASE("concealed is what power, angles and distributions leave unsuspicious"
   CHECK_FALSE(limits.holds({0, 0, 0, 1.1}));
   CHECK_FALSE(limits.holds({0, 0, std::nan(""), 0.9}));
   sets.resize(9);
-  CHECK(std::isinf(unsuspicious(sets).chagas));
+  CHECK(std::isinf(unsuspicious(sets, "").chagas));
 }
 
 TEST_CASE("sets that could not be read back are not sealed") {

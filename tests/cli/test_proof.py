@@ -11,10 +11,12 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
 
-# Answers hold the seed, so that another seed would show; a diagnosis is what was asked for, a set whose name is in fail.txt fails.
+# Answers hold the seed, so that another seed would show; a diagnosis is what was asked for, set_002 fails where build/fail.txt is.
 PLAYED = r'''#!/usr/bin/env python3
 import hashlib, json, sys, pathlib
 words = sys.argv[1:]
+if words == ["--version"]:
+    print("millscope 0.1.0 (commit %s)" % ((pathlib.Path(__file__).parent / "commit").read_text().strip()))
 if words[:2] == ["challenge", "make"]:
     out = pathlib.Path(words[words.index("-o") + 1])
     seed = [line for line in open(words[2]) if line.startswith("seed:")][0].split()[1]
@@ -29,7 +31,7 @@ elif words[:2] == ["challenge", "run"]:
     for name in ("set_001", "set_002"):
         found = pathlib.Path(words[2]) / name / "diagnosis"
         found.mkdir(exist_ok=True)
-        if name == "set_002" and pathlib.Path("fail.txt").exists():
+        if name == "set_002" and pathlib.Path("build/fail.txt").exists():
             (found / "failed.txt").write_text("too few beads\n")
         elif not (found / "diagnosis.json").exists():
             (found / "diagnosis.json").write_text(json.dumps({"verdict": "no_mismatch", "times": 1}))
@@ -49,13 +51,14 @@ class Proof(unittest.TestCase):
         for folder in ("tools", "configs/proof", "kernel", "build/release/bin", "docs"):
             (self.root / folder).mkdir(parents=True)
         shutil.copy(SOURCE / "tools" / "proof.py", self.root / "tools")
-        (self.root / "configs/proof/proof.yaml").write_text("# what is made\npart: {challenge: part.yaml, batches: 2}\n")
+        (self.root / "configs/proof/proof.yaml").write_text("# what is made\nparts:\n  part: {challenge: part.yaml, batches: 2}\n")
         (self.root / "configs/proof/part.yaml").write_text("study: s.yaml\nseed: 1\n")
         (self.root / "kernel/a.cpp").write_text("int a;\n")
         (self.root / ".gitignore").write_text("/build/\n")
         program = self.root / "build/release/bin/millscope"
         program.write_text(PLAYED)
         program.chmod(0o755)
+        self.program = program
         self.git("init", "-q")
         self.git("config", "user.email", "a@b.c")
         self.git("config", "user.name", "a")
@@ -67,6 +70,11 @@ class Proof(unittest.TestCase):
     def commit(self):
         self.git("add", "-A")
         self.git("commit", "-q", "--allow-empty", "-m", "step")
+        self.build()
+
+    def build(self):
+        head = subprocess.run(["git", "-C", str(self.root), "rev-parse", "HEAD"], check=True, capture_output=True, text=True)
+        (self.program.parent / "commit").write_text(head.stdout)
 
     def proof(self, *words):
         done = subprocess.run([sys.executable, str(self.root / "tools/proof.py")] + list(words), capture_output=True, text=True)
@@ -88,8 +96,8 @@ class Proof(unittest.TestCase):
         self.commit()
         self.assertEqual(self.proof("part_1")[0], 0)
         answer = json.loads(self.public("answers/set_001.json").read_text())
-        self.assertEqual(self.public("answers/set_001.json").read_bytes(),
-                         (self.root / "build/release/proof/part_1/answers/set_001.json").read_bytes())
+        self.assertFalse((self.root / "build/release/proof/part_1/answers").exists())
+        self.assertFalse((self.root / "build/release/proof/part_1/seed.txt").exists())
         self.assertNotEqual(answer["seed"], "1")
         self.assertTrue(self.public("concealment.json").read_text().endswith("configs/proof/part.yaml"))
         self.assertEqual((self.root / "docs/proof.md").read_text(), "# docs/proof/part_1\n")
@@ -117,12 +125,35 @@ class Proof(unittest.TestCase):
         self.assertIn("kernel/a.cpp differs since", self.proof("part_1")[1])
         self.assertFalse(self.public("set_001").exists())
 
-    def test_a_failed_set_is_kept_as_one(self):
-        (self.root / "fail.txt").write_text("")
+    def test_an_older_build_diagnoses_nothing(self):
+        old = (self.program.parent / "commit").read_text()
+        (self.root / "kernel/a.cpp").write_text("int b;\n")
+        self.commit()
+        self.proof("part_1", "--until", "publish")
+        self.commit()
+        (self.program.parent / "commit").write_text(old)
+        self.assertIn("kernel/a.cpp differs since", self.proof("part_1")[1])
+        (self.program.parent / "commit").write_text(old.strip() + "-dirty")
+        self.assertIn("built from no clean commit", self.proof("part_1")[1])
+
+    def test_fresh_sets_take_nothing_of_the_old_ones(self):
         self.proof("part_1", "--until", "publish")
         self.commit()
         self.proof("part_1", "--until", "diagnose")
-        (self.root / "fail.txt").unlink()
+        old = self.public("manifest.json").read_text()
+        shutil.rmtree(self.root / "docs/proof")
+        (self.root / "kernel/a.cpp").write_text("int b;\n")
+        self.commit()
+        self.proof("part_1", "--until", "publish")
+        self.assertNotEqual(self.public("manifest.json").read_text(), old)
+        self.assertFalse((self.root / "build/release/proof/part_1/set_001/diagnosis").exists())
+
+    def test_a_failed_set_is_kept_as_one(self):
+        (self.root / "build/fail.txt").write_text("")
+        self.proof("part_1", "--until", "publish")
+        self.commit()
+        self.proof("part_1", "--until", "diagnose")
+        (self.root / "build/fail.txt").unlink()
         self.proof("part_1", "--until", "diagnose")
         self.assertEqual([p.name for p in self.public("set_002/diagnosis").iterdir()], ["failed.txt"])
 

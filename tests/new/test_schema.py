@@ -38,8 +38,8 @@ class Schema(CliTest):
         tried = 0
         for path in sorted((SOURCE / "configs").rglob("*.yaml")):
             text = path.read_text(encoding="utf-8")
-            if re.search(r"^(base|study|case|files|format|observations|simulations|settings|profile):", text, re.M):
-                continue  # a study, a campaign, a recording, a profile, a camera
+            if re.search(r"^(base|study|parts|case|files|format|observations|simulations|settings|profile):", text, re.M):
+                continue  # a study, a challenge, a proof, a campaign, a recording, a profile, a camera
             self.assertEqual(self.said(text), [], path)
             tried += 1
         self.assertGreater(tried, 15)

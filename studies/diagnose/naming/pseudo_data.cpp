@@ -143,9 +143,15 @@ PseudoData::Refit PseudoData::refit(const LeftOut& left, const Truth& truth, con
   for (const Choice& choice : choices) out.models.push_back(model(*left.surrogate, choice));
   if (truth.active.empty()) return out;
   std::vector<Index> on;
+  double both = 1;
   for (const ActiveCandidate& e : truth.active) {
+    const double root = std::sqrt(reliability(truth, e));
     on.push_back(e.candidate);
-    out.coefficients.middleRows(features_->first(e.candidate), features_->count(e.candidate)) *= std::sqrt(reliability(truth, e));
+    both *= root;
+    out.coefficients.middleRows(features_->first(e.candidate), features_->count(e.candidate)) *= root;
+  }
+  if (on.size() == 2) {
+    if (const auto product = features_->product(on[0], on[1])) out.coefficients.row(*product) *= both;
   }
   // Base and candidates of the truth are drawn again; the other candidates' coefficients move as they do with those on average.
   const std::vector<Index> columns = features_->columns(on);
