@@ -59,8 +59,7 @@ int run_sets(const Arguments& arguments) {
                   "millscope challenge run sets");
   options.positional("SETS", "what 'challenge make' wrote");
   add_runner_options(options, "where the bank is kept (default: SETS/cache)");
-  options.add()("draws", po::value<int>()->value_name("N"),
-                "pseudo-recordings behind every p-value (default: 2016, or as many as the study's level asks for)");
+  add_draws_option(options);
   options.with_plugins();
   if (!options.parse(arguments)) return kDone;
   const fs::path sets = options.text("SETS");
@@ -68,8 +67,7 @@ int run_sets(const Arguments& arguments) {
   const calibrate::SessionOptions session = study_session(options, "");
   naming::Options naming;
   naming.say = session.say;
-  naming.draws = options.has("draws") ? options.integer("draws") : 0;
-  if (options.has("draws") && naming.draws < 100) throw UserError(fmt::format("--draws {}: give 100 or more", naming.draws));
+  naming.draws = draws_of(options);
   const challenge::RunCount count = challenge::run(sets, registry, session, naming);
   if (!options.has("quiet"))
     fmt::print("{} sets diagnosed now, {} before, {} failed; score them: millscope challenge score {}\n", count.done, count.known,

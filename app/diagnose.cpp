@@ -11,9 +11,7 @@
 namespace millscope::app {
 namespace {
 
-namespace po = boost::program_options;
 namespace fs = std::filesystem;
-using base::UserError;
 
 void print_found(const diagnose::Question& question, const diagnose::Diagnosis& d, const fs::path& output) {
   fmt::print("\n{}\n{}\n", diagnose::name_of(d.verdict), d.sentence);
@@ -41,13 +39,11 @@ int diagnose_study(const Arguments& arguments) {
                   "naming it gains. Started again, it goes on where it stopped and computes nothing twice.",
                   "millscope diagnose configs/mill10/diagnose.yaml -o diagnosis --set conditions.speed75.recording=r75.yaml");
   add_study_options(options);
-  options.add()("draws", po::value<int>()->value_name("N"),
-                "pseudo-recordings behind every p-value (default: 2016, or as many as the study's level asks for)");
+  add_draws_option(options);
   if (!options.parse(arguments)) return kDone;
   const fs::path output = options.text("output");
   naming::Options naming;
-  naming.draws = options.has("draws") ? options.integer("draws") : 0;
-  if (options.has("draws") && naming.draws < 100) throw UserError(fmt::format("--draws {}: give 100 or more", naming.draws));
+  naming.draws = draws_of(options);
   const host::Registry registry = options.registry();
   const diagnose::Question question = diagnose::read_question(options.text("STUDY.yaml"), options.list("set"), registry);
   const calibrate::SessionOptions session_of = study_session(options, output);

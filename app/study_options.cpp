@@ -29,6 +29,18 @@ void add_study_options(Options& options) {
   options.with_plugins();
 }
 
+void add_draws_option(Options& options) {
+  options.add()("draws", po::value<int>()->value_name("N"),
+                "pseudo-recordings behind every p-value (default: 2016, or as many as the study's level asks for)");
+}
+
+int draws_of(const Options& options) {
+  if (!options.has("draws")) return 0;
+  const int draws = options.integer("draws");
+  if (draws < 100) throw base::UserError(fmt::format("--draws {}: give 100 or more", draws));
+  return draws;
+}
+
 std::vector<std::string> words_of(const std::vector<std::string>& texts) {
   std::vector<std::string> words;
   for (const std::string& text : texts) {

@@ -11,6 +11,9 @@ namespace millscope::app {
 void add_study_options(Options& options);
 /// Where simulations run and are kept, for commands without a study; `cache`: what the help says of it.
 void add_runner_options(Options& options, const char* cache);
+/// --draws of a diagnosis; 0: as many as its level asks for. Throws UserError where they are too few for any.
+void add_draws_option(Options& options);
+int draws_of(const Options& options);
 /// A line on standard output, at once.
 void print_line(const std::string& line);
 /// "--partition=long --time=60" → words.

@@ -31,7 +31,7 @@ Json read_manifest(const fs::path& sets) {
 }
 
 Kind kind_from(const std::string& text) {
-  for (const Kind kind : {Kind::none, Kind::effect, Kind::two, Kind::decoy}) {
+  for (const Kind kind : kKinds) {
     if (text == name_of(kind)) return kind;
   }
   return Kind::outside;

@@ -7,16 +7,15 @@
 #include <iterator>
 
 #include "kernel/base/statistics.hpp"
-#include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
 #include "studies/analysis/analysis.hpp"
 #include "studies/calibrate/objective.hpp"
+#include "studies/challenge/record.hpp"
 
 namespace millscope::challenge {
 namespace {
 
 namespace fs = std::filesystem;
-using base::UserError;
 using Json = nlohmann::ordered_json;
 
 constexpr double kLongFrameStep = 0.02;  // s
@@ -31,9 +30,8 @@ struct Look {
 };
 
 const std::vector<double>& values_of(const analysis::ResultSet& results, const std::string& analyzer, const std::string& name) {
-  const auto found = std::find_if(results.arrays.begin(), results.arrays.end(),
-                                  [&](const analysis::ResultArray& a) { return a.analyzer == analyzer && a.name == name; });
-  if (found == results.arrays.end()) throw UserError(fmt::format("the analyzer {} tells no '{}' of a long run", analyzer, name));
+  const analysis::ResultArray* found = results.find(analyzer, name);
+  if (found == nullptr) throw base::UserError(fmt::format("the analyzer {} tells no '{}' of a long run", analyzer, name));
   return found->value;
 }
 
@@ -49,7 +47,7 @@ Look look_at(const fs::path& run, const host::Registry& registry) {
         values_of(results, "distributions", axis + "_edges"), values_of(results, "distributions", axis + "_percent"), {}};
   };
   Look look{angle("departure_shoulder"), angle("bulk_toe"), {}};
-  look.seen.power.value = output::read_json(run / "summary.json").at("power_W").at("com").get<double>();
+  look.seen.power.value = power_of(run, registry).value;
   look.seen.x = histogram("x"), look.seen.speed = histogram("speed_ratio");
   return look;
 }
@@ -89,13 +87,11 @@ std::vector<campaign::Simulation> long_runs(const diagnose::Question& q, const M
   return {truth, base};
 }
 
-fs::path file_of(const fs::path& sets) { return sets / "concealment.json"; }
-
 void write(const fs::path& sets, const std::map<std::string, Concealment>& all, const std::string& condition, double seconds) {
   Json list = Json::object();
   for (const auto& [set, c] : all)
     list[set] = {{"power_percent", c.power_percent}, {"shoulder_deg", c.shoulder_deg}, {"toe_deg", c.toe_deg}, {"chagas2015", c.chagas}};
-  output::write_json(file_of(sets), {{"schema_version", 1}, {"condition", condition}, {"seconds", seconds}, {"sets", list}});
+  output::write_json(sets / kConcealmentFile, {{"schema_version", 1}, {"condition", condition}, {"seconds", seconds}, {"sets", list}});
 }
 
 }  // namespace
@@ -123,30 +119,23 @@ void conceal(const diagnose::Question& q, const fs::path& sets, const host::Regi
   write(sets, all, q.study.conditions[condition].name, options.seconds);
 }
 
-std::map<std::string, Concealment> read_concealment(const fs::path& sets) {
-  std::map<std::string, Concealment> out;
-  if (!fs::exists(file_of(sets))) return out;
-  const Json j = output::read_json(file_of(sets));
-  const auto number = [](const Json& value) { return value.is_number() ? value.get<double>() : std::nan(""); };
-  for (const auto& [set, c] : j.at("sets").items())
-    out[set] = {number(c.at("power_percent")), number(c.at("shoulder_deg")), number(c.at("toe_deg")), number(c.at("chagas2015"))};
-  return out;
-}
-
 bool Unsuspicious::holds(const Concealment& c) const {
   return std::fabs(c.power_percent) <= power_percent && std::fabs(c.shoulder_deg) <= degrees && std::fabs(c.toe_deg) <= degrees &&
-         c.chagas <= this->chagas;
+         c.chagas <= chagas;
 }
 
-Unsuspicious unsuspicious(const std::vector<Marked>& sets, const std::string& study) {
-  std::vector<double> empty;
+std::map<std::string, Unsuspicious> unsuspicious(const std::vector<Marked>& sets) {
+  std::map<std::string, std::vector<double>> empty;
   for (const Marked& m : sets) {
-    if (m.answer.kind == Kind::none && m.study == study && m.concealment && std::isfinite(m.concealment->chagas))
-      empty.push_back(m.concealment->chagas);
+    std::vector<double>& own = empty[m.study];
+    if (m.answer.kind == Kind::none && m.concealment && std::isfinite(m.concealment->chagas)) own.push_back(m.concealment->chagas);
   }
-  Unsuspicious out;
-  std::sort(empty.begin(), empty.end());
-  if (empty.size() >= kEnoughEmpty) out.chagas = base::interpolated_quantile(empty, kQuantile);
+  std::map<std::string, Unsuspicious> out;
+  for (auto& [study, chagas] : empty) {
+    Unsuspicious& limits = out[study];
+    std::sort(chagas.begin(), chagas.end());
+    if (chagas.size() >= kEnoughEmpty) limits.chagas = base::interpolated_quantile(chagas, kQuantile);
+  }
   return out;
 }
 

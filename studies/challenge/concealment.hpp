@@ -13,6 +13,8 @@
 
 namespace millscope::challenge {
 
+inline constexpr const char* kConcealmentFile = "concealment.json";
+
 struct ConcealOptions {
   double seconds = 40;  ///< that are looked at of every run
   campaign::Options campaign;
@@ -32,6 +34,7 @@ struct Unsuspicious {
   double chagas = std::numeric_limits<double>::infinity();  ///< 90 % quantile of what sets without an effect have, of ten or more
   bool holds(const Concealment& c) const;
 };
-Unsuspicious unsuspicious(const std::vector<Marked>& sets, const std::string& study);
+/// By study.
+std::map<std::string, Unsuspicious> unsuspicious(const std::vector<Marked>& sets);
 
 }  // namespace millscope::challenge

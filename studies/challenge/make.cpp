@@ -83,7 +83,9 @@ void make(const Challenge& challenge, const diagnose::Question& question, const 
     throw UserError(fmt::format("{}: holds sealed sets already; choose another folder", options.output.string()));
   const std::vector<Truth> truths = draw_truths(challenge, question);
   Maker maker{challenge, question, registry, options.output, {}};
-  for (const Truth& truth : truths) maker.cameras.try_emplace(truth.camera, camera::read_camera(truth.camera, registry));
+  for (const Truth& truth : truths) {
+    if (!maker.cameras.contains(truth.camera)) maker.cameras.emplace(truth.camera, camera::read_camera(truth.camera, registry));
+  }
   const std::size_t conditions = question.study.conditions.size();
   std::vector<campaign::Simulation> simulations;
   for (std::size_t t = 0; t < truths.size(); ++t) {

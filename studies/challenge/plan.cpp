@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <tuple>
 
 #include "kernel/base/nearest.hpp"
 #include "kernel/config/existing_file.hpp"
@@ -20,7 +19,6 @@ using config::Node;
 
 constexpr int kMostSets = 999;
 constexpr int kMostBeads = 100000;
-constexpr Kind kKinds[] = {Kind::none, Kind::effect, Kind::two, Kind::outside, Kind::decoy};
 
 std::vector<std::string> settings_of(const Node& set) {
   if (!set.is_map()) set.fail("is no map; write e.g. {stiffness_factor: 0.01}");
@@ -101,14 +99,17 @@ void check_hypothesis(const SetsOf& sets, const std::string& name, const diagnos
 
 std::string path_of(const std::string& setting) { return setting.substr(0, setting.find('=')); }
 
-/// Whether it is a parameter of the study or a nuisance that is drawn.
+bool is_drawn_nuisance(const diagnose::Question& question, const std::string& path) {
+  return std::any_of(question.nuisances.begin(), question.nuisances.end(),
+                     [&](const diagnose::Nuisance& n) { return !n.usual && n.path == path; });
+}
+
+/// Whether it is a parameter of the study, or tied to one, or a nuisance that is drawn.
 bool varies(const diagnose::Question& question, const std::string& path) {
-  const auto& [parameters, nuisances] = std::tie(question.study.parameters, question.nuisances);
-  return std::any_of(parameters.begin(), parameters.end(),
-                     [&](const calibrate::Parameter& p) {
-                       return p.path == path || std::find(p.tied.begin(), p.tied.end(), path) != p.tied.end();
-                     }) ||
-         std::any_of(nuisances.begin(), nuisances.end(), [&](const diagnose::Nuisance& n) { return !n.usual && n.path == path; });
+  const auto& parameters = question.study.parameters;
+  return is_drawn_nuisance(question, path) || std::any_of(parameters.begin(), parameters.end(), [&](const calibrate::Parameter& p) {
+           return p.path == path || std::find(p.tied.begin(), p.tied.end(), path) != p.tied.end();
+         });
 }
 
 /// Whether a setting is what the hypothesis stands for: its value, its switch, or its plugin under another name.
@@ -124,16 +125,15 @@ bool stands_for(const diagnose::Candidate& c, const std::string& setting) {
 
 /// A decoy sets what the study varies, and nothing else. What is tied goes with its parameter.
 void check_decoy(const SetsOf& sets, const diagnose::Question& question) {
-  const auto& [parameters, nuisances] = std::tie(question.study.parameters, question.nuisances);
+  const auto& parameters = question.study.parameters;
   for (const std::string& setting : sets.settings) {
-    const auto is_of = [path = path_of(setting)](const calibrate::Parameter& p) { return p.path == path && p.tied.empty(); };
-    if (std::none_of(parameters.begin(), parameters.end(), is_of) &&
-        std::none_of(nuisances.begin(), nuisances.end(),
-                     [&](const diagnose::Nuisance& n) { return !n.usual && n.path == path_of(setting); }))
-      throw base::UserError(
-          sets.where,
-          fmt::format("sets '{}', which is no parameter or drawn nuisance of the study by itself: that is no decoy; its kind is outside",
-                      path_of(setting)));
+    const std::string path = path_of(setting);
+    const auto by_itself = [&](const calibrate::Parameter& p) { return p.path == path && p.tied.empty(); };
+    if (is_drawn_nuisance(question, path) || std::any_of(parameters.begin(), parameters.end(), by_itself)) continue;
+    throw base::UserError(
+        sets.where,
+        fmt::format("sets '{}', which is no parameter or drawn nuisance of the study by itself: that is no decoy; its kind is outside",
+                    path));
   }
 }
 

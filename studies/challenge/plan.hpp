@@ -26,6 +26,7 @@ namespace millscope::challenge {
 
 /// A decoy has no physics beyond the base: its camera is another one, or what the study varies lies beyond what is believed of it.
 enum class Kind { none, effect, two, outside, decoy };
+inline constexpr Kind kKinds[] = {Kind::none, Kind::effect, Kind::two, Kind::outside, Kind::decoy};
 const char* name_of(Kind kind);
 
 /// One line of `sets`.

@@ -5,6 +5,7 @@
 
 #include "kernel/base/text.hpp"
 #include "kernel/output/directory.hpp"
+#include "kernel/output/summary.hpp"
 #include "studies/challenge/concealment.hpp"
 
 namespace millscope::challenge {
@@ -92,13 +93,23 @@ std::optional<Found> read_found(const fs::path& set) {
   return f;
 }
 
+std::map<std::string, Concealment> read_concealment(const fs::path& sets) {
+  std::map<std::string, Concealment> out;
+  if (!fs::exists(sets / kConcealmentFile)) return out;
+  const Json j = output::read_json(sets / kConcealmentFile);
+  for (const auto& [set, c] : j.at("sets").items())
+    out[set] = {number(c.at("power_percent")), number(c.at("shoulder_deg")), number(c.at("toe_deg")), number(c.at("chagas2015"))};
+  return out;
+}
+
 std::vector<Marked> read_sets(const fs::path& sets) {
   std::vector<Marked> out;
+  const std::string study = study_hash(sets);
   const std::map<std::string, Concealment> concealment = read_concealment(sets);
   for (Answer& a : open_answers(sets)) {
     std::optional<Found> found = read_found(sets / a.set);
     const auto long_runs = concealment.find(a.set);
-    out.push_back({std::move(a), std::move(found), {}, study_hash(sets)});
+    out.push_back({std::move(a), std::move(found), {}, study});
     if (long_runs != concealment.end()) out.back().concealment = long_runs->second;
   }
   return out;

@@ -33,12 +33,12 @@ void concealment(const Page& page, std::string& out) {
   if (std::none_of(page.sets.begin(), page.sets.end(), [](const Marked& m) { return m.concealment.has_value(); })) return;
   append(out,
          "## Concealed\n\nLong runs of the truth and of the base whose friction was retuned to its power, at the speed where that was "
-         "done: base "
-         "less truth. A set with physics that the base lacks is *concealed* where power agrees within {:g} %, shoulder and toe within "
-         "{:g}°, and "
-         "Eq. 4.3 of Chagas 2015 is below the 90 % quantile of the same mill's sets without an effect (where they are ten or more).\n\n"
+         "done: base less truth. A set with physics that the base lacks is *concealed* where power agrees within {:g} %, shoulder and toe "
+         "within {:g}°, and Eq. 4.3 of Chagas 2015 is below the 90 % quantile of the same mill's sets without an effect (where they are "
+         "ten or more).\n\n"
          "| set | hidden | power | shoulder | toe | Eq. 4.3 | concealed | diagnosis |\n|---|---|---|---|---|---|---|---|\n",
          Unsuspicious().power_percent, Unsuspicious().degrees);
+  const std::map<std::string, Unsuspicious> limits = unsuspicious(page.sets);
   Count found;
   int unknown = 0;
   for (const Marked& m : page.sets) {
@@ -49,12 +49,12 @@ void concealment(const Page& page, std::string& out) {
       continue;
     }
     const Concealment& c = *m.concealment;
-    const bool hidden = lacks && unsuspicious(page.sets, m.study).holds(c);
+    const bool hidden = lacks && limits.at(m.study).holds(c);
     append(out, "| {} | {} | {:+.2f} % | {:+.2f}° | {:+.2f}° | {:.2f} | {} | {} |\n", m.answer.set, label_of(m.answer), c.power_percent,
            c.shoulder_deg, c.toe_deg, c.chagas,
-           !lacks   ? ""
-           : hidden ? "yes"
-                    : "no",
+           hidden  ? "yes"
+           : lacks ? "no"
+                   : "",
            label_of(*m.found));
     if (hidden && m.answer.kind == Kind::effect)
       found.add(m.found->names(m.answer.effects.front().hypothesis) && m.found->named.size() <= 2);

@@ -134,7 +134,7 @@ TEST_CASE("long runs say what the practice would have seen of each set, once") {
 TEST_CASE("concealed is what power, angles and distributions leave unsuspicious") {
   std::vector<Marked> sets;
   for (int i = 1; i <= 11; ++i) sets.push_back({{"e", challenge::Kind::none, "", {}, {}, {}}, {}, Concealment{0, 0, 0, 0.1 * i}, ""});
-  const Unsuspicious limits = unsuspicious(sets, "");
+  const Unsuspicious limits = unsuspicious(sets).at("");
   CHECK(limits.chagas == Approx(1.0));
   CHECK(limits.holds({0.9, -1.4, 1.4, 0.9}));
   CHECK_FALSE(limits.holds({-1.1, 0, 0, 0.9}));
@@ -143,7 +143,7 @@ TEST_CASE("concealed is what power, angles and distributions leave unsuspicious"
   CHECK_FALSE(limits.holds({0, 0, 0, 1.1}));
   CHECK_FALSE(limits.holds({0, 0, std::nan(""), 0.9}));
   sets.resize(9);
-  CHECK(std::isinf(unsuspicious(sets, "").chagas));
+  CHECK(std::isinf(unsuspicious(sets).at("").chagas));
 }
 
 TEST_CASE("sets that could not be read back are not sealed") {

@@ -24,9 +24,10 @@ inline std::vector<Physics> usual() {
   return {{kRolling, 0, 0.2, 3, {21, 22, 23}}, {kBridge, 0, 0.08, 3, {31, 32, 33}}, {kHeight, 0.005, 0.003, 3, {41, 42, 43}}};
 }
 
-inline std::vector<std::string> with(const std::string& more) {
+template <class... Settings>
+std::vector<std::string> with(const Settings&... more) {
   std::vector<std::string> truth = kTheta;
-  truth.push_back(more);
+  (truth.push_back(more), ...);
   return truth;
 }
 

@@ -48,10 +48,7 @@ TEST_CASE("two candidates of which too few runs together came to their end are k
 TEST_CASE("two effects that are not all that is missing are both told, though neither is named") {
   std::vector<Physics> physics = usual();
   physics.push_back({"pairs.glass~glass.restitution", 0.8, 0.5, 2.5, {51, 52, 53}});  // what the two do together besides
-  std::vector<std::string> truth = with(kRolling + "=0.16");
-  truth.push_back(kBridge + "=0.06");
-  truth.push_back("pairs.glass~glass.restitution=0.4");
-  const Diagnosis d = diagnosed(physics, truth);
+  const Diagnosis d = diagnosed(physics, with(kRolling + "=0.16", kBridge + "=0.06", "pairs.glass~glass.restitution=0.4"));
   INFO(d.sentence);
   CHECK(d.verdict == Verdict::outside_library);
   CHECK(d.named.empty());
@@ -64,9 +61,7 @@ TEST_CASE("two effects that do not add up are both named where the bank has them
   Physics both{kRolling, 0, 0.2, 3, {51, 52, 53}};
   both.beside = kBridge, both.beside_far = 0.08;
   physics.push_back(both);
-  std::vector<std::string> truth = with(kRolling + "=0.16");
-  truth.push_back(kBridge + "=0.06");
-  const Diagnosis d = diagnosed(physics, truth);
+  const Diagnosis d = diagnosed(physics, with(kRolling + "=0.16", kBridge + "=0.06"));
   INFO(d.sentence);
   CHECK(std::set<std::string>(d.named.begin(), d.named.end()) == std::set<std::string>{"rolling_resistance", "capillary_bridge"});
   REQUIRE(d.naming.pairs.size() == 1);
@@ -80,9 +75,7 @@ TEST_CASE("a second effect that shows nothing of what it does alone is found") {
   Physics both{kHeight, 0.005, 0.003, -2 * physics[2].size, physics[2].direction};  // beside rolling friction the opposite
   both.beside = kRolling, both.beside_far = 0.16;
   physics.push_back(both);
-  std::vector<std::string> truth = with(kRolling + "=0.16");
-  truth.push_back(kHeight + "=0.0035");
-  const Diagnosis d = diagnosed(physics, truth);
+  const Diagnosis d = diagnosed(physics, with(kRolling + "=0.16", kHeight + "=0.0035"));
   INFO(d.sentence);
   CHECK(std::set<std::string>(d.named.begin(), d.named.end()) == std::set<std::string>{"rolling_resistance", "lifter_wear"});
 }

@@ -194,9 +194,7 @@ TEST_CASE("a filling beyond its prior is named as that, and as no physics") {
 }
 
 TEST_CASE("two effects at once are found by forward selection") {
-  std::vector<std::string> truth = with(kRolling + "=0.16");
-  truth.push_back(kBridge + "=0.06");
-  const Diagnosis d = diagnosed(usual(), truth);
+  const Diagnosis d = diagnosed(usual(), with(kRolling + "=0.16", kBridge + "=0.06"));
   INFO(d.sentence);
   CHECK(std::set<std::string>(d.named.begin(), d.named.end()) == std::set<std::string>{"rolling_resistance", "capillary_bridge"});
   REQUIRE(d.naming.pairs.size() == 1);

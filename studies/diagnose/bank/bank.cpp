@@ -82,6 +82,16 @@ void append(std::vector<BankPoint>& to, std::vector<BankPoint> more) {
   to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
+/// Takes out the rows that are so.
+template <class Of>
+void leave_out_rows(std::vector<naming::BankRow>& rows, std::vector<VectorXd>& values, Of of) {
+  for (std::size_t r = rows.size(); r-- > 0;) {
+    if (!of(rows[r])) continue;
+    rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(r));
+    values.erase(values.begin() + static_cast<std::ptrdiff_t>(r));
+  }
+}
+
 /// Runs of a candidate with another nuisance that are too few for their product, or stand beside too few without it, would be taken for
 /// what the candidate does. One sentence for each candidate that loses runs.
 std::vector<std::string> leave_out_too_few(const Question& question, std::vector<naming::BankRow>& rows, std::vector<VectorXd>& values) {
@@ -97,11 +107,7 @@ std::vector<std::string> leave_out_too_few(const Question& question, std::vector
           fmt::format("{} with another {} was left out: {} and {} simulations with the usual one came to their end, {} of each are needed "
                       "(bank.each; or see why others failed)",
                       question.candidates[j].name, question.coordinates()[nuisance].name, runs, all - runs, naming::kLeastTogether));
-      for (std::size_t r = rows.size(); r-- > 0;) {
-        if (!together(rows[r])) continue;
-        rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(r));
-        values.erase(values.begin() + static_cast<std::ptrdiff_t>(r));
-      }
+      leave_out_rows(rows, values, together);
     }
   }
   return told;
@@ -119,12 +125,9 @@ void leave_out_few_pairs(const Question& question, std::vector<naming::BankRow>&
     if (count >= naming::kLeastTogether) continue;
     told.push_back(fmt::format("{} together with {} was left out: {} simulations of both came to their end, {} are needed",
                                question.candidates[pair.first].name, question.candidates[pair.second].name, count, naming::kLeastTogether));
-    for (std::size_t r = rows.size(); r-- > 0;) {
-      if (rows[r].active.size() != 2 || both(rows[r]) != pair) continue;
-      rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(r));
-      values.erase(values.begin() + static_cast<std::ptrdiff_t>(r));
-    }
   }
+  leave_out_rows(rows, values,
+                 [&](const naming::BankRow& row) { return row.active.size() == 2 && runs.at(both(row)) < naming::kLeastTogether; });
 }
 
 /// The surrogate has no other runs that tell what a nuisance does that is varied apart.

@@ -36,8 +36,7 @@ void where_it_differs(const Told& t, std::string& out) {
   const naming::Result& n = t.diagnosis.naming;
   add(out,
       "## Where the retuned base differs\n\nThe base with its parameters refitted to everything: Q = {:.1f} over {} observables. A "
-      "recording "
-      "of this very model looks as bad, in Q or in its largest single difference, with p = {:.2g}.\n\n",
+      "recording of this very model looks as bad, in Q or in its largest single difference, with p = {:.2g}.\n\n",
       n.base.q, t.diagnosis.problem.observed.size(), n.base_p);
   if (n.mismatch.empty() || n.mismatch.front().p > t.question.level)
     out += "No single observable stands out; the largest differences, which chance alone makes as large:\n\n";

@@ -146,8 +146,8 @@ naming::Options at_level_of(const Question& question, naming::Options options) {
   constexpr int kFiner = 2;  // than what would just do
   constexpr double kComparisons = 10;
   options.level = question.level;
-  const auto alternatives = std::max(2.0, static_cast<double>(question.candidates.size() + question.nuisances.size()));
-  const int least = static_cast<int>(std::ceil(2 * alternatives / options.level));
+  const std::size_t alternatives = std::max<std::size_t>(2, question.candidates.size() + question.nuisances.size());
+  const int least = static_cast<int>(std::ceil(2 * static_cast<double>(alternatives) / options.level));
   if (options.draws == 0) {
     options.draws = std::max(naming::Options{}.draws, kFiner * least);
     options.comparison_draws = std::max(options.comparison_draws, static_cast<int>(std::ceil(kComparisons / options.level)));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "studies/diagnose/naming/visibility.hpp"
 
@@ -32,57 +33,68 @@ void add_parameters(const Question& question, const naming::FitResult& fit, std:
   }
 }
 
+/// The surrogate of all that is simulated, and fits to it.
+struct FirstLook {
+  explicit FirstLook(const naming::Problem& p)
+      : problem(p), surrogate(p.data), weighting(p.covariance, surrogate), ranges(naming::ranges_of(p)), base(fit({})) {}
+  FirstLook(const FirstLook&) = delete;
+
+  naming::FitResult fit(std::vector<Index> on) const {
+    return naming::Model(problem.data, surrogate, weighting, {std::move(on), ranges, {}}).fit(problem.observed);
+  }
+  /// Alternatives that are candidates with simulations, and may matter.
+  std::vector<Index> candidates() const {
+    std::vector<Index> out;
+    for (Index a = 0; a < std::ssize(problem.alternatives); ++a) {
+      const naming::Alternative& alternative = problem.alternatives[a];
+      if (alternative.candidate && !alternative.screened_out && surrogate.features().count(*alternative.candidate) > 0) out.push_back(a);
+    }
+    return out;
+  }
+
+  const naming::Problem& problem;
+  naming::Surrogate surrogate;
+  naming::Weighting weighting;
+  std::vector<naming::StrengthRange> ranges;
+  naming::FitResult base;
+};
+
 }  // namespace
 
 std::vector<End> ends_reached(const Question& question, const naming::Problem& problem) {
-  const naming::Surrogate surrogate(problem.data);
-  const naming::Weighting weighting(problem.covariance, surrogate);
-  const std::vector<naming::StrengthRange> ranges = naming::ranges_of(problem);
-  const auto fit = [&](std::vector<Index> on) {
-    return naming::Model(problem.data, surrogate, weighting, {std::move(on), ranges, {}}).fit(problem.observed);
-  };
+  const FirstLook look(problem);
   std::vector<End> ends;
-  const naming::FitResult base = fit({});
-  add_parameters(question, base, ends);
-  for (const naming::Alternative& a : problem.alternatives) {
-    if (!a.candidate || a.screened_out || surrogate.features().count(*a.candidate) == 0) continue;
-    const naming::FitResult with = fit({*a.candidate});
-    if (base.q - with.q < kHelps) continue;
+  add_parameters(question, look.base, ends);
+  for (const Index a : look.candidates()) {
+    const std::optional<Index>& candidate = problem.alternatives[a].candidate;
+    const naming::FitResult with = look.fit({*candidate});
+    if (look.base.q - with.q < kHelps) continue;
     add_parameters(question, with, ends);
     const double strength = with.strengths.front();
-    if (naming::at_limit(strength, ranges[*a.candidate])) add_new(ends, {.candidate = a.candidate, .upper = strength > 0});
+    if (naming::at_limit(strength, look.ranges[*candidate])) add_new(ends, {.candidate = candidate, .upper = strength > 0});
   }
   std::erase_if(ends, [&](const End& end) { return place_of(question, end) == farthest_of(question, end); });
   return ends;
 }
 
 std::vector<std::pair<Index, Index>> pairs_asked_for(const naming::Problem& problem, double noise_units) {
-  const naming::Surrogate surrogate(problem.data);
-  const naming::Weighting weighting(problem.covariance, surrogate);
-  const std::vector<naming::StrengthRange> ranges = naming::ranges_of(problem);
+  const FirstLook look(problem);
   const auto& alternatives = problem.alternatives;
-  const auto fit = [&](std::vector<Index> on) {
-    return naming::Model(problem.data, surrogate, weighting, {std::move(on), ranges, {}}).fit(problem.observed);
-  };
-  const naming::FitResult base = fit({});
-  std::vector<Index> tested;
-  for (Index a = 0; a < std::ssize(alternatives); ++a) {
-    const auto& candidate = alternatives[a].candidate;
-    if (candidate && !alternatives[a].screened_out && surrogate.features().count(*candidate) > 0) tested.push_back(a);
-  }
+  const std::vector<Index> tested = look.candidates();
   std::vector<double> q;
-  for (const Index a : tested) q.push_back(fit({*alternatives[a].candidate}).q);
-  const double least = q.empty() ? base.q : *std::min_element(q.begin(), q.end());
-  if (least > base.q - kHelpsSurely) return {};
-  const auto may_matter = [&](Index a) {
-    return std::sqrt(naming::Visibility(problem, surrogate, weighting, {base.coded}, a).lambda_high()) >= noise_units;
-  };
+  for (const Index a : tested) q.push_back(look.fit({*alternatives[a].candidate}).q);
+  const double least = q.empty() ? look.base.q : *std::min_element(q.begin(), q.end());
+  if (least > look.base.q - kHelpsSurely) return {};
+  std::vector<Index> seconds;
+  std::copy_if(tested.begin(), tested.end(), std::back_inserter(seconds), [&](Index a) {
+    return std::sqrt(naming::Visibility(problem, look.surrogate, look.weighting, {look.base.coded}, a).lambda_high()) >= noise_units;
+  });
   std::vector<std::pair<Index, Index>> out;
   for (std::size_t k = 0; k < tested.size(); ++k) {
     if (q[k] > least + kHelps) continue;  // not the first by far
-    for (const Index a : tested) {
+    for (const Index a : seconds) {
       const bool known = std::find(out.begin(), out.end(), std::pair(a, tested[k])) != out.end();
-      if (!known && naming::together(alternatives[tested[k]], alternatives[a]) && may_matter(a)) out.emplace_back(tested[k], a);
+      if (!known && naming::together(alternatives[tested[k]], alternatives[a])) out.emplace_back(tested[k], a);
     }
   }
   return out;

@@ -1,7 +1,6 @@
 // What a first look at the fits asks of the bank: simulations beyond a range that turns out too narrow, and with two candidates at once.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
