@@ -33,7 +33,7 @@ SETS = ROOT / "docs" / "proof"
 # What cannot change a verdict; all else has to be as it was when the sets were published.
 FREE = ["docs", "tests", "tools", "bench", "examples", "*.md", "Makefile", "mkdocs.yml", ".gitignore", "configs/proof/proof.yaml"]
 FREE += ["studies/" + room for room in ("report", "new", "compare", "crosscheck")]
-FREE += ["studies/challenge/%s.*" % file for file in ("score", "tables", "page", "concealment", "read_sets")]
+FREE += ["studies/challenge/%s.*" % file for file in ("score", "statistics", "tables", "page", "concealment", "read_sets")]
 DECIDES = ["."] + [":(exclude)" + path for path in FREE]
 
 
@@ -51,8 +51,18 @@ def committed(path):
     return git("status", "--porcelain", "--", str(path)) == "" and git("ls-files", "--", str(path)) != ""
 
 
+def read_by(file, known=None):
+    """All YAML files that one names, and those that they name."""
+    known = set() if known is None else known
+    if file not in known:
+        known.add(file)
+        for name in re.findall(r"[\w./-]+\.yaml", file.read_text()) if file.exists() else []:
+            read_by((file.parent / name).resolve(), known)
+    return known
+
+
 def changed_since(commit, until=None):
-    """Paths that decide a verdict and are not as in a commit: in the working tree, or in another commit."""
+    """Paths that decide verdicts and are not as in a commit: in the working tree, or in another commit."""
     differ = git("diff", "--name-only", commit, *([until] if until else []), "--", *DECIDES)
     if differ is None:
         raise Failure("commit %s is not in this clone; fetch it" % commit)
@@ -94,6 +104,13 @@ def sha256(path):
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
+def sha256_anywhere(path):
+    """Of a recording; of a set's study without the folders it includes from, which hang on where the build lies."""
+    if path.name != "study.yaml":
+        return sha256(path)
+    return hashlib.sha256(re.sub(rb'"[./]*/', b'"', path.read_bytes())).hexdigest()
+
+
 class Batch:
     """One batch: WORK/BATCH has its recordings, docs/proof/BATCH what is published of it."""
 
@@ -111,7 +128,7 @@ class Batch:
     def recordings(self):
         """{path below WORK/BATCH: sha256} of all that is diagnosed."""
         files = sorted(p for p in self.work.glob("set_*/*") if p.is_file())
-        return {str(p.relative_to(self.work)): sha256(p) for p in files}
+        return {str(p.relative_to(self.work)): sha256_anywhere(p) for p in files}
 
     def make(self, seed):
         """The seed goes by a file, so that no list of processes shows it."""
@@ -164,7 +181,9 @@ class Batch:
         (self.work / "seed.txt").unlink(missing_ok=True)
 
     def check_program(self, commit):
-        changed = changed_since(commit) or changed_since(commit, built_from(self.binary))
+        reads = {str(path.relative_to(ROOT)) for path in read_by(self.challenge.resolve()) if ROOT in path.parents}
+        changed = changed_since(commit) + changed_since(commit, built_from(self.binary))
+        changed = [path for path in changed if not path.startswith("configs/") or path in reads]  # what other batches read is free
         if changed:
             raise Failure("%s is for commit %s, and %s differs since; use a clone and a build of that commit, or make fresh sets" %
                           (self.name, commit[:12], changed[0]))

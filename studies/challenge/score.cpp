@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <boost/math/distributions/beta.hpp>
 #include <cmath>
 #include <iterator>
 
@@ -12,7 +11,6 @@ namespace millscope::challenge {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kFewForALine = 3;
 
 bool says_missing(const Found& f) { return f.verdict == "named" || f.verdict == "ambiguous" || f.verdict == "outside_library"; }
 
@@ -114,11 +112,9 @@ void add_recovery(const Marked& m, Score& s) {
 }
 
 Line line_of(const std::vector<Estimated>& estimates) {
-  if (estimates.size() < kFewForALine) return {};
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (const Estimated& d : estimates) n += 1, x += d.truth, y += d.estimate, xx += d.truth * d.truth, xy += d.truth * d.estimate;
-  const double slope = (n * xy - x * y) / (n * xx - x * x);
-  return {slope, (y - slope * x) / n};
+  std::vector<std::pair<double, double>> points;
+  for (const Estimated& e : estimates) points.emplace_back(e.truth, e.estimate);
+  return line_through(points);
 }
 
 /// What is estimated where there is nothing; only of hypotheses whose range the answers tell.
@@ -203,16 +199,6 @@ bool Found::names_physics() const {
     const Tested* tested = find(name);
     return tested == nullptr || tested->physics;
   });
-}
-
-double upper_bound(const Count& c, double confidence) {
-  if (c.hits >= c.of) return 1;
-  return boost::math::quantile(boost::math::beta_distribution<>(c.hits + 1, c.of - c.hits), confidence);
-}
-
-double lower_bound(const Count& c, double confidence) {
-  if (c.hits == 0) return 0;
-  return boost::math::quantile(boost::math::beta_distribution<>(c.hits, c.of - c.hits + 1), 1 - confidence);
 }
 
 std::string label_of(const Answer& a) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "studies/challenge/answer.hpp"
+#include "studies/challenge/statistics.hpp"
 #include "studies/diagnose/naming/naming.hpp"
 
 namespace millscope::challenge {
@@ -68,17 +69,6 @@ std::vector<Marked> read_sets(const std::filesystem::path& sets);
 /// or the same manifest.
 std::vector<Marked> read_all_sets(const std::vector<std::filesystem::path>& folders);
 
-struct Count {
-  int hits = 0, of = 0;
-  void add(bool hit) { hits += hit ? 1 : 0, ++of; }
-  double share() const { return of > 0 ? static_cast<double>(hits) / of : std::numeric_limits<double>::quiet_NaN(); }
-};
-
-/// Clopper & Pearson 1934: the probability below which `of` trials give more than `hits` with the given confidence, and the one above which
-/// they give fewer. One-sided; 0/59 has an upper bound of 5 % at 95 %.
-double upper_bound(const Count& count, double confidence);
-double lower_bound(const Count& count, double confidence);
-
 struct PowerBin {
   double low, high;  ///< of lambda
   Count named;       ///< alone or in a class of two
@@ -88,11 +78,6 @@ struct Estimated {
   std::string set, hypothesis;
   double truth = 0, estimate = 0;  ///< strengths
   bool found = false;              ///< the hypothesis is among those named
-};
-
-/// estimate = intercept + slope · truth, least squares.
-struct Line {
-  double slope = std::numeric_limits<double>::quiet_NaN(), intercept = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct GainCount {

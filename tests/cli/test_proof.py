@@ -13,7 +13,7 @@ SOURCE = Path(__file__).resolve().parents[2]
 
 # Answers hold the seed, so that another seed would show; a diagnosis is what was asked for, set_002 fails where build/fail.txt is.
 PLAYED = r'''#!/usr/bin/env python3
-import hashlib, json, sys, pathlib
+import hashlib, json, os, sys, pathlib
 words = sys.argv[1:]
 if words == ["--version"]:
     print("millscope 0.1.0 (commit %s)" % ((pathlib.Path(__file__).parent / "commit").read_text().strip()))
@@ -23,6 +23,8 @@ if words[:2] == ["challenge", "make"]:
     for name in ("set_001", "set_002"):
         (out / name).mkdir(parents=True)
         (out / name / "r.a").write_text("%s %s" % (name, seed))
+        home = pathlib.Path(words[2]).parent.resolve()
+        (out / name / "study.yaml").write_text('include: ["%s/s.yaml"]\n' % os.path.relpath(home, out / name))
         (out / "answers").mkdir(exist_ok=True)
         (out / "answers" / (name + ".json")).write_text(json.dumps({"seed": seed, "set": name}))
     sets = [{"set": n, "answer_hash": hashlib.sha256((out / "answers" / (n + ".json")).read_bytes()).hexdigest()} for n in ("set_001", "set_002")]
@@ -86,7 +88,7 @@ class Proof(unittest.TestCase):
     def test_a_batch_is_published_diagnosed_opened_and_scored_in_this_order(self):
         self.assertEqual(self.proof("part_1", "--until", "publish"), (0, ""))
         frozen = json.loads(self.public("frozen.json").read_text())
-        self.assertEqual(sorted(frozen["recordings_sha256"]), ["set_001/r.a", "set_002/r.a"])
+        self.assertEqual(sorted(frozen["recordings_sha256"]), ["set_001/r.a", "set_001/study.yaml", "set_002/r.a", "set_002/study.yaml"])
         self.assertFalse(self.public("answers").exists())
         self.assertIn("commit docs/proof/part_1 first", self.proof("part_1")[1])
         self.assertFalse(self.public("set_001").exists())
@@ -106,9 +108,17 @@ class Proof(unittest.TestCase):
         self.proof("part_1", "--until", "publish")
         self.commit()
         shutil.rmtree(self.root / "build/release/proof")
-        self.assertEqual(self.proof("part_1", "--until", "diagnose")[0], 0)
+        elsewhere = self.root / "build/a/deeper"
+        shutil.move(self.root / "build/release", elsewhere)
+        self.assertEqual(self.proof("part_1", "--until", "diagnose", "--build", str(elsewhere))[:2], (0, ""))
         self.assertTrue(self.public("set_002/diagnosis/diagnosis.json").exists())
-        self.assertEqual(self.public("manifest.json").read_bytes(), (self.root / "build/release/proof/part_1/manifest.json").read_bytes())
+        self.assertEqual(self.public("manifest.json").read_bytes(), (elsewhere / "proof/part_1/manifest.json").read_bytes())
+
+    def test_a_study_that_was_changed_is_refused(self):
+        self.proof("part_1", "--until", "publish")
+        self.commit()
+        (self.root / "build/release/proof/part_1/set_001/study.yaml").write_text('include: ["../other.yaml"]\n')
+        self.assertIn("not those that were published", self.proof("part_1")[1])
 
     def test_recordings_that_were_changed_are_refused(self):
         self.proof("part_1", "--until", "publish")
@@ -124,6 +134,18 @@ class Proof(unittest.TestCase):
         self.commit()
         self.assertIn("kernel/a.cpp differs since", self.proof("part_1")[1])
         self.assertFalse(self.public("set_001").exists())
+
+    def test_a_case_that_only_others_read_may_change(self):
+        (self.root / "configs/proof/s.yaml").write_text("base: ../mill.yaml\n")
+        (self.root / "configs/mill.yaml").write_text("beads: 1\n")
+        self.commit()
+        self.proof("part_1", "--until", "publish")
+        self.commit()
+        (self.root / "configs/other.yaml").write_text("beads: 2\n")
+        self.assertEqual(self.proof("part_1", "--until", "diagnose")[:2], (0, ""))
+        shutil.rmtree(self.root / "docs/proof/part_1/set_001")
+        (self.root / "configs/mill.yaml").write_text("beads: 2\n")
+        self.assertIn("configs/mill.yaml differs since", self.proof("part_1")[1])
 
     def test_an_older_build_diagnoses_nothing(self):
         old = (self.program.parent / "commit").read_text()

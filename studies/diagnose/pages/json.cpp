@@ -201,6 +201,7 @@ Json diagnosis_json(const Told& t) {
           {"named", d.named},
           {"named_together", d.two_effects},
           {"next_experiment", d.next_experiment},
+          {"level", d.question.level},
           {"base", {{"p_value", d.naming.base_p}, {"q", d.naming.base.q}, {"observables", d.problem.observed.size()}}},
           {"hypotheses", hypotheses(t)},
           {"two_effects", pairs},

@@ -1,0 +1,116 @@
+#include "studies/challenge/statistics.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/beta.hpp>
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <tuple>
+
+namespace millscope::challenge {
+namespace {
+
+constexpr std::size_t kFewForALine = 3, kFewForItsInterval = 6;
+constexpr int kDraws = 4000;
+constexpr double kPowerThatTells = 0.8;
+
+double normal_quantile(double p) { return boost::math::quantile(boost::math::normal_distribution<>(), p); }
+
+double threshold(double level, std::size_t alternatives) {
+  return normal_quantile(1 - level / static_cast<double>(std::max<std::size_t>(alternatives, 1)));
+}
+
+/// Slope and intercept alone.
+std::pair<double, double> least_squares(const std::vector<std::pair<double, double>>& points) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (const auto& [a, b] : points) n += 1, x += a, y += b, xx += a * a, xy += a * b;
+  const double slope = (n * xy - x * y) / (n * xx - x * x);
+  return {slope, (y - slope * x) / n};
+}
+
+/// Element i of n evenly drawn ones; a standard engine with our own reduction, so that every library draws the same.
+std::size_t drawn(std::mt19937_64& random, std::size_t n) { return random() % n; }
+
+}  // namespace
+
+double upper_bound(const Count& c, double confidence) {
+  if (c.hits >= c.of) return 1;
+  return boost::math::quantile(boost::math::beta_distribution<>(c.hits + 1, c.of - c.hits), confidence);
+}
+
+double lower_bound(const Count& c, double confidence) {
+  if (c.hits == 0) return 0;
+  return boost::math::quantile(boost::math::beta_distribution<>(c.hits, c.of - c.hits + 1), 1 - confidence);
+}
+
+double binomial_p(const Count& c, double share) {
+  const boost::math::binomial_distribution<> counts(c.of, share);
+  const double here = boost::math::pdf(counts, c.hits) * (1 + 1e-9);  // counts that are as likely differ in the last bits
+  double p = 0;
+  for (int k = 0; k <= c.of; ++k) {
+    const double likely = boost::math::pdf(counts, k);
+    if (likely <= here) p += likely;
+  }
+  return std::min(1.0, p);
+}
+
+std::vector<double> holm(const std::vector<double>& p) {
+  std::vector<std::size_t> order(p.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
+  std::vector<double> out(p.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    largest = std::max(largest, std::min(1.0, static_cast<double>(p.size() - i) * p[order[i]]));
+    out[order[i]] = largest;
+  }
+  return out;
+}
+
+double uniform_p(std::vector<double> numbers) {
+  if (numbers.empty()) return 1;
+  std::sort(numbers.begin(), numbers.end());
+  const auto n = static_cast<double>(numbers.size());
+  double distance = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto before = static_cast<double>(i) / n;
+    distance = std::max({distance, numbers[i] - before, before + 1 / n - numbers[i]});
+  }
+  const double scaled = distance * (std::sqrt(n) + 0.12 + 0.11 / std::sqrt(n));
+  if (scaled < 0.3) return 1;  // the series alternates slowly there, and is 1 to nine digits
+  double p = 0;
+  for (int k = 1; k <= 100; ++k) p += (k % 2 == 1 ? 2 : -2) * std::exp(-2.0 * k * k * scaled * scaled);
+  return std::clamp(p, 0.0, 1.0);
+}
+
+double ideal_power(double lambda, double level, std::size_t alternatives) {
+  return boost::math::cdf(boost::math::normal_distribution<>(), std::sqrt(lambda) - threshold(level, alternatives));
+}
+
+double telling_lambda(double level, std::size_t alternatives) {
+  const double root = threshold(level, alternatives) + normal_quantile(kPowerThatTells);
+  return root * root;
+}
+
+Line line_through(const std::vector<std::pair<double, double>>& points) {
+  Line line;
+  if (points.size() < kFewForALine) return line;
+  std::tie(line.slope, line.intercept) = least_squares(points);
+  if (points.size() < kFewForItsInterval) return line;
+  std::mt19937_64 random(1);
+  std::vector<double> slopes;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    std::vector<std::pair<double, double>> again;
+    for (std::size_t i = 0; i < points.size(); ++i) again.push_back(points[drawn(random, points.size())]);
+    const double slope = least_squares(again).first;
+    if (std::isfinite(slope)) slopes.push_back(slope);  // else one point alone was drawn
+  }
+  std::sort(slopes.begin(), slopes.end());
+  line.slope_low = slopes[slopes.size() / 40];
+  line.slope_high = slopes[slopes.size() - 1 - slopes.size() / 40];
+  return line;
+}
+
+}  // namespace millscope::challenge
