@@ -5,12 +5,15 @@
 #include <cmath>
 #include <iterator>
 
+#include "studies/challenge/concealment.hpp"
+
 namespace millscope::challenge {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 constexpr double kSure = 0.95;  // of every one-sided bound
+constexpr double kStrong = 30;  // λ
 
 template <class... Values>
 void add(std::string& out, fmt::format_string<Values...> text, Values&&... values) {
@@ -28,6 +31,7 @@ void add_counts(const Score& s, std::string& out) {
   out += "| of the sets with … | counted | the others |\n|---|---|---|\n";
   line("nothing hidden: something is said to be missing (false alarm)", s.false_alarms);
   line("nothing hidden: a name is given", s.false_names);
+  line("nothing hidden: physics is named or listed", s.false_physics);
   line("one effect: named alone, and rightly", s.named_alone);
   line("one effect: the best candidate is the truth (top-1)", s.best_right);
   line("one effect: the truth is among those named", s.in_class);
@@ -44,6 +48,26 @@ void add_counts(const Score& s, std::string& out) {
     add(out, "\nWhere one effect is hidden and something is named, {:.2f} candidates are named in the mean.\n", s.mean_class);
 }
 
+/// The counts that matter most, by who played which mill; nothing where all is one.
+void add_groups(const Page& page, std::string& out) {
+  const std::vector<Group> groups = groups_of(page.sets);
+  if (groups.size() < 2) return;
+  out +=
+      "| played by | sets of | nothing hidden: physics named | one effect, λ ≥ 30: named, alone or in a class of two | two: both named | "
+      "outside: said so | decoy: physics named |\n|---|---|---|---|---|---|---|\n";
+  const auto brief = [](const Count& c) { return c.of == 0 ? std::string() : fmt::format("{} of {}", c.hits, c.of); };
+  for (const Group& g : groups) {
+    const Score s = score(g.sets);
+    Count strong;
+    for (const PowerBin& b : s.power) {
+      if (b.low >= kStrong) strong.hits += b.named.hits, strong.of += b.named.of;
+    }
+    add(out, "| {} | {} | {} | {} | {} | {} | {} |\n", g.engine, g.folders, brief(s.false_physics), brief(strong), brief(s.two_both),
+        brief(s.outside_abstained), brief(s.decoys_named));
+  }
+  out += "\n";
+}
+
 std::string manifests_text(const Page& page) {
   if (page.manifests.size() == 1) return fmt::format("the manifest's own is `{}`", page.manifests[0].second);
   std::string list;
@@ -51,13 +75,30 @@ std::string manifests_text(const Page& page) {
   return "the manifests' own are " + list;
 }
 
+Json line_json(const Line& l) {
+  return {{"intercept", l.intercept}, {"slope", l.slope}, {"slope_low95", l.slope_low}, {"slope_high95", l.slope_high}};
+}
+
+Json concealment_json(const Marked& m, const std::map<std::string, Unsuspicious>& limits) {
+  if (!m.concealment) return {};
+  const Concealment& c = *m.concealment;
+  return {{"power_percent", c.power_percent},
+          {"shoulder_deg", c.shoulder_deg},
+          {"toe_deg", c.toe_deg},
+          {"chagas2015", c.chagas},
+          {"unsuspicious", limits.at(m.study).holds(c)}};
+}
+
 Json sets_json(const Page& page) {
+  const std::map<std::string, Unsuspicious> limits = unsuspicious(page.sets);
   Json out = Json::array();
   for (const Marked& m : page.sets) {
     out.push_back({{"set", m.answer.set},
                    {"truth", label_of(m.answer)},
                    {"diagnosis", m.found ? Json(label_of(*m.found)) : Json()},
-                   {"failure", m.found && !m.found->failure.empty() ? Json(m.found->failure) : Json()}});
+                   {"failure", m.found && !m.found->failure.empty() ? Json(m.found->failure) : Json()},
+                   {"missed", m.found ? Json(m.missed()) : Json()},
+                   {"concealment", concealment_json(m, limits)}});
   }
   return out;
 }
@@ -77,9 +118,15 @@ std::string page_text(const Page& page) {
   add(out,
       "{} sets, {} diagnosed, {} of which failed; {} still to be diagnosed. Every answer has the hash that its manifest gives it; {}.\n\n",
       s.sets, s.diagnosed, s.failed, s.sets - s.diagnosed, manifests_text(page));
-  if (s.false_alarms.of > 0)
-    add(out, "**False alarms: {} of {}; with 95 % confidence the rate is below {:.1f} %.**\n\n", s.false_alarms.hits, s.false_alarms.of,
-        100 * upper_bound(s.false_alarms, kSure));
+  if (s.false_physics.of > 0)
+    add(out,
+        "**Physics named or listed where nothing is hidden: {} of {}; with 95 % confidence the rate is below {:.1f} %.** Something said to "
+        "be "
+        "missing there: {}. The p-values of these sets should lie evenly between 0 and 1; so unevenly they lie by chance with p = {:.2g} "
+        "(Kolmogorov–Smirnov).\n\n",
+        s.false_physics.hits, s.false_physics.of, 100 * upper_bound(s.false_physics, kSure), count_text(s.false_alarms),
+        uniform_p(s.empty_p));
+  add_groups(page, out);
   add_counts(s, out);
   out +=
       "\nIntervals behind counts are of Clopper and Pearson (1934), 5 % on each side. A diagnosis that failed counts as a miss; where "
@@ -89,9 +136,20 @@ std::string page_text(const Page& page) {
 
 Json score_json(const Page& page) {
   const Score& s = page.score;
-  Json theta = Json::object(), power = Json::array(), estimates = Json::array(), recovery = Json::array(), gains = Json::array();
-  for (const auto& [name, count] : s.theta) theta[name] = count_json(count);
-  for (const PowerBin& b : s.power) power.push_back({{"lambda_from", b.low}, {"lambda_to", b.high}, {"named", count_json(b.named)}});
+  Json strength = count_json({}), theta = Json::object(), lines = Json::object(), power = Json::array(), estimates = Json::array(),
+       recovery = Json::array(), gains = Json::array();
+  for (const Coverage& c : s.coverage) {
+    Json& row = c.of == kStrengthRow ? strength : theta[c.of];
+    row = count_json(c.inside);
+    row["p_holm"] = c.p;
+  }
+  for (const auto& [hypothesis, l] : s.lines) lines[hypothesis] = line_json(l);
+  for (const PowerBin& b : s.power)
+    power.push_back({{"lambda_from", b.low},
+                     {"lambda_to", b.high},
+                     {"named", count_json(b.named)},
+                     {"concealed", count_json(b.concealed)},
+                     {"ideal", b.ideal}});
   for (const Estimated& d : s.estimates)
     estimates.push_back({{"set", d.set}, {"hypothesis", d.hypothesis}, {"truth", d.truth}, {"estimate", d.estimate}, {"named", d.found}});
   for (const Recovery& r : s.recovery)
@@ -106,6 +164,8 @@ Json score_json(const Page& page) {
           {"failed", s.failed},
           {"false_alarms", count_json(s.false_alarms)},
           {"false_names", count_json(s.false_names)},
+          {"false_physics", count_json(s.false_physics)},
+          {"p_values_of_empty_sets", {{"values", s.empty_p}, {"uniform_p", uniform_p(s.empty_p)}}},
           {"named_alone", count_json(s.named_alone)},
           {"top_1", count_json(s.best_right)},
           {"in_class", count_json(s.in_class)},
@@ -119,12 +179,20 @@ Json score_json(const Page& page) {
           {"outside_missed", count_json(s.outside_missed)},
           {"decoys_named", count_json(s.decoys_named)},
           {"decoys_outside", count_json(s.decoys_outside)},
-          {"strength_coverage", count_json(s.strength)},
+          {"strength_coverage", strength},
           {"parameter_coverage", theta},
           {"power", power},
-          {"strengths", {{"slope", s.line.slope}, {"intercept", s.line.intercept}, {"estimates", estimates}, {"at_zero", s.at_zero}}},
+          {"strengths",
+           {{"slope", s.line.slope},
+            {"intercept", s.line.intercept},
+            {"slope_low95", s.line.slope_low},
+            {"slope_high95", s.line.slope_high},
+            {"by_hypothesis", lines},
+            {"estimates", estimates},
+            {"at_zero", s.at_zero}}},
           {"recovery", recovery},
           {"held_out", gains},
+          {"held_out_better_than_every_rival", count_json(s.improves)},
           {"confusion", {{"truths", s.truths}, {"diagnoses", s.answers}, {"counts", s.confusion}}},
           {"every_set", sets_json(page)}};
 }

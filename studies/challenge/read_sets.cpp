@@ -1,7 +1,12 @@
 // Diagnoses as `run` left them.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <set>
+#include <sstream>
+#include <string_view>
 
 #include "kernel/base/text.hpp"
 #include "kernel/output/directory.hpp"
@@ -13,6 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kEngine = "run.engine=";  // the setting
 
 /// A number that was not finite is null in the file.
 double number(const Json& j) { return j.is_number() ? j.get<double>() : std::numeric_limits<double>::quiet_NaN(); }
@@ -48,6 +55,14 @@ std::map<std::string, double> practice_from(const Json& held_out) {
   return out;
 }
 
+std::optional<bool> improves_from(const Json& held_out) {
+  std::optional<bool> out;
+  for (const Json& h : held_out) {
+    if (h.value("simulations", 0) > 0) out = out.value_or(true) && h.value("improves_on_every_rival", false);
+  }
+  return out;
+}
+
 Found found_from(const Json& j) {
   Found f;
   f.verdict = j.at("verdict");
@@ -62,12 +77,63 @@ Found found_from(const Json& j) {
   }
   f.retuned = parameters(j.at("contact_parameters"), "retuned");
   f.unmasked = parameters(j.at("contact_parameters"), "unmasked");
+  f.level = j.value("level", f.level);
+  if (j.contains("base")) f.base_p = number(j.at("base").at("p_value"));
   f.gains = gains_from(j.at("held_out"));
+  f.improves = improves_from(j.at("held_out"));
   f.practice = practice_from(j.at("held_out"));
   return f;
 }
 
 }  // namespace
+
+std::string Marked::engine() const {
+  if (answer.made.empty()) return "";
+  for (const auto& setting : answer.made.begin().value().value("settings", nlohmann::ordered_json::array())) {
+    const std::string text = setting;
+    if (text.starts_with(kEngine)) return text.substr(kEngine.size());
+  }
+  return "millscope";
+}
+
+std::string Marked::folder() const {
+  const std::size_t slash = answer.set.find('/');
+  return slash == std::string::npos ? "" : answer.set.substr(0, slash);
+}
+
+std::optional<double> Marked::lambda(const TrueEffect& e) const {
+  const Tested* tested = found ? found->find(e.hypothesis) : nullptr;
+  return tested == nullptr ? std::nullopt : std::optional<double>(tested->lambda(e.strength));
+}
+
+double Tested::lambda(double strength) const {
+  const auto after = std::find_if(lambda_curve.begin(), lambda_curve.end(), [&](const auto& point) { return point.first >= strength; });
+  if (after == lambda_curve.end()) return lambda_curve.empty() ? 0 : lambda_curve.back().second;
+  if (after == lambda_curve.begin()) return after->second;
+  const auto before = std::prev(after);
+  const double part = (strength - before->first) / (after->first - before->first);
+  const double root = (1 - part) * std::sqrt(before->second) + part * std::sqrt(after->second);
+  return root * root;
+}
+
+const Tested* Found::find(const std::string& name) const {
+  const auto found = std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Tested& t) { return t.name == name; });
+  return found == hypotheses.end() ? nullptr : &*found;
+}
+
+const Tested* Found::best() const {
+  const auto found = std::find_if(hypotheses.begin(), hypotheses.end(), [](const Tested& t) { return t.class_of == "best"; });
+  return found == hypotheses.end() ? nullptr : &*found;
+}
+
+bool Found::names(const std::string& name) const { return std::find(named.begin(), named.end(), name) != named.end(); }
+
+bool Found::names_physics() const {
+  return std::any_of(named.begin(), named.end(), [&](const std::string& name) {
+    const Tested* tested = find(name);
+    return tested == nullptr || tested->physics;
+  });
+}
 
 std::optional<Found> read_found(const fs::path& set) {
   const fs::path file = set / "diagnosis" / "diagnosis.json", failed = set / "diagnosis" / "failed.txt";
@@ -102,8 +168,26 @@ std::map<std::string, Concealment> read_concealment(const fs::path& sets) {
   return out;
 }
 
+/// Sentences of whoever looked into sets: lines of "set_001: why".
+std::map<std::string, std::string> read_remarks(const fs::path& file) {
+  std::map<std::string, std::string> out;
+  if (!fs::exists(file)) return out;
+  std::istringstream lines(base::text_of(file));
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    const std::size_t colon = line.find(": ");
+    if (line.empty()) continue;
+    if (colon == std::string::npos)
+      throw base::UserError(fmt::format("{}:{}: '{}' is no remark; write set_001: and a sentence", file.string(), number, line));
+    out[line.substr(0, colon)] = line.substr(colon + 2);
+  }
+  return out;
+}
+
 std::vector<Marked> read_sets(const fs::path& sets) {
   std::vector<Marked> out;
+  std::map<std::string, std::string> remarks = read_remarks(sets / kRemarksFile);
   const std::string study = study_hash(sets);
   const std::map<std::string, Concealment> concealment = read_concealment(sets);
   for (Answer& a : open_answers(sets)) {
@@ -111,7 +195,11 @@ std::vector<Marked> read_sets(const fs::path& sets) {
     const auto long_runs = concealment.find(a.set);
     out.push_back({std::move(a), std::move(found), {}, study});
     if (long_runs != concealment.end()) out.back().concealment = long_runs->second;
+    if (auto remark = remarks.extract(out.back().answer.set)) out.back().remark = std::move(remark.mapped());
   }
+  if (!remarks.empty())
+    throw base::UserError(fmt::format("{}: speaks of '{}', which is no set of this folder; known are set_001 to set_{:03}",
+                                      (sets / kRemarksFile).string(), remarks.begin()->first, out.size()));
   return out;
 }
 

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+
+#include "studies/challenge/concealment.hpp"
 
 namespace millscope::challenge {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kCovered = 0.9;  // of the intervals
 
 bool says_missing(const Found& f) { return f.verdict == "named" || f.verdict == "ambiguous" || f.verdict == "outside_library"; }
 
@@ -26,6 +28,15 @@ void score_none(const Marked& m, Score& s) {
   if (!m.found->failure.empty()) return;
   s.false_alarms.add(says_missing(*m.found));
   s.false_names.add(!m.found->named.empty());
+  s.false_physics.add(m.found->names_physics());
+  if (std::isfinite(m.found->base_p)) s.empty_p.push_back(m.found->base_p);
+}
+
+/// Named, alone or in a class of two; of two effects, both.
+bool in_small_class(const Marked& m) {
+  const std::vector<TrueEffect>& effects = m.answer.effects;
+  return m.found->named.size() <= 2 &&
+         std::all_of(effects.begin(), effects.end(), [&](const auto& e) { return m.found->names(e.hypothesis); });
 }
 
 /// Returns the size of the class that was named; 0: none.
@@ -36,7 +47,7 @@ std::size_t score_effect(const Marked& m, Score& s) {
   s.named_alone.add(f.verdict == "named" && named && f.named.size() == 1);
   s.best_right.add(best_is(f, truth));
   s.in_class.add(named);
-  s.in_class_of_two.add(named && f.named.size() <= 2);
+  s.in_class_of_two.add(in_small_class(m));
   s.abstained_on_effect.add(f.verdict == "outside_library");
   return f.named.size();
 }
@@ -59,15 +70,29 @@ void score_decoy(const Found& f, Score& s) {
   s.decoys_outside.add(f.verdict == "outside_library");
 }
 
-void add_power(const Marked& m, Score& s) {
+void add_power(const Marked& m, const std::map<std::string, Unsuspicious>& limits, Score& s) {
   for (const TrueEffect& e : m.answer.effects) {
-    const Tested* tested = m.found->find(e.hypothesis);
-    if (tested == nullptr) continue;
-    const double lambda = tested->lambda(e.strength);
-    for (PowerBin& bin : s.power) {
-      if (lambda >= bin.low && lambda < bin.high) bin.named.add(m.found->names(e.hypothesis) && m.found->named.size() <= 2);
-    }
+    const std::optional<double> lambda = m.lambda(e);
+    if (!lambda) continue;
+    const auto bin = std::find_if(s.power.begin(), s.power.end(), [&](const PowerBin& b) { return *lambda >= b.low && *lambda < b.high; });
+    const bool named = m.found->names(e.hypothesis) && m.found->named.size() <= 2;
+    bin->named.add(named);
+    if (m.concealment && limits.at(m.study).holds(*m.concealment)) bin->concealed.add(named);
+    bin->ideal += (ideal_power(*lambda, m.found->level, m.found->hypotheses.size()) - bin->ideal) / bin->named.of;
   }
+}
+
+/// The row of a quantity; made where there is none yet.
+Count& covered(Score& s, const std::string& of) {
+  const auto row = std::find_if(s.coverage.begin(), s.coverage.end(), [&](const Coverage& c) { return c.of == of; });
+  return row != s.coverage.end() ? row->inside : s.coverage.emplace_back(Coverage{of, {}}).inside;
+}
+
+void judge_coverage(Score& s) {
+  std::vector<double> p;
+  for (const Coverage& c : s.coverage) p.push_back(binomial_p(c.inside, kCovered));
+  p = holm(p);
+  for (std::size_t i = 0; i < p.size(); ++i) s.coverage[i].p = p[i];
 }
 
 void add_estimate(const Marked& m, Score& s) {
@@ -76,7 +101,7 @@ void add_estimate(const Marked& m, Score& s) {
   const Tested* tested = m.found->find(e.hypothesis);
   if (tested == nullptr || !tested->strength) return;
   s.estimates.push_back({m.answer.set, e.hypothesis, e.strength, strength_of(e, tested->strength->value), m.found->names(e.hypothesis)});
-  if (tested->strength->known()) s.strength.add(tested->strength->holds(e.value));
+  if (tested->strength->known()) covered(s, kStrengthRow).add(tested->strength->holds(e.value));
 }
 
 /// The model that is right for the set: the base where nothing is hidden, the best candidate where that is the truth.
@@ -92,9 +117,7 @@ void add_theta(const Marked& m, Score& s) {
   for (const auto& [name, truth] : m.answer.theta) {
     const auto interval = parameters->find(name);
     if (interval == parameters->end() || !interval->second.known()) continue;
-    auto counted = std::find_if(s.theta.begin(), s.theta.end(), [&, &n = name](const auto& t) { return t.first == n; });
-    if (counted == s.theta.end()) counted = s.theta.insert(s.theta.end(), {name, {}});
-    counted->second.add(interval->second.holds(truth));
+    covered(s, name).add(interval->second.holds(truth));
   }
 }
 
@@ -111,10 +134,13 @@ void add_recovery(const Marked& m, Score& s) {
   }
 }
 
-Line line_of(const std::vector<Estimated>& estimates) {
-  std::vector<std::pair<double, double>> points;
-  for (const Estimated& e : estimates) points.emplace_back(e.truth, e.estimate);
-  return line_through(points);
+/// Of all hypotheses, and of each.
+void add_lines(Score& s) {
+  std::vector<std::pair<double, double>> all;
+  std::map<std::string, std::vector<std::pair<double, double>>> each;
+  for (const Estimated& e : s.estimates) all.emplace_back(e.truth, e.estimate), each[e.hypothesis].push_back(all.back());
+  s.line = line_through(all);
+  for (const auto& [hypothesis, points] : each) s.lines.emplace_back(hypothesis, line_through(points));
 }
 
 /// What is estimated where there is nothing; only of hypotheses whose range the answers tell.
@@ -172,33 +198,33 @@ void add_confusion(const std::vector<Marked>& sets, Score& s) {
 
 }  // namespace
 
-double Tested::lambda(double strength) const {
-  const auto after = std::find_if(lambda_curve.begin(), lambda_curve.end(), [&](const auto& point) { return point.first >= strength; });
-  if (after == lambda_curve.end()) return lambda_curve.empty() ? 0 : lambda_curve.back().second;
-  if (after == lambda_curve.begin()) return after->second;
-  const auto before = std::prev(after);
-  const double part = (strength - before->first) / (after->first - before->first);
-  const double root = (1 - part) * std::sqrt(before->second) + part * std::sqrt(after->second);
-  return root * root;
+bool Marked::missed() const {
+  const Found& f = *found;
+  if (!f.failure.empty()) return true;
+  switch (answer.kind) {
+    case Kind::none:
+      return says_missing(f);
+    case Kind::outside:
+      return f.verdict != "outside_library";
+    case Kind::decoy:
+      return f.names_physics() || f.verdict == "outside_library";
+    default:
+      return !in_small_class(*this);
+  }
 }
 
-const Tested* Found::find(const std::string& name) const {
-  const auto found = std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Tested& t) { return t.name == name; });
-  return found == hypotheses.end() ? nullptr : &*found;
-}
-
-const Tested* Found::best() const {
-  const auto found = std::find_if(hypotheses.begin(), hypotheses.end(), [](const Tested& t) { return t.class_of == "best"; });
-  return found == hypotheses.end() ? nullptr : &*found;
-}
-
-bool Found::names(const std::string& name) const { return std::find(named.begin(), named.end(), name) != named.end(); }
-
-bool Found::names_physics() const {
-  return std::any_of(named.begin(), named.end(), [&](const std::string& name) {
-    const Tested* tested = find(name);
-    return tested == nullptr || tested->physics;
-  });
+std::vector<Group> groups_of(const std::vector<Marked>& sets) {
+  std::map<std::pair<std::string, std::string>, Group> groups;
+  for (const Marked& m : sets) {
+    Group& g = groups[{m.study, m.engine()}];
+    g.engine = m.engine();
+    const std::string folder = m.folder();
+    if (g.sets.empty() || g.sets.back().folder() != folder) g.folders += (g.folders.empty() ? "" : ", ") + folder;
+    g.sets.push_back(m);
+  }
+  std::vector<Group> out;
+  for (auto& [key, group] : groups) out.push_back(std::move(group));
+  return out;
 }
 
 std::string label_of(const Answer& a) {
@@ -216,7 +242,8 @@ std::string label_of(const Found& f) {
 
 Score score(const std::vector<Marked>& sets) {
   Score s;
-  s.power = {{0, 3, {}}, {3, 10, {}}, {10, 30, {}}, {30, 100, {}}, {100, kInfinity, {}}};
+  s.power = {{0, 3}, {3, 10}, {10, 30}, {30, 100}, {100, kInfinity}};
+  const std::map<std::string, Unsuspicious> limits = unsuspicious(sets);
   double class_sum = 0;
   int classes = 0;
   for (const Marked& m : sets) {
@@ -233,13 +260,15 @@ Score score(const std::vector<Marked>& sets) {
       class_sum += static_cast<double>(size);
       classes += size > 0 ? 1 : 0;
     }
-    add_power(m, s);
+    if (!m.answer.effects.empty() && !m.found->named.empty() && m.found->improves) s.improves.add(*m.found->improves);
+    add_power(m, limits, s);
     add_estimate(m, s);
     add_theta(m, s);
     add_recovery(m, s);
   }
   if (classes > 0) s.mean_class = class_sum / classes;
-  s.line = line_of(s.estimates);
+  add_lines(s);
+  judge_coverage(s);
   add_at_zero(sets, s);
   add_gains(sets, s);
   add_confusion(sets, s);

@@ -35,10 +35,13 @@ struct Gain {
 struct Found {
   std::string failure;  ///< why there is none; else ""
   std::string verdict;
+  double level = 0.05;                                       ///< for all candidates together
+  double base_p = std::numeric_limits<double>::quiet_NaN();  ///< that the base looks like the recordings
   std::vector<std::string> named;
   std::vector<Tested> hypotheses;
   std::map<std::string, base::Interval90> retuned, unmasked;  ///< contact parameters and nuisances
   std::vector<Gain> gains;
+  std::optional<bool> improves;            ///< on every rival, in all held-out conditions; nothing: none was simulated
   std::map<std::string, double> practice;  ///< parameters of the base that was retuned to power
 
   const Tested* find(const std::string& name) const;
@@ -58,8 +61,18 @@ struct Marked {
   Answer answer;
   std::optional<Found> found;
   std::optional<Concealment> concealment = {};
-  std::string study = {};  ///< hash of the study that was put to the test
+  std::string study = {};   ///< hash of the study that was put to the test
+  std::string remark = {};  ///< of whoever looked into it
+
+  std::string engine() const;  ///< that played the mills
+  std::string folder() const;  ///< of FOLDER/set_001; else ""
+  /// λ at an effect's strength, by the diagnosis' surrogate; nothing where it is not known.
+  std::optional<double> lambda(const TrueEffect& effect) const;
+  /// The diagnosis is not what a user needs: an alarm for nothing, an effect that is not in a class of two, …
+  bool missed() const;
 };
+
+inline constexpr const char* kRemarksFile = "remarks.txt";  ///< lines of "set_001: why"
 
 /// Reads what `run` left of a set.
 std::optional<Found> read_found(const std::filesystem::path& set);
@@ -70,14 +83,25 @@ std::vector<Marked> read_sets(const std::filesystem::path& sets);
 std::vector<Marked> read_all_sets(const std::vector<std::filesystem::path>& folders);
 
 struct PowerBin {
-  double low, high;  ///< of lambda
-  Count named;       ///< alone or in a class of two
+  double low, high;      ///< of lambda
+  Count named = {};      ///< alone or in a class of two
+  Count concealed = {};  ///< of these, the ones that practice would not suspect
+  double ideal = 0;      ///< mean of ideal_power
 };
 
 struct Estimated {
   std::string set, hypothesis;
   double truth = 0, estimate = 0;  ///< strengths
   bool found = false;              ///< the hypothesis is among those named
+};
+
+inline constexpr const char* kStrengthRow = "the hidden strength";
+
+/// The 90 % intervals of one quantity.
+struct Coverage {
+  std::string of;
+  Count inside;
+  double p = 1;  ///< that 90 % gives such a count, for all quantities together (Holm)
 };
 
 struct GainCount {
@@ -95,11 +119,13 @@ struct Recovery {
 struct Score {
   int sets = 0, diagnosed = 0, failed = 0;
 
-  Count false_alarms;  ///< sets with nothing hidden for which something is said to be missing
-  Count false_names;   ///< and that are given a name
-  Count named_alone;   ///< one effect: the verdict is `named` and right
-  Count best_right;    ///< the best candidate is the truth
-  Count in_class;      ///< the truth is among those named
+  Count false_alarms;           ///< sets with nothing hidden for which something is said to be missing
+  Count false_names;            ///< and that are given a name
+  Count false_physics;          ///< which is that of physics
+  std::vector<double> empty_p;  ///< base_p of the sets with nothing hidden
+  Count named_alone;            ///< one effect: the verdict is `named` and right
+  Count best_right;             ///< the best candidate is the truth
+  Count in_class;               ///< the truth is among those named
   Count in_class_of_two;
   double mean_class = std::numeric_limits<double>::quiet_NaN();  ///< of the sets with one effect that name something
   Count abstained_on_effect;                                     ///< outside_library, though the truth is in the list
@@ -107,12 +133,13 @@ struct Score {
   Count outside_abstained, outside_named, outside_missed;
   Count decoys_named, decoys_outside;  ///< decoys in which physics is named, or said to lie outside: wrong
 
-  Count strength;                                    ///< truth in the 90 % interval
-  std::vector<std::pair<std::string, Count>> theta;  ///< the same, by parameter
+  std::vector<Coverage> coverage;  ///< of strengths, then by parameter
+  Count improves;                  ///< sets with effects that name something: held out, surely better than every rival
   std::vector<PowerBin> power;
   std::vector<Estimated> estimates;
   Line line;
-  std::vector<double> at_zero;  ///< estimated strengths of hypotheses in sets that hide nothing
+  std::vector<std::pair<std::string, Line>> lines;  ///< by hypothesis
+  std::vector<double> at_zero;                      ///< estimated strengths of hypotheses in sets that hide nothing
   std::vector<Recovery> recovery;
   std::vector<GainCount> gains;
 
@@ -121,6 +148,13 @@ struct Score {
 };
 
 Score score(const std::vector<Marked>& sets);
+
+/// Sets of one mill that one engine played.
+struct Group {
+  std::string engine, folders;
+  std::vector<Marked> sets;
+};
+std::vector<Group> groups_of(const std::vector<Marked>& sets);
 
 /// "none", "rolling_resistance", "a + b", "outside: x", "decoy: x".
 std::string label_of(const Answer& answer);

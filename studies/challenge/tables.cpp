@@ -12,18 +12,60 @@
 namespace millscope::challenge {
 namespace {
 
+constexpr double kMuchLonger = 100;
+
 template <class... Values>
 void append(std::string& out, fmt::format_string<Values...> text, Values&&... values) {
   fmt::format_to(std::back_inserter(out), text, std::forward<Values>(values)...);
 }
 
+/// λ of the effects, each at its strength; "" where the diagnosis does not tell it.
+std::string lambdas(const Marked& m) {
+  std::string out;
+  for (const TrueEffect& e : m.answer.effects) {
+    const std::optional<double> lambda = m.lambda(e);
+    if (lambda) append(out, "{}{:.0f}", out.empty() ? "" : ", ", *lambda);
+  }
+  return out;
+}
+
+/// By how much a recording would have to be longer for four of five to tell the faintest effect; "" where this one is long enough.
+std::string longer(const Marked& m) {
+  double most = 1;
+  for (const TrueEffect& e : m.answer.effects) {
+    const std::optional<double> lambda = m.lambda(e);
+    if (lambda) most = std::max(most, telling_lambda(m.found->level, m.found->hypotheses.size()) / *lambda);
+  }
+  if (most <= 1) return "";
+  return most < kMuchLonger ? fmt::format("{:.2g} ×", most) : fmt::format("over {:g} ×", kMuchLonger);
+}
+
 void every_set(const Page& page, std::string& out) {
-  out += "## Every set\n\n| set | hidden | strength (1: the far end of the prior range) | diagnosis |\n|---|---|---|---|\n";
+  out +=
+      "## Every set\n\nλ as below. *Longer*: at least so many times this recording tells the effect in four sets of five; the error of the "
+      "simulations does not shrink with it.\n\n"
+      "| set | hidden | strength (1: the far end of the prior range) | λ | longer | diagnosis |\n|---|---|---|---|---|---|\n";
   for (const Marked& m : page.sets) {
     std::string strength;
     for (const TrueEffect& e : m.answer.effects) strength += fmt::format("{}{:.2f}", strength.empty() ? "" : ", ", e.strength);
-    append(out, "| {} | {} | {} | {}{} |\n", m.answer.set, label_of(m.answer), strength, m.found ? label_of(*m.found) : "not diagnosed yet",
-           m.found && !m.found->failure.empty() ? ": " + m.found->failure : "");
+    append(out, "| {} | {} | {} | {} | {} | {}{} |\n", m.answer.set, label_of(m.answer), strength, lambdas(m), longer(m),
+           m.found ? label_of(*m.found) : "not diagnosed yet", m.found && !m.found->failure.empty() ? ": " + m.found->failure : "");
+  }
+  out += "\n";
+}
+
+void misses(const Page& page, std::string& out) {
+  const auto missed = [](const Marked& m) { return m.found && m.missed(); };
+  if (std::none_of(page.sets.begin(), page.sets.end(), missed)) return;
+  out +=
+      "## Misses\n\nAll sets whose diagnosis is not what is hidden: something missing where nothing is, one effect that is in no class of "
+      "two, "
+      "two of which one is not named, what lies outside not said to, a decoy taken for physics.\n\n"
+      "| set | hidden | λ | diagnosis | why |\n|---|---|---|---|---|\n";
+  for (const Marked& m : page.sets) {
+    if (missed(m))
+      append(out, "| {} | {} | {} | {} | {} |\n", m.answer.set, label_of(m.answer), lambdas(m), label_of(*m.found),
+             m.remark.empty() ? "not looked into" : m.remark);
   }
   out += "\n";
 }
@@ -81,11 +123,22 @@ void confusion(const Score& s, std::string& out) {
 void power(const Score& s, std::string& out) {
   out +=
       "## Power\n\nλ: squared length, in noise units, of the effect's part that no retuning imitates, by the diagnosis' own "
-      "surrogate, at the hidden strength.\n\n| λ | named, alone or in a class of two |\n|---|---|\n";
+      "surrogate, at the hidden strength. *Ideal*: a test at the same level, of as many candidates, that knows the noise and the "
+      "simulation "
+      "exactly: Φ(√λ − z), mean of the bin's sets.\n\n| λ | named, alone or in a class of two | of these, concealed | ideal "
+      "|\n|---|---|---|---|\n";
   for (const PowerBin& b : s.power)
-    append(out, "| {} | {} |\n", std::isfinite(b.high) ? fmt::format("{:g} … {:g}", b.low, b.high) : fmt::format("{:g} and more", b.low),
-           count_text(b.named));
+    append(out, "| {} | {} | {} | {} |\n",
+           std::isfinite(b.high) ? fmt::format("{:g} … {:g}", b.low, b.high) : fmt::format("{:g} and more", b.low), count_text(b.named),
+           b.concealed.of == 0 ? "" : fmt::format("{} of {}", b.concealed.hits, b.concealed.of),
+           b.named.of == 0 ? "" : fmt::format("{:.0f} %", 100 * b.ideal));
   out += "\n";
+}
+
+void line(const std::string& of, std::size_t sets, const Line& l, std::string& out) {
+  if (!std::isfinite(l.slope)) return;
+  append(out, "| {} | {} | {:.2f} | {:.2f} | {} |\n", of, sets, l.intercept, l.slope,
+         std::isfinite(l.slope_low) ? fmt::format("{:.2f} … {:.2f}", l.slope_low, l.slope_high) : "too few sets");
 }
 
 void strengths(const Score& s, std::string& out) {
@@ -96,8 +149,22 @@ void strengths(const Score& s, std::string& out) {
       append(out, "| {} | {} | {:.2f} | {:.2f} | {} |\n", d.set, d.hypothesis, d.truth, d.estimate, d.found ? "yes" : "no");
     out += "\n";
   }
-  if (std::isfinite(s.line.slope))
-    append(out, "Least squares: estimate = {:.2f} + {:.2f} × hidden strength.\n", s.line.intercept, s.line.slope);
+  if (std::isfinite(s.line.slope)) {
+    out +=
+        "estimate = intercept + slope × hidden strength, least squares, sets that name nothing included. A hidden strength is known "
+        "exactly; "
+        "the interval is that of the sets drawn anew, so that errors may differ. An estimate of a one-sided strength cannot be below 0, "
+        "nor "
+        "beyond the reach of the simulations, which lifts faint ones and holds strong ones back.\n\n"
+        "| | sets | intercept | slope | 95 % of the slope |\n|---|---|---|---|---|\n";
+    line("all", s.estimates.size(), s.line, out);
+    for (const auto& [hypothesis, l] : s.lines)
+      line(hypothesis,
+           static_cast<std::size_t>(std::count_if(s.estimates.begin(), s.estimates.end(),
+                                                  [&, &h = hypothesis](const Estimated& e) { return e.hypothesis == h; })),
+           l, out);
+    out += "\n";
+  }
   if (!s.at_zero.empty()) {
     const double mean = std::accumulate(s.at_zero.begin(), s.at_zero.end(), 0.0) / static_cast<double>(s.at_zero.size());
     append(
@@ -110,9 +177,12 @@ void strengths(const Score& s, std::string& out) {
 }
 
 void coverage(const Score& s, std::string& out) {
-  out += "## Coverage of the 90 % intervals\n\n| of | truth inside |\n|---|---|\n";
-  append(out, "| the hidden strength | {} |\n", count_text(s.strength));
-  for (const auto& [name, count] : s.theta) append(out, "| {} | {} |\n", name, count_text(count));
+  out +=
+      "## Coverage of the 90 % intervals\n\np: that intervals which hold the truth in 90 % give such a count, by the exact binomial test, "
+      "for "
+      "all rows together (Holm 1979).\n\n| of | truth inside | p |\n|---|---|---|\n";
+  for (const Coverage& c : s.coverage) append(out, "| {} | {} | {:.2g} |\n", c.of, count_text(c.inside), c.p);
+  if (s.coverage.empty()) out += "| no interval was given | none tried | |\n";
   out += "\nParameters: of the base where nothing is hidden, of the corrected model where its physics is the hidden one.\n\n";
   if (s.recovery.empty()) return;
   out +=
@@ -124,6 +194,10 @@ void coverage(const Score& s, std::string& out) {
 
 void gains(const Score& s, std::string& out) {
   out += "## Held-out gain\n\n";
+  append(
+      out,
+      "Where physics is hidden and something is named, its model is surely better than every rival at the held-out conditions in {}.\n\n",
+      count_text(s.improves));
   if (s.gains.empty()) {
     out += "No set with a hidden effect has a right best candidate and a held-out condition: no gain was shown.\n";
     return;
@@ -139,6 +213,7 @@ void gains(const Score& s, std::string& out) {
 std::string tables_text(const Page& page) {
   std::string out;
   every_set(page, out);
+  misses(page, out);
   concealment(page, out);
   confusion(page.score, out);
   power(page.score, out);

@@ -99,7 +99,7 @@ TEST_CASE("diagnoses are read as they were written, failures with their reason")
   CHECK(f.best()->lambda(0.5) == Approx(12.25));
   const Score s = score(sets);
   CHECK(s.best_right.hits == 1);
-  CHECK(s.strength.hits == 1);
+  CHECK(s.coverage.at(0).inside.hits == 1);
   CHECK(s.estimates[0].estimate == Approx(0.45));
   CHECK(s.gains[0].surely.hits == 0);
   write(folder.path / "set_002" / "diagnosis" / "diagnosis.json", "{}");

@@ -4,11 +4,12 @@ import { isNumber, number, percent, words } from "../numbers.js";
 import { intervals } from "../plots/intervals.js";
 import { lines } from "../plots/lines.js";
 
-const COUNTS = [["false_alarms", "nothing hidden: something is said to be missing (false alarm)"], ["false_names", "nothing hidden: a name is given"],
+const COUNTS = [["false_alarms", "nothing hidden: something is said to be missing (false alarm)"], ["false_names", "nothing hidden: a name is given"], ["false_physics", "nothing hidden: physics is named or listed"],
   ["named_alone", "one effect: named alone, and rightly"], ["top_1", "one effect: the best candidate is the truth"], ["in_class", "one effect: the truth is among those named"],
   ["in_class_of_two", "one effect: named, alone or in a class of two"], ["abstained_on_effect", "one effect: said to lie outside the library (wrong)"],
   ["two_both", "two effects: both named"], ["two_at_least_one", "two effects: at least one named"], ["outside_abstained", "physics outside the list: said to lie outside (right)"],
-  ["outside_named", "physics outside the list: something of the list named (wrong)"], ["outside_missed", "physics outside the list: not noticed"]];
+  ["outside_named", "physics outside the list: something of the list named (wrong)"], ["outside_missed", "physics outside the list: not noticed"],
+  ["decoys_named", "decoy (another camera, or what is believed is wrong): physics is named (wrong)"], ["decoys_outside", "decoy: said to lie outside the library (wrong)"]];
 
 const share = (count) => (count?.of > 0 ? `${count.hits} of ${count.of}` : "none tried");
 const bounds = (count) => (count?.of > 0 ? `${number(100 * count.low95, 2)} … ${percent(count.high95, 2)}` : "–");
@@ -17,12 +18,24 @@ const countTable = (caption, rows) => table({ caption, rows, columns: [{ label: 
   { label: "share", number: true, value: (row) => percent(row[1]?.of > 0 ? row[1].share : NaN) }, { label: "90 % interval", number: true, value: (row) => bounds(row[1]) }] });
 const SHARE = { unit: "%", min: 0, max: 100 };
 
+/// What a test that knows noise and simulation exactly would reach.
+function ideal(bins) {
+  if (!bins.some((bin) => isNumber(bin.ideal))) return [];
+  return [{ name: "ideal test", values: bins.map((bin) => (isNumber(bin.ideal) ? { value: 100 * bin.ideal, low: 100 * bin.ideal, high: 100 * bin.ideal, text: percent(bin.ideal) } : null)) }];
+}
+
+/// Whether practice would have seen that something is missing.
+function concealed(row) {
+  if (!row.concealment || row.truth === "none" || row.truth.startsWith("decoy")) return "";
+  return row.concealment.unsuspicious ? "yes" : "no";
+}
+
 function power(score, key) {
   const bins = (score.power ?? []).filter((bin) => bin.named?.of > 0);
   if (bins.length === 0) return null;
   const rows = bins.map((bin) => (isNumber(bin.lambda_to) ? `λ ${number(bin.lambda_from)} to ${number(bin.lambda_to)}` : `λ above ${number(bin.lambda_from)}`));
   return block(`${key}-power`, "Power", figure("How often a hidden effect is named, alone or in a class of two, against its size λ (square of what friction cannot imitate, in noise units).",
-    intervals(`${key}-power`, { label: rows.map((row, index) => `${row}: ${share(bins[index].named)}`).join(", "), rows, groups: [{ name: "", values: bins.map((bin) => point(bin.named)) }],
+    intervals(`${key}-power`, { label: rows.map((row, index) => `${row}: ${share(bins[index].named)}`).join(", "), rows, groups: [{ name: "named", values: bins.map((bin) => point(bin.named)) }].concat(ideal(bins)),
       x: { name: "named", ...SHARE } })));
 }
 
@@ -60,7 +73,7 @@ export function challenge(section, key) {
       ["Truth among those named", share(score.in_class), isNumber(score.mean_class_size) ? `${number(score.mean_class_size, 3)} named in the mean` : null],
       ["Strength in its 90 % interval", share(score.strength_coverage), null], ["Sets", number(score.sets), `${number(score.diagnosed)} diagnosed${todo ? `, ${todo} to be diagnosed` : ""}${score.failed ? `, ${score.failed} failed` : ""}`]],
     blocks: [
-      block(`${key}-counts`, "What was counted", countTable("Counts with 90 % intervals (Clopper & Pearson 1934)", COUNTS.map(([name, text]) => [text, score[name]]))),
+      block(`${key}-counts`, "What was counted", countTable("Counts with 90 % intervals (Clopper & Pearson 1934)", COUNTS.filter(([name]) => score[name]).map(([name, text]) => [text, score[name]]))),
       power(score, key), strengths(score, key), confusion(score, key),
       block(`${key}-coverage`, "Intervals", countTable("How often the 90 % intervals hold the truth", coverage),
         score.recovery?.length ? table({ caption: "Mean distance of parameters from the truth", rows: score.recovery, columns: [{ label: "parameter", value: (row) => words(row.parameter) },
@@ -70,7 +83,7 @@ export function challenge(section, key) {
         { label: "against", value: (row) => row.against }, { label: "surely better", number: true, value: (row) => share(row.surely) }, { label: "90 % interval", number: true, value: (row) => bounds(row.surely) },
         { label: "median gain in misfit", number: true, value: (row) => number(row.median_improvement, 3) }] })) : null,
       score.every_set?.length ? block(`${key}-sets`, "Every set", element("div", { class: "tall" }, table({ caption: "What was hidden and what was said", rows: score.every_set, columns: [
-        { label: "set", value: (row) => row.set }, { label: "hidden", value: (row) => words(row.truth) },
+        { label: "set", value: (row) => row.set }, { label: "hidden", value: (row) => words(row.truth) }, { label: "concealed", value: concealed },
         { label: "diagnosis", wide: true, value: (row) => (row.failure ? element("span", { class: "fail" }, `failed: ${row.failure}`) : words(row.diagnosis ?? "not yet diagnosed")) }] }))) : null,
       score.manifest_hash ? block(`${key}-seal`, "Seal", paragraph("Hash of the manifest of sealed answers: ", element("code", null, score.manifest_hash))) : null],
   };
