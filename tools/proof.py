@@ -43,7 +43,7 @@ class Failure(Exception):
 
 def git(*arguments):
     done = subprocess.run(["git", "-C", str(ROOT)] + list(arguments), capture_output=True, text=True)
-    return done.stdout.strip() if done.returncode == 0 else None
+    return done.stdout.rstrip("\n") if done.returncode == 0 else None  # a line of porcelain may begin with a blank
 
 
 def committed(path):
@@ -105,10 +105,17 @@ def sha256(path):
 
 
 def sha256_anywhere(path):
-    """Of a recording; of a set's study without the folders it includes from, which hang on where the build lies."""
+    """Of a recording; of a set's study with the file it includes as named in the clone, for that path hangs on where the build lies."""
     if path.name != "study.yaml":
         return sha256(path)
-    return hashlib.sha256(re.sub(rb'"[./]*/', b'"', path.read_bytes())).hexdigest()
+
+    def in_clone(quoted):
+        file = (path.parent / quoted.group(1)).resolve()
+        if ROOT not in file.parents:
+            raise Failure("%s: includes %s, which is no file of this clone; remove %s" % (path, file, path.parent.parent))
+        return '"%s"' % file.relative_to(ROOT)
+
+    return hashlib.sha256(re.sub(r'"([^"]*)"', in_clone, path.read_text()).encode()).hexdigest()
 
 
 class Batch:

@@ -48,8 +48,9 @@ elif words[:2] == ["challenge", "score"]:
 
 class Proof(unittest.TestCase):
     def setUp(self):
-        self.root = Path(tempfile.mkdtemp())
+        self.root, self.elsewhere = Path(tempfile.mkdtemp()).resolve(), Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.root)
+        self.addCleanup(shutil.rmtree, self.elsewhere)
         for folder in ("tools", "configs/proof", "kernel", "build/release/bin", "docs"):
             (self.root / folder).mkdir(parents=True)
         shutil.copy(SOURCE / "tools" / "proof.py", self.root / "tools")
@@ -108,7 +109,7 @@ class Proof(unittest.TestCase):
         self.proof("part_1", "--until", "publish")
         self.commit()
         shutil.rmtree(self.root / "build/release/proof")
-        elsewhere = self.root / "build/a/deeper"
+        elsewhere = self.elsewhere / "a"
         shutil.move(self.root / "build/release", elsewhere)
         self.assertEqual(self.proof("part_1", "--until", "diagnose", "--build", str(elsewhere))[:2], (0, ""))
         self.assertTrue(self.public("set_002/diagnosis/diagnosis.json").exists())
@@ -117,8 +118,10 @@ class Proof(unittest.TestCase):
     def test_a_study_that_was_changed_is_refused(self):
         self.proof("part_1", "--until", "publish")
         self.commit()
-        (self.root / "build/release/proof/part_1/set_001/study.yaml").write_text('include: ["../other.yaml"]\n')
+        (self.root / "build/release/proof/part_1/set_001/study.yaml").write_text('include: ["../../../../../configs/other/s.yaml"]\n')
         self.assertIn("not those that were published", self.proof("part_1")[1])
+        (self.root / "build/release/proof/part_1/set_001/study.yaml").write_text('include: ["/elsewhere/s.yaml"]\n')
+        self.assertIn("no file of this clone", self.proof("part_1")[1])
 
     def test_recordings_that_were_changed_are_refused(self):
         self.proof("part_1", "--until", "publish")
@@ -142,6 +145,10 @@ class Proof(unittest.TestCase):
         self.proof("part_1", "--until", "publish")
         self.commit()
         (self.root / "configs/other.yaml").write_text("beads: 2\n")
+        self.assertEqual(self.proof("part_1", "--until", "diagnose")[:2], (0, ""))
+        shutil.rmtree(self.root / "docs/proof/part_1/set_002")
+        self.commit()
+        (self.root / "configs/other.yaml").write_text("beads: 3\n")
         self.assertEqual(self.proof("part_1", "--until", "diagnose")[:2], (0, ""))
         shutil.rmtree(self.root / "docs/proof/part_1/set_001")
         (self.root / "configs/mill.yaml").write_text("beads: 2\n")
