@@ -16,11 +16,20 @@ inline std::filesystem::path recording(const std::string& name = "") {
   return std::filesystem::path(MILLSCOPE_SOURCE_DIR).parent_path() / "shared/recordings" / name;
 }
 
-/// Whether a recording is not there, which skips the test.
-inline bool absent(const std::string& name) {
-  if (std::filesystem::exists(recording(name))) return false;
-  skip(recording(name).string() + " is not there");
+/// An input on which other people's tools failed.
+inline std::filesystem::path public_case(const std::string& name) {
+  return std::filesystem::path(MILLSCOPE_SOURCE_DIR).parent_path() / "shared/public_cases" / name;
+}
+
+/// Whether a file is not there, which skips the test.
+inline bool absent(const std::filesystem::path& file) {
+  if (std::filesystem::exists(file)) return false;
+  skip(file.string() + " is not there");
   return true;
 }
+
+/// Whether a recording is not there, which skips the test.
+inline bool absent(const std::string& name) { return absent(recording(name)); }
+inline bool absent(const char* name) { return absent(recording(name)); }
 
 }  // namespace testing

@@ -15,7 +15,7 @@ OUTSIDE = ("tests", "docs")  # tests may include any room
 SOURCES = (".cpp", ".hpp", ".c", ".h", ".in", ".S")
 INCLUDE = re.compile(r'^\s*#\s*include\s+(["<])([^">]+)[">]', re.M)
 SYSTEM_HEADER = re.compile(r"(experimental/)?[a-z0-9_]+|(sys|gnu)/[a-z0-9_-]+\.h")  # <vector>, <sys/stat.h>
-SYSTEM_FILES = set("dlfcn elf fcntl fnmatch grp link malloc poll pwd sched spawn termios unistd".split())  # <unistd.h>
+SYSTEM_FILES = set("dlfcn elf fcntl fnmatch grp iconv link malloc poll pwd sched spawn termios unistd".split())  # <unistd.h>
 TICKED = re.compile(r"`([^`]+)`")
 
 

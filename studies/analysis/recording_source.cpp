@@ -38,6 +38,7 @@ Json run_json(const recording::Run& run) {
           {"rows_set_aside",
            {{"unreadable", r.unreadable},
             {"not_finite", r.not_finite},
+            {"lost", r.lost},
             {"false_times", r.false_times},
             {"duplicates", r.duplicates},
             {"outside", r.outside},
@@ -63,6 +64,7 @@ std::vector<std::string> row_notes(const recording::Recording& recording) {
     };
     add(r.unreadable, "unreadable");
     add(r.not_finite, "not finite");
+    add(r.lost, "of a lost bead");
     add(r.false_times, "with false times");
     add(r.duplicates, "with the time of another");
     add(r.outside, "outside the mill");

@@ -18,6 +18,7 @@ void add(recording::RunReport& sum, const recording::RunReport& r) {
   sum.used += r.used;
   sum.unreadable += r.unreadable;
   sum.not_finite += r.not_finite;
+  sum.lost += r.lost;
   sum.false_times += r.false_times;
   sum.backwards += r.backwards;
   sum.duplicates += r.duplicates;

@@ -43,9 +43,10 @@ std::string coverage_text(const Coverage& c) {
   out += line("rate", fmt::format("{:.0f} per covered second, median pause {:.1f} ms", c.rate, c.median_interval * 1e3));
   out += line("gaps", fmt::format("{} longer than {:.0f} ms, {:.1f} s together, the longest {:.1f} s", r.gaps, c.gap_limit * 1e3,
                                   r.gap_time, c.longest_gap));
-  out += line("rows set aside",
-              fmt::format("{} outliers, {} outside the mill, {} duplicate times, {} false times, {} unreadable, {} not finite", r.outliers,
-                          r.outside, r.duplicates, r.false_times, r.unreadable, r.not_finite));
+  out += line(
+      "rows set aside",
+      fmt::format("{} outliers, {} outside the mill, {} duplicate times, {} false times, {} of a lost bead, {} unreadable, {} not finite",
+                  r.outliers, r.outside, r.duplicates, r.false_times, r.lost, r.unreadable, r.not_finite));
   out += line("rows out of order", fmt::format("{}", r.backwards));
   return out;
 }

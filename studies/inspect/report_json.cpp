@@ -37,6 +37,7 @@ Json json(const Coverage& c) {
             {"outside", r.outside},
             {"duplicates", r.duplicates},
             {"false_times", r.false_times},
+            {"lost", r.lost},
             {"unreadable", r.unreadable},
             {"not_finite", r.not_finite}}},
           {"rows_out_of_order", r.backwards}};

@@ -45,12 +45,8 @@ ColumnUnit unit_of(const Node& node, Quantity quantity) {
   }
 }
 
-/// `{column: 3, unit: mm}` or `{column: "X [mm]", unit: mm}`; columns count from 1.
-ColumnEntry read_placed(const Node& node, Quantity quantity) {
-  node.expect({"column", "unit"});
-  ColumnEntry entry;
-  entry.quantity = quantity;
-  const Node column = node.at("column", "the number of the column from 1, or its head");
+/// Where a column stands: its number from 1, or its head.
+void place(const Node& column, ColumnEntry& entry) {
   const std::string& text = column.text();
   int number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -60,6 +56,14 @@ ColumnEntry read_placed(const Node& node, Quantity quantity) {
   } else {
     entry.header = text;
   }
+}
+
+/// `{column: 3, unit: mm}` or `{column: "X [mm]", unit: mm}`; columns count from 1.
+ColumnEntry read_placed(const Node& node, Quantity quantity) {
+  node.expect({"column", "unit"});
+  ColumnEntry entry;
+  entry.quantity = quantity;
+  place(node.at("column", "the number of the column from 1, or its head"), entry);
   if (const auto unit = node.find("unit")) {
     entry.unit = unit_of(*unit, quantity);
   } else if (quantity == kEvents) {
@@ -70,12 +74,27 @@ ColumnEntry read_placed(const Node& node, Quantity quantity) {
   return entry;
 }
 
+/// `label: tracer` in the order of the file, or `label: {column: 6}`.
+ColumnEntry read_label(const Node& node) {
+  ColumnEntry entry;
+  entry.label = true;
+  if (node.is_map()) {
+    node.expect({"column"});
+    place(node.at("column", "the number of the column from 1, or its head"), entry);
+  } else if (node.text() != "tracer") {
+    node.fail(fmt::format("is '{}'; write 'tracer' where the column tells tracers apart, else 'skip'", node.text()));
+  }
+  return entry;
+}
+
 ColumnEntry read_column(const Node& section, const std::string& key) {
   const Node node = section.at(key);
   const auto quantity = quantity_of(key);
   if (!node.is_map() && node.text() == "skip") return {};
+  if (key == "label") return read_label(node);
   if (!quantity) {
-    node.fail("is no quantity that a recording has; known: t, x, y, z, error (or e, u), events (or n); write 'skip' for any other column");
+    node.fail(
+        "is no quantity that a recording has; known: t, x, y, z, error (or e, u), events (or n), label; write 'skip' for any other column");
   }
   if (node.is_map()) return read_placed(node, *quantity);
   ColumnEntry entry;
@@ -186,7 +205,8 @@ config::Range gap_limit_range() {
 
 Description read_description(const fs::path& file) {
   const Node root = config::load_document(file.string());
-  root.expect({"files", "format", "columns", "separator", "skip_lines", "axes", "mirror", "condition", "frame", "gap_limit", "encoder"});
+  root.expect(
+      {"files", "format", "columns", "separator", "skip_lines", "axes", "mirror", "condition", "frame", "gap_limit", "encoder", "labels"});
   Description description;
   const Node files = root.at("files", "the files of points, e.g. [run1.a, run2.a]");
   if (files.is_sequence()) {
@@ -207,6 +227,11 @@ Description read_description(const fs::path& file) {
   if (const auto node = root.find("skip_lines")) {
     description.skip_lines = config::read_integer(*node, config::between(0, 1e6));
     description.skip_lines_place = node->where();
+  }
+  if (const auto node = root.find("labels")) {
+    for (const Node& one : node->items()) description.labels.push_back(one.text());
+    if (description.labels.empty()) node->fail("is an empty list; name the tracers that are wanted, or leave it out for all");
+    description.labels_place = node->where();
   }
   const auto mirror = root.find("mirror");
   if (const auto node = root.find("axes")) {

@@ -24,7 +24,8 @@ struct ColumnUnit {
 
 /// One entry of `columns`.
 struct ColumnEntry {
-  std::optional<Quantity> quantity;  ///< nothing: a column that is skipped
+  std::optional<Quantity> quantity;  ///< nothing: a column that is skipped, or the label
+  bool label = false;                ///< it says whose row it is
   ColumnUnit unit;
   std::optional<int> number;  ///< from 0; nothing: named by its head, not found yet
   std::string header;         ///< of the column
@@ -55,6 +56,8 @@ struct Description {
   Condition condition;
   std::optional<MillFrame> frame;
   std::optional<double> gap_limit;
+  std::vector<std::string> labels;  ///< whose rows are read; empty: all
+  base::Location labels_place;
 };
 
 /// Reads a recording.yaml; throws base::UserError.

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <iterator>
 #include <stdexcept>
 
 namespace millscope::recording {
@@ -130,10 +132,53 @@ void read_units(const Top& top, const HeadLine& heads, std::vector<ColumnEntry>&
 
 /// "12,3": one comma between digits. A table of integers apart by commas has more of them in a word, or blanks behind them.
 bool has_decimal_comma(std::string_view word) {
-  if (word.find_first_not_of("+-0123456789,eE") != std::string_view::npos) return false;
+  if (word.find_first_not_of("+-0123456789,eEdD") != std::string_view::npos) return false;
   const std::size_t comma = word.find(',');
   const auto digit = [&](std::size_t at) { return at < word.size() && word[at] >= '0' && word[at] <= '9'; };
   return comma != std::string_view::npos && comma > 0 && digit(comma - 1) && digit(comma + 1) && word.find(',', comma + 1) == word.npos;
+}
+
+/// "12.3", but no date.
+bool has_decimal_point(std::string_view word) {
+  const std::size_t point = word.find('.');
+  return begins_with_number(word) && point != word.npos && word.find('.', point + 1) == word.npos &&
+         word.find_first_not_of("+-.0123456789eEdD") == word.npos;
+}
+
+/// Numbers apart by blanks, some with a decimal comma: "3,628 139,146 -1,857 29".
+bool is_row_with_decimal_commas(std::string_view line) {
+  const Words words = split(line, ' ');
+  const auto number = [](std::string_view word) {
+    return begins_with_number(word) && word.find_first_not_of("+-0123456789eEdD") == word.npos;
+  };
+  return words.size() >= 4 && std::any_of(words.begin(), words.end(), has_decimal_comma) &&
+         std::all_of(words.begin(), words.end(), [&](std::string_view word) { return has_decimal_comma(word) || number(word); });
+}
+
+/// A comma, where the first rows have some within numbers and no points. One comma among points is no decimal one: 1,250 may be 1250.
+char decimal_of(std::string_view rows, char separator) {
+  constexpr std::size_t kRows = 200;
+  if (separator == ',') return '.';
+  bool commas = false;
+  for (std::size_t begin = 0, row = 0; begin < rows.size() && row < kRows; ++row) {
+    const std::size_t end = std::min(rows.find('\n', begin), rows.size());
+    for (const std::string_view word : split(rows.substr(begin, end - begin), separator)) {
+      if (has_decimal_point(word)) return '.';
+      commas = commas || has_decimal_comma(word);
+    }
+    begin = end + 1;
+  }
+  return commas ? ',' : '.';
+}
+
+bool is_label(std::string_view head) {
+  constexpr std::string_view kNames[] = {"label",  "labels",   "tracer",     "tracerid", "bead",
+                                         "beadid", "particle", "particleid", "track",    "trackid"};
+  std::string word;
+  for (const char c : head) {
+    if (c != ' ' && c != '_' && c != '-') word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return std::find(std::begin(kNames), std::end(kNames), word) != std::end(kNames);
 }
 
 }  // namespace
@@ -162,9 +207,11 @@ Top top_of(std::string_view text, const Description& description) {
   constexpr std::size_t kLongestHead = 1000;
   Top top;
   std::size_t number = 0;
+  std::string_view rows;
   for (std::size_t begin = 0; begin < text.size() && number < kLongestHead;) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     const std::string_view line = trimmed(text.substr(begin, end - begin));
+    rows = text.substr(begin);
     begin = end + 1;
     if (++number <= description.skip_lines || line.empty() || is_comment(line) || !is_row(line)) {
       top.head.push_back(line);
@@ -175,7 +222,9 @@ Top top_of(std::string_view text, const Description& description) {
     break;
   }
   const auto has = [&](char c) { return top.row.find(c) != std::string_view::npos; };
-  top.separator = description.separator.value_or(has(';') ? ';' : has(',') ? ',' : ' ');
+  const bool comma = has(',') && !is_row_with_decimal_commas(top.row);
+  top.separator = description.separator.value_or(has(';') ? ';' : comma ? ',' : ' ');
+  top.decimal = decimal_of(rows, top.separator);
   return top;
 }
 
@@ -223,11 +272,10 @@ std::vector<ColumnEntry> entries_of_heads(const Top& top, const std::filesystem:
   return {};
 }
 
-void refuse_decimal_commas(const Top& top, const std::filesystem::path& file) {
-  const Words words = split(top.row, top.row.find(';') != std::string_view::npos ? ';' : ' ');
-  if (words.size() < 4 || std::none_of(words.begin(), words.end(), has_decimal_comma)) return;
-  throw UserError(base::Location{file.string(), static_cast<int>(top.row_line)},
-                  fmt::format("'{}' has decimal commas; replace them by points", top.row.substr(0, 60)));
+std::optional<int> label_of_heads(const Top& top) {
+  const Words heads = heads_of(top).words;
+  const auto found = std::find_if(heads.begin(), heads.end(), is_label);
+  return found == heads.end() ? std::nullopt : std::optional<int>(static_cast<int>(found - heads.begin()));
 }
 
 }  // namespace millscope::recording

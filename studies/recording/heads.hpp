@@ -20,11 +20,12 @@ struct Top {
   std::string_view row;
   std::size_t row_line = 0;  ///< from 1; 0: no row
   char separator = ' ';
+  char decimal = '.';
 };
 Top top_of(std::string_view text, const Description& description);
 
-/// Throws base::UserError where the first row is written with decimal commas.
-void refuse_decimal_commas(const Top& top, const std::filesystem::path& file);
+/// The column whose head says that it tells beads apart: label, tracer, bead, …; nothing where there is none.
+std::optional<int> label_of_heads(const Top& top);
 
 /// A line above the first row, in words.
 struct HeadLine {

@@ -83,6 +83,7 @@ void describe(KnownLayout& known, const std::string& kind, const std::vector<Col
     if (*entry.quantity == kX) known.length_unit = entry.unit.text;
   }
   known.words.pop_back();
+  if (known.layout.decimal == ',') known.words += ", decimal commas";
 }
 
 KnownLayout ctrack(const Description& description) {
@@ -118,17 +119,21 @@ KnownLayout layout_of(std::string_view text, const std::filesystem::path& file, 
   if (top.row_line == 0) {
     throw UserError(fmt::format("{}: holds no usable point: none of its first lines has four numbers", file.string()));
   }
-  refuse_decimal_commas(top, file);
   KnownLayout known;
   known.layout.separator = top.separator;
+  known.layout.decimal = top.decimal;
   known.layout.skip_lines = description.skip_lines;
   std::vector<ColumnEntry> entries;
   std::string kind = "table";
   if (description.columns) {
     entries = *description.columns;
     place(entries, top, description.columns_place, file);
+    for (const ColumnEntry& entry : entries) {
+      if (entry.label) known.layout.label = entry.number;
+    }
   } else {
     entries = entries_of_heads(top, file);
+    known.layout.label = label_of_heads(top);
     if (entries.empty()) {
       entries = usual_entries(top, file);
       kind = "table without heads, in the usual order";

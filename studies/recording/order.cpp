@@ -1,5 +1,6 @@
 // Time order: rows that run backwards, false times, a clock that was set back, duplicates.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -129,14 +130,30 @@ class Cover {
   std::map<double, double> spans_;  // s: from, to
 };
 
-/// Rows at which the clock was set back for good: a stretch begins that covers time which the part covers already, with other points.
+double distance(const Run& rows, std::size_t i, std::size_t j) {
+  return std::hypot(rows.position[0][j] - rows.position[0][i], rows.position[1][j] - rows.position[1][i],
+                    rows.position[2][j] - rows.position[2][i]);
+}
+
+/// Half of the steps from row to row are shorter, m.
+double usual_step(const Run& rows) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < rows.size(); i += rows.size() / 10000 + 1) steps.push_back(distance(rows, i - 1, i));
+  return steps.empty() ? 0 : base::quantile(steps, 0.5);
+}
+
+/// Rows at which the clock was set back for good: a stretch begins that covers time which the part covers already, with other points; or
+/// the bead goes on where it was, as when a counter begins again at zero, while rows that were written out of order begin elsewhere.
 std::vector<std::size_t> resets(const Run& rows) {
+  constexpr double kSteps = 4;
+  const double near = kSteps * usual_step(rows);
   std::vector<std::size_t> found;
   Cover cover;
   PartRows part(rows, 0);
   for (const Stretch& stretch : stretches(rows.time)) {
     if (!stretch.is_long()) continue;
-    if (cover.overlaps(stretch) && !repeats(rows, part, stretch)) {
+    const bool goes_on = stretch.first > 0 && distance(rows, stretch.first - 1, stretch.first) <= near;
+    if ((cover.overlaps(stretch) && !repeats(rows, part, stretch)) || (goes_on && stretch.high < rows.time[stretch.first - 1])) {
       found.push_back(stretch.first);
       cover = {};
     }
@@ -187,13 +204,8 @@ void drop_duplicates(Run& run) {
 
 }  // namespace
 
-std::vector<Run> order_rows(Rows rows, const RunReport& report) {
-  Run whole;
-  whole.time = std::move(rows.time);
-  whole.position = std::move(rows.position);
-  whole.spread = std::move(rows.spread);
-  whole.events = std::move(rows.events);
-  whole.report = report;
+std::vector<Run> order_rows(Run whole) {
+  const RunReport report = whole.report;
   whole.report.false_times = keep_only(whole, true_times(whole.time));
   std::vector<std::size_t> ends = resets(whole);
   std::vector<Run> runs;
@@ -211,6 +223,7 @@ std::vector<Run> order_rows(Rows rows, const RunReport& report) {
     head.rows += report.rows - whole.size();
     head.unreadable = report.unreadable;
     head.not_finite = report.not_finite;
+    head.lost = report.lost;
     head.false_times = whole.report.false_times;
   }
   for (Run& run : runs) {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/recording/clean.hpp"
 
 namespace millscope::recording {
@@ -22,6 +24,8 @@ struct Measured {
   double usual_speed = 0;        // m/s, 95th percentile; outliers do not reach it
   double noise = 0;              // m
   double interval = 0;           // s, median
+  double spread = 0;             // m, the tracker's own, median; 0 where there is none
+  double farthest = 0;           // m, of the middle from the origin along an axis
   bool moves() const { return across > 10 * noise; }
 };
 
@@ -46,12 +50,15 @@ double scale_of(const std::array<Scale, n>& scales, const std::string& unit) {
   return found == scales.end() ? 0 : found->si;
 }
 
+constexpr const char* kNoUnit = "check the columns and the units; no usual unit makes sense of them";
+
 /// The change of one unit, else of both, that makes sense of the numbers.
 std::string hint(const Measured& m, const Condition& condition, const std::string& time_unit, const std::string& length_unit) {
   const double length = scale_of(kLengths, length_unit), time = scale_of(kTimes, time_unit);
   if (length == 0 || time == 0) return "check the units";
   const auto works = [&](const Scale& l, const Scale& t) {
-    return fits(m.across * l.si / length, m.usual_speed * (l.si / length) / (t.si / time), m.interval * t.si / time, condition);
+    return m.farthest * l.si / length < kLargestMill &&
+           fits(m.across * l.si / length, m.usual_speed * (l.si / length) / (t.si / time), m.interval * t.si / time, condition);
   };
   const Scale now_length{length_unit.c_str(), length}, now_time{time_unit.c_str(), time};
   const auto say_length = [&](const Scale& l) { return fmt::format("x, y, z are probably in {}, not {}", l.unit, length_unit); };
@@ -70,14 +77,17 @@ std::string hint(const Measured& m, const Condition& condition, const std::strin
         return fmt::format("{}, and {}: say so under 'columns' in a recording.yaml", say_length(l), say_time(t));
     }
   }
-  return "check the columns and the units; no usual unit makes sense of them";
+  return kNoUnit;
 }
 
 Measured measure(const std::vector<Run>& runs, double gap_limit) {
   const Extent extent = measure_extent(runs);
-  return {
-      extent.across(),      extent.width[2], speed_quantile(runs, 0.99), speed_quantile(runs, 0.95), measure_travel(runs, gap_limit).noise,
-      median_interval(runs)};
+  Measured m{extent.across(), extent.width[2], speed_quantile(runs, 0.99), speed_quantile(runs, 0.95), 0, median_interval(runs)};
+  m.noise = measure_travel(runs, gap_limit).noise;
+  std::vector<double> spread = runs.empty() ? std::vector<double>() : runs[0].spread;
+  if (!spread.empty()) m.spread = base::quantile(spread, 0.5);
+  for (const double middle : extent.middle) m.farthest = std::max(m.farthest, std::fabs(middle));
+  return m;
 }
 
 std::string in_millimetres(double length) { return fmt::format("say the unit, e.g. {:.4g} mm", length); }
@@ -114,7 +124,10 @@ void check_units(const std::vector<Run>& runs, const Condition& condition, const
   if (m.across > kLargestMill || m.along > 2 * kLargestMill) {
     refuse(fmt::format("the points span {:.4g} m across and {:.4g} m along z, and no mill is that large", m.across, m.along));
   }
-  if (m.moves() && m.across < kSmallestMill) {
+  const bool small = m.moves() && m.across < kSmallestMill;
+  // A tracer at rest drifts by less than its own spread, and no unit makes a mill of it: smoothed points hide that it is noise.
+  if (small && (m.spread > m.across || hint(m, condition, time_unit, length_unit) == kNoUnit)) return;
+  if (small) {
     refuse(fmt::format("the points move within {:.3g} m across, and no mill is that small", m.across));
   }
   if (condition.mill_diameter && (m.across > 1.5 * *condition.mill_diameter || (m.moves() && m.across < *condition.mill_diameter / 100))) {

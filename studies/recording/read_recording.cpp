@@ -58,14 +58,23 @@ void check_times(const std::vector<double>& times, const base::Location& where, 
 std::vector<Run> read_table(const RecordingFile& file, const Description& description, Units& units) {
   const TextFile text(file.path);
   const KnownLayout known = layout_of(text.text(), file.path, description);
-  RunReport report;
   FirstFault fault;
-  Rows rows = read_rows(text.text(), known.layout, report, fault);
+  Table table = read_rows(text.text(), known.layout, fault);
+  RunReport report = table.rows.report;
   const auto mostly_bad = [&] { return report.unreadable + report.not_finite + report.false_times > report.rows / 2; };
-  if (rows.size() == 0 || mostly_bad()) fail_unusable(file.path, report, fault, known.words);
-  check_times(rows.time, description.columns ? description.columns_place : base::Location{file.path.string(), 0}, known.time_unit);
+  if (table.rows.size() == 0 || mostly_bad()) fail_unusable(file.path, report, fault, known.words);
+  check_times(table.rows.time, description.columns ? description.columns_place : base::Location{file.path.string(), 0}, known.time_unit);
   units = {known.time_unit, known.length_unit};
-  std::vector<Run> runs = order_rows(std::move(rows), report);
+  std::vector<Run> runs;
+  for (Run& one : runs_of_labels(std::move(table), description.labels, description.labels_place)) {
+    drop_lost(one);
+    refuse_several(one, file.path);
+    const std::string label = one.name;
+    for (Run& part : order_rows(std::move(one))) {
+      if (!label.empty()) part.name = plain_name(file.path) + "_" + label;
+      runs.push_back(std::move(part));
+    }
+  }
   for (const Run& run : runs) report.false_times += run.report.false_times;
   if (mostly_bad()) fail_unusable(file.path, report, fault, known.words);
   for (Run& run : runs) run.format = known.words;
@@ -188,14 +197,14 @@ Recording clean_recording(Recording given) {
   std::vector<Run> runs = std::move(given.runs);
   given.runs.clear();
   for (Run& run : runs) {
-    RunReport report;
-    report.rows = report.used = run.size();
-    std::vector<Run> parts =
-        order_rows({std::move(run.time), std::move(run.position), std::move(run.spread), std::move(run.events)}, report);
+    const std::string name = run.name, format = run.format, source = run.source;
+    run.report = {};
+    run.report.rows = run.report.used = run.size();
+    std::vector<Run> parts = order_rows(std::move(run));
     for (std::size_t part = 0; part < parts.size(); ++part) {
-      parts[part].name = part == 0 ? run.name : fmt::format("{}_{}", run.name, part + 1);
-      parts[part].format = run.format;
-      name_run(parts[part], part, {run.source, {}}, given.runs);
+      parts[part].name = part == 0 ? name : fmt::format("{}_{}", name, part + 1);
+      parts[part].format = format;
+      name_run(parts[part], part, {source, {}}, given.runs);
       given.runs.push_back(std::move(parts[part]));
     }
   }

@@ -54,6 +54,7 @@ struct RunReport {
   std::uint64_t used = 0;        ///< points in Run
   std::uint64_t unreadable = 0;  ///< too few columns, or not numbers; a cut last line among them
   std::uint64_t not_finite = 0;
+  std::uint64_t lost = 0;         ///< the tracker's sign that it has no place, or its last place over again
   std::uint64_t false_times = 0;  ///< a single row more than a second away from both neighbours, which agree; a year from all
   std::uint64_t backwards = 0;    ///< rows whose time lies before that of the row above; sorted in when unique
   std::uint64_t duplicates = 0;   ///< the same time as another row: the one with the smaller spread is kept

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <unordered_map>
 
 namespace millscope::recording {
 namespace {
@@ -35,13 +36,34 @@ const char* skip_value(const char* p, const char* end, char separator) {
   return found == nullptr ? end : static_cast<const char*>(found);
 }
 
-bool read_value(const char*& p, const char* end, double& value) {
+constexpr std::string_view kExponents = "dDqQ";  // Fortran's, of double and of fourfold precision
+
+/// A number that is written otherwise than in C: with a decimal comma, or Fortran's 1.2D+03. Up to what cannot belong to it.
+const char* read_foreign(const char* p, const char* end, char decimal, double& value) {
+  constexpr std::size_t kLongest = 64;
+  std::array<char, kLongest> plain{};
+  std::size_t size = 0;
+  const char* at = p;
+  for (; at != end && size < plain.size(); ++at, ++size) {
+    const bool exponent = kExponents.find(*at) != std::string_view::npos;
+    if (*at != decimal && !exponent && std::string_view("+-.0123456789eE").find(*at) == std::string_view::npos) break;
+    plain[size] = *at == decimal ? '.' : exponent ? 'e' : *at;
+    if (exponent && at + 1 != end && at[1] == '+') ++at;
+  }
+  const auto [behind, error] = std::from_chars(plain.data(), plain.data() + size, value);
+  if (error == std::errc::result_out_of_range) value = HUGE_VAL;
+  return error == std::errc::invalid_argument || behind != plain.data() + size ? nullptr : at;
+}
+
+bool read_value(const char*& p, const char* end, char decimal, double& value) {
   const bool quoted = p != end && *p == '"';
   if (quoted) ++p;
   if (p != end && *p == '+') ++p;
-  const auto [behind, error] = std::from_chars(p, end, value);
-  if (error == std::errc::invalid_argument) return false;
-  if (error == std::errc::result_out_of_range) value = HUGE_VAL;
+  auto [behind, error] = std::from_chars(p, end, value);
+  const bool foreign = behind != end && ((decimal != '.' && *behind == decimal) || kExponents.find(*behind) != std::string_view::npos);
+  if (foreign) behind = read_foreign(p, end, decimal, value);
+  if (behind == nullptr || (!foreign && error == std::errc::invalid_argument)) return false;
+  if (!foreign && error == std::errc::result_out_of_range) value = HUGE_VAL;
   p = behind;
   if (quoted && (p == end || *p++ != '"')) return false;
   return true;
@@ -56,18 +78,21 @@ class RowReader {
       if (*column >= std::ssize(target_)) target_.resize(*column + 1);
       target_[*column] = quantity;
     }
+    if (layout.label && *layout.label >= std::ssize(target_)) target_.resize(*layout.label + 1);
   }
 
   /// Why the line is no row; nullptr: it is one.
-  const char* read(const char* p, const char* end, std::array<double, kQuantities>& values) const {
+  const char* read(const char* p, const char* end, std::array<double, kQuantities>& values, std::string_view& label) const {
     const int wanted = static_cast<int>(target_.size()), columns = std::max(wanted, layout_.least_columns);
     for (int column = 0; column < columns; ++column) {
       p = skip_blanks(p, end);
       if (p == end) return "has too few columns";
       const std::optional<int> quantity = column < wanted ? target_[column] : std::nullopt;
       if (!quantity) {
+        const char* const begin = p;
         p = skip_value(p, end, layout_.separator);
-      } else if (!read_value(p, end, values[*quantity])) {
+        if (column == layout_.label) label = {begin, static_cast<std::size_t>(p - begin)};
+      } else if (!read_value(p, end, layout_.decimal, values[*quantity])) {
         return "has something else than a number";
       }
       if (!step_over(p, end, layout_.separator)) {
@@ -102,23 +127,23 @@ void note(FirstFault& fault, std::size_t line, std::string_view text, const char
 }
 
 /// The last line without a line end may be cut within a number: it then has fewer characters behind the point than the line above.
-std::size_t decimals(std::string_view line) {
+std::size_t decimals(std::string_view line, char decimal) {
   const std::size_t last = line.find_last_not_of(" \t\r");
   if (last == std::string_view::npos) return 0;
-  const std::size_t begin = line.find_last_of(" \t,;", last);
+  const std::size_t begin = line.find_last_of(decimal == ',' ? " \t;" : " \t,;", last);
   const std::string_view value = line.substr(begin == std::string_view::npos ? 0 : begin + 1, last - begin);
-  const std::size_t point = value.find('.');
+  const std::size_t point = value.find(decimal);
   return point == std::string_view::npos ? 0 : value.size() - point;
 }
 
-void append(Rows& rows, const Layout& layout, const std::array<double, kQuantities>& values) {
+void append(Run& rows, const Layout& layout, const std::array<double, kQuantities>& values) {
   rows.time.push_back(values[kTime]);
   for (std::size_t axis = 0; axis < 3; ++axis) rows.position[axis].push_back(values[kX + axis]);
   if (layout.column[kError]) rows.spread.push_back(values[kError]);
   if (layout.column[kEvents]) rows.events.push_back(std::llround(values[kEvents]));
 }
 
-void reserve(Rows& rows, const Layout& layout, std::size_t count) {
+void reserve(Run& rows, const Layout& layout, std::size_t count) {
   rows.time.reserve(count);
   for (auto& component : rows.position) component.reserve(count);
   if (layout.column[kError]) rows.spread.reserve(count);
@@ -132,6 +157,33 @@ bool all_finite(const Layout& layout, const std::array<double, kQuantities>& val
   return true;
 }
 
+/// Without blanks and quotes around it.
+std::string_view plain_label(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\"");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
+}
+
+/// Takes labels in, of which neighbours are often the same.
+class Labels {
+ public:
+  explicit Labels(Table& table) : table_(table) {}
+  void add(std::string_view text) {
+    const std::string_view plain = plain_label(text);
+    if (table_.label.empty() || plain != table_.labels[table_.label.back()]) {
+      const auto [at, fresh] = places_.try_emplace(std::string(plain), table_.labels.size());
+      if (fresh) table_.labels.emplace_back(plain);
+      last_ = at->second;
+    }
+    table_.label.push_back(last_);
+  }
+
+ private:
+  Table& table_;
+  std::unordered_map<std::string, std::size_t> places_;
+  std::size_t last_ = 0;
+};
+
 }  // namespace
 
 Layout ctrack_layout() {
@@ -143,9 +195,13 @@ Layout ctrack_layout() {
   return layout;
 }
 
-Rows read_rows(std::string_view text, const Layout& layout, RunReport& report, FirstFault& fault) {
+Table read_rows(std::string_view text, const Layout& layout, FirstFault& fault) {
   const RowReader reader(layout);
-  Rows rows;
+  Table table;
+  Run& rows = table.rows;
+  RunReport& report = rows.report;
+  Labels labels(table);
+  std::string_view label;
   std::array<double, kQuantities> values{};
   std::string_view above;
   std::size_t number = 0;
@@ -160,9 +216,9 @@ Rows read_rows(std::string_view text, const Layout& layout, RunReport& report, F
     const char* const first = skip_blanks(begin, stop);
     if (number <= layout.skip_lines || first == stop || is_comment(first, stop)) continue;
     const std::string_view line(begin, static_cast<std::size_t>(stop - begin));
-    const char* why = reader.read(first, stop, values);
+    const char* why = reader.read(first, stop, values, label);
     if (why != nullptr && rows.size() == 0 && (number <= layout.header_lines || !begins_with_number(first, stop))) continue;
-    if (why == nullptr && !whole && decimals(line) < decimals(above)) why = "ends within a number";
+    if (why == nullptr && !whole && decimals(line, layout.decimal) < decimals(above, layout.decimal)) why = "ends within a number";
     ++report.rows;
     if (why != nullptr) {
       ++report.unreadable;
@@ -173,10 +229,12 @@ Rows read_rows(std::string_view text, const Layout& layout, RunReport& report, F
     } else {
       if (rows.size() == 0) reserve(rows, layout, text.size() / (line.size() + 1) + 16);
       append(rows, layout, values);
+      if (layout.label) labels.add(label);
       above = line;
     }
   }
-  return rows;
+  report.used = rows.size();
+  return table;
 }
 
 }  // namespace millscope::recording

@@ -21,6 +21,8 @@ struct Layout {
   /// SI value = number · multiplier / divisor: one rounding for mm and ms, where a factor of 0.001 makes two.
   std::array<double, kQuantities> multiplier{1, 1, 1, 1, 1, 1};
   std::array<double, kQuantities> divisor{1, 1, 1, 1, 1, 1};
+  std::optional<int> label;      ///< column that says whose row it is
+  char decimal = '.';            ///< or a comma
   char separator = ' ';          ///< ' ': any run of blanks and tabs
   std::size_t header_lines = 0;  ///< lines at the top that are no rows unless they read as one
   std::size_t skip_lines = 0;    ///< lines at the top that are no rows whatever they hold
@@ -31,15 +33,13 @@ struct Layout {
 Layout ctrack_layout();
 
 /// What a file holds, row by row in the order of the file.
-struct Rows {
-  std::vector<double> time;
-  std::array<std::vector<double>, 3> position;
-  std::vector<double> spread;        ///< empty where there is no such column
-  std::vector<std::int64_t> events;  ///< empty where there is no such column
-  std::size_t size() const { return time.size(); }
+struct Table {
+  Run rows;                         ///< with the counts of lines that are none
+  std::vector<std::size_t> label;   ///< of each row, its place in `labels`; empty where there is no such column
+  std::vector<std::string> labels;  ///< as written, in the order in which they come
 };
 
-/// Why a line with decimal commas is no row: the one reason with a remedy of its own.
+/// Why a line with decimal commas is no row where others have points: the one reason with a remedy of its own.
 inline constexpr const char* kDecimalCommas = "has decimal commas";
 
 /// The first line that was set aside, for messages.
@@ -49,7 +49,7 @@ struct FirstFault {
   std::string why;
 };
 
-/// Reads every row; counts rows, unreadable and not_finite in `report`.
-Rows read_rows(std::string_view text, const Layout& layout, RunReport& report, FirstFault& fault);
+/// Reads every row; counts rows, unreadable and not_finite.
+Table read_rows(std::string_view text, const Layout& layout, FirstFault& fault);
 
 }  // namespace millscope::recording

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <iconv.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -10,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 #include "kernel/base/error.hpp"
 
@@ -105,6 +107,33 @@ std::string inflate_gzip(std::string_view packed, const std::filesystem::path& f
   return text;
 }
 
+/// Which byte of a pair is the higher one of UTF-16; nothing: the text is of single bytes. Spreadsheets write a mark; without one the
+/// digits of a table have a zero in every second byte.
+std::optional<std::size_t> high_byte_of(std::string_view text) {
+  if (text.size() < 4) return std::nullopt;
+  if (text.starts_with("\xFF\xFE")) return 1;
+  if (text.starts_with("\xFE\xFF")) return 0;
+  constexpr std::size_t kLook = 64;
+  for (const std::size_t high : {std::size_t{0}, std::size_t{1}}) {
+    bool all = true;
+    for (std::size_t i = 0; i + 1 < std::min(text.size(), kLook); i += 2) all = all && text[i + high] == '\0' && text[i + 1 - high] != '\0';
+    if (all) return high;
+  }
+  return std::nullopt;
+}
+
+std::string utf8_of(std::string_view text, std::size_t high, const std::filesystem::path& file) {
+  const iconv_t converter = iconv_open("UTF-8", high == 0 ? "UTF-16BE" : "UTF-16LE");
+  std::string out(2 * text.size(), '\0');  // three bytes at most for two
+  char *from = const_cast<char*>(text.data()), *to = out.data();
+  std::size_t left = text.size() - text.size() % 2, room = out.size();
+  const bool whole = iconv(converter, &from, &left, &to, &room) != static_cast<std::size_t>(-1);
+  iconv_close(converter);
+  if (!whole) throw UserError(fmt::format("{}: is no text of UTF-16, as its first bytes say; save it as plain text", file.string()));
+  out.resize(out.size() - room);
+  return out;
+}
+
 }  // namespace
 
 TextFile::TextFile(const std::filesystem::path& file) {
@@ -112,6 +141,11 @@ TextFile::TextFile(const std::filesystem::path& file) {
   text_ = {bytes_.get(), size};
   if (size > 2 && text_[0] == '\x1f' && text_[1] == '\x8b') {
     inflated_ = inflate_gzip(text_, file);
+    text_ = inflated_;
+    bytes_.reset();
+  }
+  if (const auto high = high_byte_of(text_)) {
+    inflated_ = utf8_of(text_, *high, file);
     text_ = inflated_;
     bytes_.reset();
   }

@@ -16,7 +16,8 @@ TEST_CASE("a real rotor recording: the cut last line and the points metres away 
   const recording::Run& run = recording.runs[0];
   CHECK(run.report.rows == 30611);
   CHECK(run.report.unreadable == 1);
-  CHECK(run.report.outside + run.report.outliers == 17);
+  CHECK(run.report.outside + run.report.outliers + run.report.lost == 17);
+  CHECK(run.report.lost == 2);  // one place three times, metres away, with a spread of 0
   CHECK(run.report.used == run.size());
   CHECK(run.report.gap_time == Approx(68.8).margin(0.1));
   for (const auto& component : run.position) {
