@@ -37,7 +37,8 @@ void add_counts(const Score& s, std::string& out) {
   line("one effect: the truth is among those named", s.in_class);
   line("one effect: the truth is named, alone or in a class of two", s.in_class_of_two);
   line("one effect: said to lie outside the library (wrong abstention)", s.abstained_on_effect);
-  line("two effects: both named", s.two_both);
+  line("two effects: both named, together", s.two_both);
+  line("two effects: both among those named", s.two_class);
   line("two effects: at least one named", s.two_one);
   line("physics outside the list: said to lie outside (right abstention)", s.outside_abstained);
   line("physics outside the list: something of the list named (wrong)", s.outside_named);
@@ -48,12 +49,23 @@ void add_counts(const Score& s, std::string& out) {
     add(out, "\nWhere one effect is hidden and something is named, {:.2f} candidates are named in the mean.\n", s.mean_class);
 }
 
+/// A test that is silent has p-values that are all high; one that alarms too often, low ones.
+void add_p_values(const char* of, const std::vector<double>& p, std::string& out) {
+  if (p.empty()) return;
+  add(out,
+      "Of these {} sets, {}: should lie evenly between 0 and 1 or higher. By chance they would be as low with a probability of {:.2g}, and "
+      "as "
+      "high, if they lie evenly, with {:.2g} (Kolmogorov, one-sided).\n\n",
+      p.size(), of, low_p(p), high_p(p));
+}
+
 /// The counts that matter most, by who played which mill; nothing where all is one.
 void add_groups(const Page& page, std::string& out) {
   const std::vector<Group> groups = groups_of(page.sets);
   if (groups.size() < 2) return;
   out +=
-      "| played by | sets of | nothing hidden: physics named | one effect, λ ≥ 30: named, alone or in a class of two | two: both named | "
+      "| played by | sets of | nothing hidden: physics named | one effect, λ ≥ 30: named, alone or in a class of two | two: both named, "
+      "together | "
       "outside: said so | decoy: physics named |\n|---|---|---|---|---|---|---|\n";
   const auto brief = [](const Count& c) { return c.of == 0 ? std::string() : fmt::format("{} of {}", c.hits, c.of); };
   for (const Group& g : groups) {
@@ -80,7 +92,7 @@ Json line_json(const Line& l) {
 }
 
 Json concealment_json(const Marked& m, const std::map<std::string, Unsuspicious>& limits) {
-  if (!m.concealment) return {};
+  if (!m.concealment || !std::isfinite(m.concealment->power_percent)) return {};
   const Concealment& c = *m.concealment;
   return {{"power_percent", c.power_percent},
           {"shoulder_deg", c.shoulder_deg},
@@ -103,6 +115,29 @@ Json sets_json(const Page& page) {
   return out;
 }
 
+Json power_json(const Score& s) {
+  Json out = Json::array();
+  for (const PowerBin& b : s.power)
+    out.push_back({{"lambda_from", b.low},
+                   {"lambda_to", b.high},
+                   {"named", count_json(b.named)},
+                   {"concealed", count_json(b.concealed)},
+                   {"ideal", b.ideals > 0 ? Json(b.ideal) : Json()}});
+  return out;
+}
+
+Json strengths_json(const Score& s) {
+  Json lines = Json::object(), estimates = Json::array();
+  for (const auto& [hypothesis, l] : s.lines) lines[hypothesis] = line_json(l);
+  for (const Estimated& d : s.estimates)
+    estimates.push_back({{"set", d.set}, {"hypothesis", d.hypothesis}, {"truth", d.truth}, {"estimate", d.estimate}, {"named", d.found}});
+  Json out = line_json(s.line);
+  out["by_hypothesis"] = lines;
+  out["estimates"] = estimates;
+  out["at_zero"] = s.at_zero;
+  return out;
+}
+
 }  // namespace
 
 std::string count_text(const Count& c) {
@@ -120,38 +155,30 @@ std::string page_text(const Page& page) {
       s.sets, s.diagnosed, s.failed, s.sets - s.diagnosed, manifests_text(page));
   if (s.false_physics.of > 0)
     add(out,
-        "**Physics named or listed where nothing is hidden: {} of {}; with 95 % confidence the rate is below {:.1f} %.** Something said to "
+        "**Nothing hidden: physics is named or listed in {} of {}; with 95 % confidence the rate is below {:.1f} %. Something is said to "
         "be "
-        "missing there: {}. The p-values of these sets should lie evenly between 0 and 1; so unevenly they lie by chance with p = {:.2g} "
-        "(Kolmogorov–Smirnov).\n\n",
-        s.false_physics.hits, s.false_physics.of, 100 * upper_bound(s.false_physics, kSure), count_text(s.false_alarms),
-        uniform_p(s.empty_p));
+        "missing in {} of {}; below {:.1f} %.**\n\n",
+        s.false_physics.hits, s.false_physics.of, 100 * upper_bound(s.false_physics, kSure), s.false_alarms.hits, s.false_alarms.of,
+        100 * upper_bound(s.false_alarms, kSure));
+  add_p_values("the smallest p of a hypothesis", s.empty_p, out);
+  add_p_values("p of the base", s.empty_base_p, out);
   add_groups(page, out);
   add_counts(s, out);
   out +=
-      "\nIntervals behind counts are of Clopper and Pearson (1934), 5 % on each side. A diagnosis that failed counts as a miss; where "
-      "nothing is hidden it is left out.\n\n";
+      "\nIntervals behind counts are of Clopper and Pearson (1934), 5 % on each side. They take sets as independent; sets of one mill "
+      "share one "
+      "bank of simulations. A diagnosis that failed counts as a miss where something is to be found, and nowhere else.\n\n";
   return out + tables_text(page);
 }
 
 Json score_json(const Page& page) {
   const Score& s = page.score;
-  Json strength = count_json({}), theta = Json::object(), lines = Json::object(), power = Json::array(), estimates = Json::array(),
-       recovery = Json::array(), gains = Json::array();
+  Json strength = count_json({}), theta = Json::object(), recovery = Json::array(), gains = Json::array();
   for (const Coverage& c : s.coverage) {
     Json& row = c.of == kStrengthRow ? strength : theta[c.of];
     row = count_json(c.inside);
-    row["p_holm"] = c.p;
+    row["p_holm"] = c.p;  // null where the truth is one in all sets
   }
-  for (const auto& [hypothesis, l] : s.lines) lines[hypothesis] = line_json(l);
-  for (const PowerBin& b : s.power)
-    power.push_back({{"lambda_from", b.low},
-                     {"lambda_to", b.high},
-                     {"named", count_json(b.named)},
-                     {"concealed", count_json(b.concealed)},
-                     {"ideal", b.ideal}});
-  for (const Estimated& d : s.estimates)
-    estimates.push_back({{"set", d.set}, {"hypothesis", d.hypothesis}, {"truth", d.truth}, {"estimate", d.estimate}, {"named", d.found}});
   for (const Recovery& r : s.recovery)
     recovery.push_back({{"parameter", r.parameter}, {"sets", r.sets}, {"error_retuned", r.retuned}, {"error_unmasked", r.unmasked}});
   for (const GainCount& g : s.gains)
@@ -165,7 +192,7 @@ Json score_json(const Page& page) {
           {"false_alarms", count_json(s.false_alarms)},
           {"false_names", count_json(s.false_names)},
           {"false_physics", count_json(s.false_physics)},
-          {"p_values_of_empty_sets", {{"values", s.empty_p}, {"uniform_p", uniform_p(s.empty_p)}}},
+          {"p_values_of_empty_sets", {{"smallest", s.empty_p}, {"base", s.empty_base_p}}},
           {"named_alone", count_json(s.named_alone)},
           {"top_1", count_json(s.best_right)},
           {"in_class", count_json(s.in_class)},
@@ -173,6 +200,7 @@ Json score_json(const Page& page) {
           {"mean_class_size", s.mean_class},
           {"abstained_on_effect", count_json(s.abstained_on_effect)},
           {"two_both", count_json(s.two_both)},
+          {"two_both_in_class", count_json(s.two_class)},
           {"two_at_least_one", count_json(s.two_one)},
           {"outside_abstained", count_json(s.outside_abstained)},
           {"outside_named", count_json(s.outside_named)},
@@ -181,18 +209,12 @@ Json score_json(const Page& page) {
           {"decoys_outside", count_json(s.decoys_outside)},
           {"strength_coverage", strength},
           {"parameter_coverage", theta},
-          {"power", power},
-          {"strengths",
-           {{"slope", s.line.slope},
-            {"intercept", s.line.intercept},
-            {"slope_low95", s.line.slope_low},
-            {"slope_high95", s.line.slope_high},
-            {"by_hypothesis", lines},
-            {"estimates", estimates},
-            {"at_zero", s.at_zero}}},
+          {"power", power_json(s)},
+          {"strengths", strengths_json(s)},
           {"recovery", recovery},
           {"held_out", gains},
           {"held_out_better_than_every_rival", count_json(s.improves)},
+          {"not_held_out", s.not_held_out},
           {"confusion", {{"truths", s.truths}, {"diagnoses", s.answers}, {"counts", s.confusion}}},
           {"every_set", sets_json(page)}};
 }

@@ -73,11 +73,14 @@ Found found_from(const Json& j) {
     const Json& of = h.at("parameters");
     if (!of.empty()) t.strength = interval_from(of.begin().value());
     t.physics = h.value("kind", "physics") == "physics";
+    t.tested = h.value("tested", true);
+    if (h.contains("p_value")) t.p = number(h.at("p_value"));
     f.hypotheses.push_back(std::move(t));
   }
   f.retuned = parameters(j.at("contact_parameters"), "retuned");
   f.unmasked = parameters(j.at("contact_parameters"), "unmasked");
   f.level = j.value("level", f.level);
+  f.together = j.value("named_together", false);
   if (j.contains("base")) f.base_p = number(j.at("base").at("p_value"));
   f.gains = gains_from(j.at("held_out"));
   f.improves = improves_from(j.at("held_out"));
@@ -103,12 +106,13 @@ std::string Marked::folder() const {
 
 std::optional<double> Marked::lambda(const TrueEffect& e) const {
   const Tested* tested = found ? found->find(e.hypothesis) : nullptr;
-  return tested == nullptr ? std::nullopt : std::optional<double>(tested->lambda(e.strength));
+  const double lambda = tested == nullptr ? std::numeric_limits<double>::quiet_NaN() : tested->lambda(e.strength);
+  return std::isfinite(lambda) ? std::optional<double>(lambda) : std::nullopt;
 }
 
 double Tested::lambda(double strength) const {
   const auto after = std::find_if(lambda_curve.begin(), lambda_curve.end(), [&](const auto& point) { return point.first >= strength; });
-  if (after == lambda_curve.end()) return lambda_curve.empty() ? 0 : lambda_curve.back().second;
+  if (after == lambda_curve.end()) return lambda_curve.empty() ? std::numeric_limits<double>::quiet_NaN() : lambda_curve.back().second;
   if (after == lambda_curve.begin()) return after->second;
   const auto before = std::prev(after);
   const double part = (strength - before->first) / (after->first - before->first);
@@ -127,6 +131,19 @@ const Tested* Found::best() const {
 }
 
 bool Found::names(const std::string& name) const { return std::find(named.begin(), named.end(), name) != named.end(); }
+
+double Found::smallest_p() const {
+  double least = std::numeric_limits<double>::quiet_NaN();
+  for (const Tested& t : hypotheses) {
+    if (t.tested) least = std::fmin(least, t.p);  // of a number and a NaN the number
+  }
+  return least;
+}
+
+double Found::level_of(const Tested& tested) const {
+  const auto family = std::count_if(hypotheses.begin(), hypotheses.end(), [](const Tested& t) { return t.tested; });
+  return level / static_cast<double>(std::max<std::ptrdiff_t>(family, 1)) / (tested.two_sided() ? 2 : 1);
+}
 
 bool Found::names_physics() const {
   return std::any_of(named.begin(), named.end(), [&](const std::string& name) {
@@ -180,7 +197,8 @@ std::map<std::string, std::string> read_remarks(const fs::path& file) {
     if (line.empty()) continue;
     if (colon == std::string::npos)
       throw base::UserError(fmt::format("{}:{}: '{}' is no remark; write set_001: and a sentence", file.string(), number, line));
-    out[line.substr(0, colon)] = line.substr(colon + 2);
+    if (!out.emplace(line.substr(0, colon), line.substr(colon + 2)).second)
+      throw base::UserError(fmt::format("{}:{}: is a second remark on {}; join them", file.string(), number, line.substr(0, colon)));
   }
   return out;
 }

@@ -29,14 +29,18 @@ void score_none(const Marked& m, Score& s) {
   s.false_alarms.add(says_missing(*m.found));
   s.false_names.add(!m.found->named.empty());
   s.false_physics.add(m.found->names_physics());
-  if (std::isfinite(m.found->base_p)) s.empty_p.push_back(m.found->base_p);
+  if (std::isfinite(m.found->base_p)) s.empty_base_p.push_back(m.found->base_p);
+  if (std::isfinite(m.found->smallest_p())) s.empty_p.push_back(m.found->smallest_p());
 }
 
-/// Named, alone or in a class of two; of two effects, both.
-bool in_small_class(const Marked& m) {
-  const std::vector<TrueEffect>& effects = m.answer.effects;
-  return m.found->named.size() <= 2 &&
-         std::all_of(effects.begin(), effects.end(), [&](const auto& e) { return m.found->names(e.hypothesis); });
+bool names_all(const Marked& m) {
+  return std::all_of(m.answer.effects.begin(), m.answer.effects.end(), [&](const auto& e) { return m.found->names(e.hypothesis); });
+}
+
+/// One effect: named alone, or in a class of two of which one is true; two effects: named together.
+bool is_right(const Marked& m) {
+  const bool two = m.answer.kind == Kind::two;
+  return names_all(m) && m.found->together == two && m.found->named.size() <= 2;
 }
 
 /// Returns the size of the class that was named; 0: none.
@@ -47,19 +51,21 @@ std::size_t score_effect(const Marked& m, Score& s) {
   s.named_alone.add(f.verdict == "named" && named && f.named.size() == 1);
   s.best_right.add(best_is(f, truth));
   s.in_class.add(named);
-  s.in_class_of_two.add(in_small_class(m));
-  s.abstained_on_effect.add(f.verdict == "outside_library");
+  s.in_class_of_two.add(is_right(m));
+  if (f.failure.empty()) s.abstained_on_effect.add(f.verdict == "outside_library");
   return f.named.size();
 }
 
 void score_two(const Marked& m, Score& s) {
   const bool first = m.found->names(m.answer.effects[0].hypothesis), second = m.found->names(m.answer.effects[1].hypothesis);
-  s.two_both.add(first && second);
+  s.two_both.add(is_right(m));
+  s.two_class.add(first && second);
   s.two_one.add(first || second);
 }
 
 void score_outside(const Found& f, Score& s) {
   s.outside_abstained.add(f.verdict == "outside_library");
+  if (!f.failure.empty()) return;
   s.outside_named.add(!f.named.empty());
   s.outside_missed.add(f.verdict == "no_mismatch" || f.verdict == "undetectable");
 }
@@ -70,16 +76,17 @@ void score_decoy(const Found& f, Score& s) {
   s.decoys_outside.add(f.verdict == "outside_library");
 }
 
+/// Of sets with one effect: beside another one λ is another.
 void add_power(const Marked& m, const std::map<std::string, Unsuspicious>& limits, Score& s) {
-  for (const TrueEffect& e : m.answer.effects) {
-    const std::optional<double> lambda = m.lambda(e);
-    if (!lambda) continue;
-    const auto bin = std::find_if(s.power.begin(), s.power.end(), [&](const PowerBin& b) { return *lambda >= b.low && *lambda < b.high; });
-    const bool named = m.found->names(e.hypothesis) && m.found->named.size() <= 2;
-    bin->named.add(named);
-    if (m.concealment && limits.at(m.study).holds(*m.concealment)) bin->concealed.add(named);
-    bin->ideal += (ideal_power(*lambda, m.found->level, m.found->hypotheses.size()) - bin->ideal) / bin->named.of;
-  }
+  if (m.answer.kind != Kind::effect) return;
+  const TrueEffect& e = m.answer.effects.front();
+  const std::optional<double> lambda = m.lambda(e);
+  if (!lambda) return;
+  PowerBin& bin = *std::find_if(s.power.begin(), s.power.end(), [&](const PowerBin& b) { return *lambda >= b.low && *lambda < b.high; });
+  bin.named.add(is_right(m));
+  if (m.concealment && limits.at(m.study).holds(*m.concealment)) bin.concealed.add(is_right(m));
+  const double ideal = ideal_power(*lambda, m.found->level_of(*m.found->find(e.hypothesis)));
+  if (std::isfinite(ideal)) bin.ideal += (ideal - bin.ideal) / ++bin.ideals;
 }
 
 /// The row of a quantity; made where there is none yet.
@@ -88,11 +95,37 @@ Count& covered(Score& s, const std::string& of) {
   return row != s.coverage.end() ? row->inside : s.coverage.emplace_back(Coverage{of, {}}).inside;
 }
 
-void judge_coverage(Score& s) {
+/// Whether a parameter of the answers is another one in some two sets of a study.
+bool varies(const std::vector<Marked>& sets, const std::string& parameter) {
+  std::map<std::string, double> first;
+  for (const Marked& m : sets) {
+    for (const auto& [name, value] : m.answer.theta) {
+      if (name == parameter && first.emplace(m.study, value).first->second != value) return true;
+    }
+  }
+  return false;
+}
+
+void judge_coverage(const std::vector<Marked>& sets, Score& s) {
   std::vector<double> p;
-  for (const Coverage& c : s.coverage) p.push_back(binomial_p(c.inside, kCovered));
+  for (Coverage& c : s.coverage) {
+    c.varies = c.of == kStrengthRow || varies(sets, c.of);
+    if (c.varies) p.push_back(binomial_p(c.inside, kCovered));
+  }
   p = holm(p);
-  for (std::size_t i = 0; i < p.size(); ++i) s.coverage[i].p = p[i];
+  auto next = p.begin();
+  for (Coverage& c : s.coverage) {
+    if (c.varies) c.p = *next++;
+  }
+}
+
+/// Whether the corrected model was shown to be better, where it is the right one.
+void add_held_out(const Marked& m, Score& s) {
+  if (m.answer.kind != Kind::effect || !best_is(*m.found, m.answer.effects.front().hypothesis)) return;
+  if (m.found->improves)
+    s.improves.add(*m.found->improves);
+  else
+    ++s.not_held_out;
 }
 
 void add_estimate(const Marked& m, Score& s) {
@@ -145,14 +178,14 @@ void add_lines(Score& s) {
 
 /// What is estimated where there is nothing; only of hypotheses whose range the answers tell.
 void add_at_zero(const std::vector<Marked>& sets, Score& s) {
-  std::map<std::string, TrueEffect> known;
+  std::map<std::pair<std::string, std::string>, TrueEffect> known;  // of each study: two mills have two lifters
   for (const Marked& m : sets) {
-    for (const TrueEffect& e : m.answer.effects) known.emplace(e.hypothesis, e);
+    for (const TrueEffect& e : m.answer.effects) known.emplace(std::pair{m.study, e.hypothesis}, e);
   }
   for (const Marked& m : sets) {
     if (!m.found || m.answer.kind != Kind::none) continue;
     for (const Tested& t : m.found->hypotheses) {
-      const auto e = known.find(t.name);
+      const auto e = known.find({m.study, t.name});
       if (e != known.end() && t.strength) s.at_zero.push_back(strength_of(e->second, t.strength->value));
     }
   }
@@ -209,7 +242,7 @@ bool Marked::missed() const {
     case Kind::decoy:
       return f.names_physics() || f.verdict == "outside_library";
     default:
-      return !in_small_class(*this);
+      return !is_right(*this);
   }
 }
 
@@ -237,11 +270,12 @@ std::string label_of(const Answer& a) {
 
 std::string label_of(const Found& f) {
   if (!f.failure.empty()) return "failed";
-  return f.named.empty() ? f.verdict : fmt::format("{}: {}", f.verdict, fmt::join(f.named, ", "));
+  return f.named.empty() ? f.verdict : fmt::format("{}: {}", f.verdict, fmt::join(f.named, f.together ? " + " : ", "));
 }
 
 Score score(const std::vector<Marked>& sets) {
   Score s;
+  s.coverage = {{kStrengthRow, {}}};
   s.power = {{0, 3}, {3, 10}, {10, 30}, {30, 100}, {100, kInfinity}};
   const std::map<std::string, Unsuspicious> limits = unsuspicious(sets);
   double class_sum = 0;
@@ -260,7 +294,7 @@ Score score(const std::vector<Marked>& sets) {
       class_sum += static_cast<double>(size);
       classes += size > 0 ? 1 : 0;
     }
-    if (!m.answer.effects.empty() && !m.found->named.empty() && m.found->improves) s.improves.add(*m.found->improves);
+    add_held_out(m, s);
     add_power(m, limits, s);
     add_estimate(m, s);
     add_theta(m, s);
@@ -268,7 +302,7 @@ Score score(const std::vector<Marked>& sets) {
   }
   if (classes > 0) s.mean_class = class_sum / classes;
   add_lines(s);
-  judge_coverage(s);
+  judge_coverage(sets, s);
   add_at_zero(sets, s);
   add_gains(sets, s);
   add_confusion(sets, s);

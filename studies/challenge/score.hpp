@@ -20,10 +20,13 @@ struct Tested {
   std::string name, class_of;                           ///< "best", "not rejected", …
   std::vector<std::pair<double, double>> lambda_curve;  ///< (strength, λ), strengths rising
   std::optional<base::Interval90> strength;
-  bool physics = true;  ///< else a nuisance that leaves its prior
+  bool physics = true;                                  ///< else a nuisance that leaves its prior
+  bool tested = true;                                   ///< else no part of the family that shares the level
+  double p = std::numeric_limits<double>::quiet_NaN();  ///< for all hypotheses together
 
-  /// λ at a strength, by its root between those of the curve.
+  /// λ at a strength, by its root between those of the curve; NaN where there is none.
   double lambda(double strength) const;
+  bool two_sided() const { return !lambda_curve.empty() && lambda_curve.front().first < 0; }
 };
 
 struct Gain {
@@ -35,19 +38,24 @@ struct Gain {
 struct Found {
   std::string failure;  ///< why there is none; else ""
   std::string verdict;
-  double level = 0.05;                                       ///< for all candidates together
+  double level = std::numeric_limits<double>::quiet_NaN();   ///< for all hypotheses together; NaN: of before diagnosis.json told it
   double base_p = std::numeric_limits<double>::quiet_NaN();  ///< that the base looks like the recordings
   std::vector<std::string> named;
+  bool together = false;  ///< `named` are two at once, else a class of which one is true
   std::vector<Tested> hypotheses;
   std::map<std::string, base::Interval90> retuned, unmasked;  ///< contact parameters and nuisances
   std::vector<Gain> gains;
-  std::optional<bool> improves;            ///< on every rival, in all held-out conditions; nothing: none was simulated
+  std::optional<bool> improves;            ///< on every rival, in all held-out conditions that were simulated; nothing: none was
   std::map<std::string, double> practice;  ///< parameters of the base that was retuned to power
 
   const Tested* find(const std::string& name) const;
   const Tested* best() const;
   bool names(const std::string& name) const;
   bool names_physics() const;
+  /// The smallest of all hypotheses; NaN: none was tested.
+  double smallest_p() const;
+  /// What one hypothesis has of the level (Bonferroni); half of it at each end where its strength may have either sign.
+  double level_of(const Tested& tested) const;
 };
 
 /// Retuned base less truth, in long runs (concealment.hpp); NaN where it cannot be told.
@@ -86,7 +94,8 @@ struct PowerBin {
   double low, high;      ///< of lambda
   Count named = {};      ///< alone or in a class of two
   Count concealed = {};  ///< of these, the ones that practice would not suspect
-  double ideal = 0;      ///< mean of ideal_power
+  double ideal = 0;      ///< mean of ideal_power …
+  int ideals = 0;        ///< … of so many sets
 };
 
 struct Estimated {
@@ -101,7 +110,8 @@ inline constexpr const char* kStrengthRow = "the hidden strength";
 struct Coverage {
   std::string of;
   Count inside;
-  double p = 1;  ///< that 90 % gives such a count, for all quantities together (Holm)
+  bool varies = true;                                   ///< the truth is another one from set to set; else all of a study are one trial
+  double p = std::numeric_limits<double>::quiet_NaN();  ///< that 90 % gives such a count, for all that vary together (Holm)
 };
 
 struct GainCount {
@@ -119,22 +129,23 @@ struct Recovery {
 struct Score {
   int sets = 0, diagnosed = 0, failed = 0;
 
-  Count false_alarms;           ///< sets with nothing hidden for which something is said to be missing
-  Count false_names;            ///< and that are given a name
-  Count false_physics;          ///< which is that of physics
-  std::vector<double> empty_p;  ///< base_p of the sets with nothing hidden
-  Count named_alone;            ///< one effect: the verdict is `named` and right
-  Count best_right;             ///< the best candidate is the truth
-  Count in_class;               ///< the truth is among those named
+  Count false_alarms;                         ///< sets with nothing hidden for which something is said to be missing
+  Count false_names;                          ///< and that are given a name
+  Count false_physics;                        ///< which is that of physics
+  std::vector<double> empty_p, empty_base_p;  ///< of the sets with nothing hidden: smallest_p, base_p
+  Count named_alone;                          ///< one effect: the verdict is `named` and right
+  Count best_right;                           ///< the best candidate is the truth
+  Count in_class;                             ///< the truth is among those named
   Count in_class_of_two;
   double mean_class = std::numeric_limits<double>::quiet_NaN();  ///< of the sets with one effect that name something
   Count abstained_on_effect;                                     ///< outside_library, though the truth is in the list
-  Count two_both, two_one;                                       ///< two effects: both, at least one named
+  Count two_both, two_class, two_one;                            ///< two effects: named together; both among those named; at least one
   Count outside_abstained, outside_named, outside_missed;
   Count decoys_named, decoys_outside;  ///< decoys in which physics is named, or said to lie outside: wrong
 
   std::vector<Coverage> coverage;  ///< of strengths, then by parameter
-  Count improves;                  ///< sets with effects that name something: held out, surely better than every rival
+  Count improves;                  ///< one effect whose candidate is best: held out, surely better than every rival
+  int not_held_out = 0;            ///< the same, but without simulations of a held-out condition
   std::vector<PowerBin> power;
   std::vector<Estimated> estimates;
   Line line;

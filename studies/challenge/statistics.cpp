@@ -6,6 +6,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <tuple>
 
@@ -16,18 +17,24 @@ constexpr std::size_t kFewForALine = 3, kFewForItsInterval = 6;
 constexpr int kDraws = 4000;
 constexpr double kPowerThatTells = 0.8;
 
-double normal_quantile(double p) { return boost::math::quantile(boost::math::normal_distribution<>(), p); }
+/// NaN of NaN.
+double normal_quantile(double p) { return std::isnan(p) ? p : boost::math::quantile(boost::math::normal_distribution<>(), p); }
 
-double threshold(double level, std::size_t alternatives) {
-  return normal_quantile(1 - level / static_cast<double>(std::max<std::size_t>(alternatives, 1)));
+/// Slope and intercept alone; nothing where all x are one.
+std::optional<std::pair<double, double>> least_squares(const std::vector<std::pair<double, double>>& points) {
+  constexpr double kSame = 1e-12;
+  const auto n = static_cast<double>(points.size());
+  double x = 0, y = 0, scale = 0, xx = 0, xy = 0;
+  for (const auto& [a, b] : points) x += a / n, y += b / n, scale += a * a;
+  for (const auto& [a, b] : points) xx += (a - x) * (a - x), xy += (a - x) * (b - y);
+  if (!(xx > kSame * scale)) return std::nullopt;
+  return std::pair{xy / xx, y - xy / xx * x};
 }
 
-/// Slope and intercept alone.
-std::pair<double, double> least_squares(const std::vector<std::pair<double, double>>& points) {
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (const auto& [a, b] : points) n += 1, x += a, y += b, xx += a * a, xy += a * b;
-  const double slope = (n * xy - x * y) / (n * xx - x * x);
-  return {slope, (y - slope * x) / n};
+/// p of a one-sided distance between n numbers and the even distribution.
+double kolmogorov_p(double distance, double n) {
+  const double scaled = distance * (std::sqrt(n) + 0.12 + 0.11 / std::sqrt(n));
+  return std::exp(-2 * scaled * scaled);
 }
 
 /// Element i of n evenly drawn ones; a standard engine with our own reduction, so that every library draws the same.
@@ -69,44 +76,45 @@ std::vector<double> holm(const std::vector<double>& p) {
   return out;
 }
 
-double uniform_p(std::vector<double> numbers) {
+double low_p(std::vector<double> numbers) {
   if (numbers.empty()) return 1;
   std::sort(numbers.begin(), numbers.end());
   const auto n = static_cast<double>(numbers.size());
   double distance = 0;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto before = static_cast<double>(i) / n;
-    distance = std::max({distance, numbers[i] - before, before + 1 / n - numbers[i]});
-  }
-  const double scaled = distance * (std::sqrt(n) + 0.12 + 0.11 / std::sqrt(n));
-  if (scaled < 0.3) return 1;  // the series alternates slowly there, and is 1 to nine digits
-  double p = 0;
-  for (int k = 1; k <= 100; ++k) p += (k % 2 == 1 ? 2 : -2) * std::exp(-2.0 * k * k * scaled * scaled);
-  return std::clamp(p, 0.0, 1.0);
+  for (std::size_t i = 0; i < numbers.size(); ++i) distance = std::max(distance, static_cast<double>(i + 1) / n - numbers[i]);
+  return kolmogorov_p(distance, n);
 }
 
-double ideal_power(double lambda, double level, std::size_t alternatives) {
-  return boost::math::cdf(boost::math::normal_distribution<>(), std::sqrt(lambda) - threshold(level, alternatives));
+double high_p(std::vector<double> numbers) {
+  for (double& number : numbers) number = 1 - number;
+  return low_p(std::move(numbers));
 }
 
-double telling_lambda(double level, std::size_t alternatives) {
-  const double root = threshold(level, alternatives) + normal_quantile(kPowerThatTells);
+double ideal_power(double lambda, double level) {
+  const double distance = std::sqrt(lambda) - normal_quantile(1 - level);
+  return std::isnan(distance) ? distance : boost::math::cdf(boost::math::normal_distribution<>(), distance);
+}
+
+double telling_lambda(double level) {
+  const double root = normal_quantile(1 - level) + normal_quantile(kPowerThatTells);
   return root * root;
 }
 
 Line line_through(const std::vector<std::pair<double, double>>& points) {
   Line line;
   if (points.size() < kFewForALine) return line;
-  std::tie(line.slope, line.intercept) = least_squares(points);
+  const auto through = least_squares(points);
+  if (!through) return line;
+  std::tie(line.slope, line.intercept) = *through;
   if (points.size() < kFewForItsInterval) return line;
   std::mt19937_64 random(1);
   std::vector<double> slopes;
   for (int draw = 0; draw < kDraws; ++draw) {
     std::vector<std::pair<double, double>> again;
     for (std::size_t i = 0; i < points.size(); ++i) again.push_back(points[drawn(random, points.size())]);
-    const double slope = least_squares(again).first;
-    if (std::isfinite(slope)) slopes.push_back(slope);  // else one point alone was drawn
+    if (const auto one = least_squares(again)) slopes.push_back(one->first);
   }
+  if (slopes.size() < kDraws - kDraws / 100) return line;  // too many draws of one x
   std::sort(slopes.begin(), slopes.end());
   line.slope_low = slopes[slopes.size() / 40];
   line.slope_high = slopes[slopes.size() - 1 - slopes.size() / 40];

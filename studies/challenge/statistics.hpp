@@ -25,22 +25,24 @@ double binomial_p(const Count& count, double share);
 /// Holm 1979: p-values that hold for all of them together, in the order given.
 std::vector<double> holm(const std::vector<double>& p);
 
-/// Kolmogorov 1933, in the approximation of Stephens 1970: that numbers in [0, 1] lie as unevenly by chance. 1 for none.
-double uniform_p(std::vector<double> numbers);
+/// Kolmogorov's test, one-sided (Smirnov 1944, in the approximation of Stephens 1970): that numbers which lie evenly in [0, 1], or higher,
+/// come out as low by chance; and as high if they lie evenly or lower. 1 for none.
+double low_p(std::vector<double> numbers);
+double high_p(std::vector<double> numbers);
 
-/// Of a test of `alternatives` one-sided strengths at a level for all together (Bonferroni), if the noise is normal and known and the other
-/// alternatives never win: Φ(√λ − z). What no method can do much better.
-double ideal_power(double lambda, double level, std::size_t alternatives);
+/// Of a test of one one-sided strength at `level` (of several together: Bonferroni's share of it), if the noise is normal and known:
+/// Φ(√λ − z).
+double ideal_power(double lambda, double level);
 /// The λ at which the ideal power is 80 %.
-double telling_lambda(double level, std::size_t alternatives);
+double telling_lambda(double level);
 
 /// y = intercept + slope · x, least squares.
 struct Line {
   double slope = std::numeric_limits<double>::quiet_NaN(), intercept = std::numeric_limits<double>::quiet_NaN();
   double slope_low = std::numeric_limits<double>::quiet_NaN(), slope_high = std::numeric_limits<double>::quiet_NaN();  ///< 95 %
 };
-/// The interval is that of the pairs (x, y) drawn anew (Efron 1979), which asks nothing of the scatter. NaN below 3 points; the interval
-/// below 6.
+/// The interval is that of the pairs (x, y) drawn anew (Efron 1979): the scatter may differ from point to point, but the points have to be
+/// independent. NaN below 3 points, or where all have one x; the interval below 6, or where draws have one x.
 Line line_through(const std::vector<std::pair<double, double>>& points);
 
 }  // namespace millscope::challenge

@@ -29,21 +29,22 @@ std::string lambdas(const Marked& m) {
   return out;
 }
 
-/// By how much a recording would have to be longer for four of five to tell the faintest effect; "" where this one is long enough.
+/// By how much a recording would have to be longer for four of five to tell the effect; "" where this one is long enough.
 std::string longer(const Marked& m) {
-  double most = 1;
-  for (const TrueEffect& e : m.answer.effects) {
-    const std::optional<double> lambda = m.lambda(e);
-    if (lambda) most = std::max(most, telling_lambda(m.found->level, m.found->hypotheses.size()) / *lambda);
-  }
-  if (most <= 1) return "";
-  return most < kMuchLonger ? fmt::format("{:.2g} ×", most) : fmt::format("over {:g} ×", kMuchLonger);
+  if (m.answer.kind != Kind::effect) return "";
+  const TrueEffect& e = m.answer.effects.front();
+  const std::optional<double> lambda = m.lambda(e);
+  if (!lambda || !std::isfinite(m.found->level)) return "";
+  const double times = telling_lambda(m.found->level_of(*m.found->find(e.hypothesis))) / *lambda;
+  if (times <= 1) return "";
+  return times < kMuchLonger ? fmt::format("{:.{}f} ×", times, times < 10 ? 1 : 0) : fmt::format("over {:g} ×", kMuchLonger);
 }
 
 void every_set(const Page& page, std::string& out) {
   out +=
-      "## Every set\n\nλ as below. *Longer*: at least so many times this recording tells the effect in four sets of five; the error of the "
-      "simulations does not shrink with it.\n\n"
+      "## Every set\n\nλ as below; beside another effect it is less. *Longer*: a recording about so many times as long tells the effect in "
+      "four sets of five, by "
+      "the ideal test below; the error of the simulations does not shrink with it.\n\n"
       "| set | hidden | strength (1: the far end of the prior range) | λ | longer | diagnosis |\n|---|---|---|---|---|---|\n";
   for (const Marked& m : page.sets) {
     std::string strength;
@@ -58,10 +59,12 @@ void misses(const Page& page, std::string& out) {
   const auto missed = [](const Marked& m) { return m.found && m.missed(); };
   if (std::none_of(page.sets.begin(), page.sets.end(), missed)) return;
   out +=
-      "## Misses\n\nAll sets whose diagnosis is not what is hidden: something missing where nothing is, one effect that is in no class of "
-      "two, "
-      "two of which one is not named, what lies outside not said to, a decoy taken for physics.\n\n"
-      "| set | hidden | λ | diagnosis | why |\n|---|---|---|---|---|\n";
+      "## Misses\n\nAll sets whose diagnosis is not what is hidden: something missing where nothing is, one effect that is not named alone "
+      "or in a class of "
+      "two, two that are not named together, what lies outside not said to, a decoy taken for physics or said to lie outside, and those "
+      "that "
+      "failed. The remarks are of whoever looked into them, after opening.\n\n"
+      "| set | hidden | λ | diagnosis | remark |\n|---|---|---|---|---|\n";
   for (const Marked& m : page.sets) {
     if (missed(m))
       append(out, "| {} | {} | {} | {} | {} |\n", m.answer.set, label_of(m.answer), lambdas(m), label_of(*m.found),
@@ -98,8 +101,7 @@ void concealment(const Page& page, std::string& out) {
            : lacks ? "no"
                    : "",
            label_of(*m.found));
-    if (hidden && m.answer.kind == Kind::effect)
-      found.add(m.found->names(m.answer.effects.front().hypothesis) && m.found->named.size() <= 2);
+    if (hidden && m.answer.kind == Kind::effect) found.add(!m.missed());
   }
   append(out, "\nOf the concealed sets with one effect it is named, alone or in a class of two, in {}.{}\n\n", count_text(found),
          unknown == 0 ? "" : fmt::format(" Of {} more with one effect it is not known whether they are concealed.", unknown));
@@ -123,15 +125,14 @@ void confusion(const Score& s, std::string& out) {
 void power(const Score& s, std::string& out) {
   out +=
       "## Power\n\nλ: squared length, in noise units, of the effect's part that no retuning imitates, by the diagnosis' own "
-      "surrogate, at the hidden strength. *Ideal*: a test at the same level, of as many candidates, that knows the noise and the "
-      "simulation "
-      "exactly: Φ(√λ − z), mean of the bin's sets.\n\n| λ | named, alone or in a class of two | of these, concealed | ideal "
-      "|\n|---|---|---|---|\n";
+      "surrogate, at the hidden strength. Sets with one effect. *Ideal*: a test of one number with normal noise of known "
+      "size, at the candidate's share of the level (Bonferroni): Φ(√λ − z), mean of the bin's sets.\n\n"
+      "| λ | named, alone or in a class of two | of the concealed | ideal |\n|---|---|---|---|\n";
   for (const PowerBin& b : s.power)
     append(out, "| {} | {} | {} | {} |\n",
            std::isfinite(b.high) ? fmt::format("{:g} … {:g}", b.low, b.high) : fmt::format("{:g} and more", b.low), count_text(b.named),
            b.concealed.of == 0 ? "" : fmt::format("{} of {}", b.concealed.hits, b.concealed.of),
-           b.named.of == 0 ? "" : fmt::format("{:.0f} %", 100 * b.ideal));
+           b.ideals == 0 ? "" : fmt::format("{:.0f} %", 100 * b.ideal));
   out += "\n";
 }
 
@@ -181,9 +182,12 @@ void coverage(const Score& s, std::string& out) {
       "## Coverage of the 90 % intervals\n\np: that intervals which hold the truth in 90 % give such a count, by the exact binomial test, "
       "for "
       "all rows together (Holm 1979).\n\n| of | truth inside | p |\n|---|---|---|\n";
-  for (const Coverage& c : s.coverage) append(out, "| {} | {} | {:.2g} |\n", c.of, count_text(c.inside), c.p);
-  if (s.coverage.empty()) out += "| no interval was given | none tried | |\n";
-  out += "\nParameters: of the base where nothing is hidden, of the corrected model where its physics is the hidden one.\n\n";
+  for (const Coverage& c : s.coverage)
+    append(out, "| {} | {} | {} |\n", c.of, count_text(c.inside), c.varies ? fmt::format("{:.2g}", c.p) : "one truth: one trial");
+  out +=
+      "\nParameters: of the base where nothing is hidden, of the corrected model where its physics is the hidden one. A strength has an "
+      "interval "
+      "only where some candidate is significant. p takes sets as independent, though those of one mill share one bank.\n\n";
   if (s.recovery.empty()) return;
   out +=
       "## Parameters recovered\n\nMean distance from the truth, in the sets with one effect whose best candidate is right.\n\n"
@@ -196,8 +200,9 @@ void gains(const Score& s, std::string& out) {
   out += "## Held-out gain\n\n";
   append(
       out,
-      "Where physics is hidden and something is named, its model is surely better than every rival at the held-out conditions in {}.\n\n",
-      count_text(s.improves));
+      "One effect, and the best candidate is it: at the held-out conditions its model is surely better than every rival in {}{}. A verdict "
+      "`named` asks for this.\n\n",
+      count_text(s.improves), s.not_held_out == 0 ? "" : fmt::format("; {} more were not simulated there", s.not_held_out));
   if (s.gains.empty()) {
     out += "No set with a hidden effect has a right best candidate and a held-out condition: no gain was shown.\n";
     return;
