@@ -180,6 +180,10 @@ bool parse_answer(const std::vector<char>& answer, Soup& soup) {
     reader.take(&block, 1);
     if (block == Block::done) return true;
     if (block == Block::refused) throw Refusal(reader.text());
+    if (block == Block::note) {
+      soup.notes.push_back(reader.text());
+      continue;
+    }
     try {
       take_solid(reader, soup);
     } catch (const Refusal&) {

@@ -23,7 +23,7 @@ Soup import_mesh(const std::string& path, const ImportLimits& limits);
 [[noreturn]] void import_child(int pipe, const std::string& path, const std::string& extension, std::size_t max_triangles) noexcept;
 
 /// Kinds of block that the child writes: an octet, then for `solid` a name (32-bit length) and triangles (64-bit count, nine doubles
-/// each); for `refused` a message (32-bit length); `done` ends a complete answer.
-enum class Block : char { solid = 'S', refused = 'R', done = 'D' };
+/// each); for `note` a sentence for the report; for `refused` a message (32-bit lengths); `done` ends a complete answer.
+enum class Block : char { solid = 'S', note = 'N', refused = 'R', done = 'D' };
 
 }  // namespace millscope::geometry

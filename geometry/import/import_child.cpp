@@ -5,7 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -13,6 +16,7 @@
 
 #include "geometry/import/guarded_import.hpp"
 #include "geometry/import/preflight.hpp"
+#include "geometry/import/stl.hpp"
 #include "millscope/element.hpp"
 #include "millscope/parameters.hpp"
 
@@ -77,11 +81,7 @@ std::string solid_name(const aiMesh& mesh, const aiNode& node, bool is_root) {
   std::string name = mesh.mName.C_Str();
   const bool is_number = name.find_first_not_of("0123456789") == std::string::npos;  // 3MF: the object's id; its name is the node's
   if ((is_number && !made_up(node.mName.C_Str()) && !is_root) || made_up(name)) name = is_root ? "" : node.mName.C_Str();
-  if (made_up(name)) name = "all";
-  for (char& c : name) {
-    if (c == '|' || static_cast<unsigned char>(c) < ' ') c = '_';
-  }
-  return name.substr(0, 100);
+  return made_up(name) ? "all" : name;
 }
 
 void append_triangles(const aiMesh& mesh, const aiMatrix4x4t<double>& to_world, std::vector<double>& out) {
@@ -98,46 +98,115 @@ void append_triangles(const aiMesh& mesh, const aiMatrix4x4t<double>& to_world, 
   }
 }
 
-void send_scene(int pipe, const aiScene& scene, std::size_t max_triangles) {
+Solids solids_of(const aiScene& scene, std::size_t max_triangles) {
   std::vector<Placed> open{{scene.mRootNode, in_double(scene.mRootNode->mTransformation)}};
+  Solids out;
   std::size_t total = 0;
   while (!open.empty()) {
     const Placed placed = open.back();
     open.pop_back();
     for (unsigned i = 0; i < placed.node->mNumMeshes; ++i) {
       const aiMesh& mesh = *scene.mMeshes[placed.node->mMeshes[i]];
-      std::vector<double> triangles;
-      append_triangles(mesh, placed.to_world, triangles);
-      total += triangles.size() / 9;
+      Solid solid{solid_name(mesh, *placed.node, placed.node == scene.mRootNode), {}};
+      append_triangles(mesh, placed.to_world, solid.corners);
+      total += solid.corners.size() / 9;
       detail::check_size(static_cast<long long>(total), max_triangles);
-      write_block(pipe, Block::solid);
-      write_text(pipe, solid_name(mesh, *placed.node, placed.node == scene.mRootNode));
-      const std::uint64_t count = triangles.size() / 9;
-      write_all(pipe, &count, sizeof count);
-      write_all(pipe, triangles.data(), triangles.size() * sizeof(double));
+      out.solids.push_back(std::move(solid));
     }
     for (unsigned i = placed.node->mNumChildren; i-- > 0;) {  // the first child is taken first
       const aiNode* child = placed.node->mChildren[i];
       open.push_back({child, placed.to_world * in_double(child->mTransformation)});
     }
   }
+  return out;
+}
+
+/// Assimp takes a first byte of a binary PLY that is a line end for one of the header, and reads all that follows a byte too early. Where a
+/// number of floating point begins so, its last bit is another one here (of the larger byte first: a number below 1e-30 becomes 0).
+/// Returns "" for files that are read as they are.
+std::string ply_without_line_end(std::string_view data) {
+  const std::size_t end = data.find("end_header"), line = data.find('\n', end);
+  if (end == std::string_view::npos || line == std::string_view::npos || line + 1 >= data.size()) return {};
+  const std::string_view head = data.substr(0, end);
+  const char first = data[line + 1];
+  if (head.find("format binary") == std::string_view::npos || (first != '\n' && first != '\r')) return {};
+  const std::size_t property = head.find("property ");
+  std::string_view type = property == std::string_view::npos ? std::string_view() : head.substr(property + 9);
+  type = type.substr(0, type.find(' '));
+  if (type != "float" && type != "float32" && type != "double" && type != "float64") return {};
+  std::string out(data);
+  out[line + 1] = head.find("little_endian") != std::string_view::npos ? static_cast<char>(first + 1) : '\0';
+  return out;
+}
+
+const aiScene* read_scene(Assimp::Importer& importer, const std::string& path, const std::string& extension, std::size_t max_triangles) {
+  const MappedFile file(path);
+  preflight(file.view(), extension, max_triangles);
+  const std::string ply = extension == "ply" ? ply_without_line_end(file.view()) : std::string();
+  if (ply.empty()) return importer.ReadFile(path, aiProcess_Triangulate);
+  return importer.ReadFileFromMemory(ply.data(), ply.size(), aiProcess_Triangulate, "ply");
+}
+
+Solids read_by_assimp(const std::string& path, const std::string& extension, std::size_t max_triangles) {
+  Assimp::Importer importer;
+  const aiScene* scene = read_scene(importer, path, extension, max_triangles);
+  if (scene && scene->mRootNode) return solids_of(*scene, max_triangles);
+  std::string why = importer.GetErrorString();
+  for (char& c : why) c = static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  if (why.empty()) why = "its content is damaged";
+  throw Refusal("cannot be read as " + extension + " (" + why.substr(0, 300) + "): export it again, as STL if that is possible");
+}
+
+/// Far from the origin single precision is coarse: at 7 km half a millimetre.
+void note_rounding(Solids& file) {
+  constexpr double kRounding = 1.0 / (1 << 24), kMuch = 1e-5;  // of the body's size
+  double farthest = 0, low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (const Solid& s : file.solids) {
+    for (std::size_t i = 0; i < s.corners.size(); ++i) {
+      farthest = std::max(farthest, std::fabs(s.corners[i]));
+      low[i % 3] = std::min(low[i % 3], s.corners[i]), high[i % 3] = std::max(high[i % 3], s.corners[i]);
+    }
+  }
+  const double size = std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+  if (!std::isfinite(size) || kRounding * farthest <= kMuch * size) return;
+  char text[300];
+  std::snprintf(
+      text, sizeof text,
+      "coordinates up to %.4g are read in single precision, to within %.2g of the file's unit: move the body to the origin before "
+      "it is exported, or export it as text STL",
+      farthest, kRounding * farthest);
+  file.notes.emplace_back(text);
+}
+
+/// A name that a list of slots can hold: no bars, no control characters, not too long.
+std::string slot_name(std::string name) {
+  for (char& c : name) {
+    if (c == '|' || static_cast<unsigned char>(c) < ' ') c = '_';
+  }
+  return name.substr(0, 100);
+}
+
+/// One solid without a name is "all"; of several each has a number.
+void send(int pipe, const Solids& file) {
+  for (std::size_t i = 0; i < file.solids.size(); ++i) {
+    const Solid& s = file.solids[i];
+    write_block(pipe, Block::solid);
+    write_text(pipe, slot_name(!s.name.empty() ? s.name : file.solids.size() == 1 ? "all" : "solid_" + std::to_string(i + 1)));
+    const std::uint64_t count = s.corners.size() / 9;
+    write_all(pipe, &count, sizeof count);
+    write_all(pipe, s.corners.data(), s.corners.size() * sizeof(double));
+  }
+  for (const std::string& note : file.notes) {
+    write_block(pipe, Block::note);
+    write_text(pipe, note);
+  }
+  write_block(pipe, Block::done);
 }
 
 void import_into(int pipe, const std::string& path, const std::string& extension, std::size_t max_triangles) {
-  {
-    const MappedFile file(path);
-    preflight(file.view(), extension, max_triangles);
-  }
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
-  if (!scene || !scene->mRootNode) {
-    std::string why = importer.GetErrorString();
-    for (char& c : why) c = static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    if (why.empty()) why = "its content is damaged";
-    throw Refusal("cannot be read as " + extension + " (" + why.substr(0, 300) + "): export it again, as STL if that is possible");
-  }
-  send_scene(pipe, *scene, max_triangles);
-  write_block(pipe, Block::done);
+  Solids file = extension == "stl" ? read_stl(MappedFile(path).view(), max_triangles) : read_by_assimp(path, extension, max_triangles);
+  if (file.single_precision) note_rounding(file);
+  send(pipe, file);
 }
 
 }  // namespace

@@ -124,7 +124,6 @@ bool is_supported(const std::string& extension) {
 }
 
 void preflight(std::string_view data, const std::string& extension, std::size_t max_triangles) {
-  if (extension == "stl") return detail::check_stl(data, max_triangles);
   if (extension == "obj") return detail::check_obj(data, max_triangles);
   if (extension == "ply") return detail::check_ply(data, max_triangles);
   if (extension == "off") return detail::check_off(data, max_triangles);

@@ -8,7 +8,7 @@
 
 namespace millscope::geometry {
 
-/// Throws Refusal. `extension` is lower case without the dot, one of those that `is_supported` knows.
+/// Throws Refusal. `extension` is lower case without the dot, one of those that `is_supported` knows; STL looks at itself (stl.hpp).
 void preflight(std::string_view data, const std::string& extension, std::size_t max_triangles);
 
 bool is_supported(const std::string& extension);
@@ -39,7 +39,6 @@ void check_number(std::string_view word, std::size_t line_number);
 [[noreturn]] void refuse_cut_short(const std::string& reason);
 void check_size(long long triangles, std::size_t max_triangles);
 
-void check_stl(std::string_view data, std::size_t max_triangles);
 void check_obj(std::string_view data, std::size_t max_triangles);
 void check_off(std::string_view data, std::size_t max_triangles);
 void check_ply(std::string_view data, std::size_t max_triangles);

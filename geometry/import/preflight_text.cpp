@@ -1,7 +1,5 @@
-// The formats that hold text or a header with counts: STL, OBJ, OFF, PLY.
+// The formats that hold text or a header with counts: OBJ, OFF, PLY.
 #include <algorithm>
-#include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "geometry/import/preflight.hpp"
@@ -10,37 +8,6 @@
 namespace millscope::geometry::detail {
 
 namespace {
-
-constexpr std::size_t kBinaryStlHeader = 84, kBinaryStlTriangle = 50;  // bytes
-
-bool looks_like_text_stl(std::string_view data) {
-  const std::string_view head = data.substr(0, 4096);
-  const std::size_t start = head.find_first_not_of(" \t\r\n");
-  return start != std::string_view::npos && head.substr(start, 5) == "solid" &&
-         (head.find("facet") != std::string_view::npos || head.find("endsolid") != std::string_view::npos);
-}
-
-void check_text_stl(std::string_view data, std::size_t max_triangles) {
-  Lines lines(data);
-  long long solids = 0, endsolids = 0, facets = 0, endfacets = 0, vertices = 0;
-  for (std::string_view line; lines.next(line);) {
-    const std::string_view word = take_word(line);
-    solids += word == "solid";
-    endsolids += word == "endsolid";
-    facets += word == "facet";
-    endfacets += word == "endfacet";
-    if (word != "vertex") continue;
-    ++vertices;
-    check_numbers(line, 3, lines.number());
-  }
-  if (solids != endsolids) refuse_cut_short(std::to_string(solids) + " 'solid' but " + std::to_string(endsolids) + " 'endsolid'");
-  if (facets != endfacets || vertices != 3 * facets) {
-    refuse_cut_short(std::to_string(facets) + " 'facet', " + std::to_string(endfacets) + " 'endfacet', " + std::to_string(vertices) +
-                     " 'vertex'");
-  }
-  if (facets == 0) refuse("holds no triangles: export the body, not an empty selection");
-  check_size(facets, max_triangles);
-}
 
 /// Index of an OBJ face corner such as "7", "7/2/3" or "-1".
 void check_obj_index(std::string_view word, long long vertices, long long& largest, std::size_t line_number) {
@@ -131,20 +98,6 @@ void check_ply_text(Lines& lines, const std::vector<PlyElement>& elements) {
 }
 
 }  // namespace
-
-void check_stl(std::string_view data, std::size_t max_triangles) {
-  std::uint32_t count = 0;
-  if (data.size() >= kBinaryStlHeader) std::memcpy(&count, data.data() + 80, 4);
-  const std::size_t expected = kBinaryStlHeader + kBinaryStlTriangle * count;
-  if (data.size() == expected) {
-    if (count == 0) refuse("holds no triangles: export the body, not an empty selection");
-    return check_size(count, max_triangles);
-  }
-  if (looks_like_text_stl(data)) return check_text_stl(data, max_triangles);
-  if (data.size() < kBinaryStlHeader) refuse_cut_short(std::to_string(data.size()) + " bytes are no STL file");
-  refuse_cut_short("a binary STL of " + std::to_string(count) + " triangles has " + std::to_string(expected) + " bytes, this one has " +
-                   std::to_string(data.size()));
-}
 
 void check_obj(std::string_view data, std::size_t max_triangles) {
   Lines lines(data);

@@ -72,7 +72,7 @@ Soup placed(Soup soup, const MeshOptions& options) {
 Mesh::Mesh(Soup soup, const MeshOptions& options) {
   try {
     for (const std::string& name : soup.names) slots_ += slots_.empty() ? name : '|' + name;
-    const std::vector<std::string> names = soup.names;
+    const std::vector<std::string> names = soup.names, notes = soup.notes;
     mesh_ = index_mesh(placed(std::move(soup), options), options.period);
     if (mesh_.own == 0) {
       throw Refusal("all " + std::to_string(mesh_.degenerate) +
@@ -82,6 +82,7 @@ Mesh::Mesh(Soup soup, const MeshOptions& options) {
     topology_ = find_topology(mesh_);
     survey_ = survey_mesh(mesh_, topology_);
     report_ = "file: " + options.label + "\n" + survey_text(survey_, mesh_, topology_, names);
+    for (const std::string& note : notes) report_ += "note: " + note + "\n";
   } catch (const Refusal& e) {
     throw Refusal("mesh file " + options.label + ": " + e.what());
   }

@@ -15,6 +15,7 @@ struct Soup {
   std::vector<Point> corners;        ///< 3 per triangle, m once the unit is applied
   std::vector<std::uint32_t> slots;  ///< material slot of each triangle
   std::vector<std::string> names;    ///< of the slots: the names of the solids, or "all"
+  std::vector<std::string> notes;    ///< of the reader, for the report
 
   std::size_t size() const { return slots.size(); }
 };

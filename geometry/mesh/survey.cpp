@@ -43,18 +43,36 @@ void look_at(const Point (&ends)[2], std::vector<double>& nearest) {
   }
 }
 
+/// How much of a triangle looks inwards: 1 or 0 of a wall, by the way to the axis, and of an end face, by the way to the middle; 0 of both
+/// where it looks along neither, as the side of a lifter does.
+struct Look {
+  double inward = 0, judged = 0;
+};
+
+Look look_of(const Point& normal, const Point& out, const Axis& axis) {
+  if (!axis.found) return {dot(normal, out) < 0 ? 1.0 : 0.0, 1};
+  const Point& d = axis.direction;
+  const double along = dot(out, d), up = dot(normal, d);
+  const Point across = out - along * d;
+  const double reach = length(across), radial = reach > 0 ? dot(normal, across) / reach : 0;
+  const double round = std::sqrt(std::max(0.0, dot(normal, normal) - up * up - radial * radial));
+  if (round > std::max(std::fabs(up), std::fabs(radial))) return {};
+  return {(std::fabs(up) > std::fabs(radial) ? up * along : radial) < 0 ? 1.0 : 0.0, 1};
+}
+
 void add_up(const IndexedMesh& mesh, Survey& s) {
-  double inward = 0;
+  double inward = 0, judged = 0;
   const Point middle = s.axis.found ? s.axis.point : 0.5 * (s.box.low + s.box.high);
   for (std::size_t t = 0; t < mesh.own; ++t) {
     const Point a = mesh.vertex(t, 0), normal = double_area(mesh, t);
-    Point out = (1.0 / 3) * (a + mesh.vertex(t, 1) + mesh.vertex(t, 2)) - middle;
-    if (s.axis.found) out = out - dot(out, s.axis.direction) * s.axis.direction;
-    s.area += 0.5 * length(normal);
-    s.volume += dot(normal, a) / 6;
-    if (dot(normal, out) < 0) inward += 0.5 * length(normal);
+    const Point out = (1.0 / 3) * (a + mesh.vertex(t, 1) + mesh.vertex(t, 2)) - middle;
+    const double area = 0.5 * length(normal);
+    const Look look = look_of(normal, out, s.axis);
+    s.area += area;
+    s.volume += dot(normal, a - middle) / 6;
+    inward += look.inward * area, judged += look.judged * area;
   }
-  s.inward_share = s.area > 0 ? inward / s.area : 0;
+  s.inward_share = judged > 0 ? inward / judged : 0;
 }
 
 Facing facing_of(const Survey& s, const Topology& topology) {
@@ -145,6 +163,7 @@ Survey survey_mesh(const IndexedMesh& mesh, const Topology& topology) {
   s.axis = find_axis(soup);
   s.axis.point = cleaned(s.axis.point, s.box.diagonal());
   add_up(mesh, s);
+  if (s.closed && topology.turned_edges == 0) s.inward_share = s.volume < 0 ? 1 : 0;  // wound as one: lifters' sides too
   s.facing = facing_of(s, topology);
   s.interior = interior_of(mesh, s);
   return s;

@@ -19,7 +19,7 @@ struct Survey {
   double volume = 0;  ///< signed, of a closed surface, m³
   bool closed = false;
   Axis axis;
-  double inward_share = 0;  ///< of the area
+  double inward_share = 0;  ///< of an open surface's area that looks along the axis or across it, not round it; of a closed one all or none
   Facing facing = Facing::both;
   Interior interior{};
 };
