@@ -46,10 +46,21 @@ std::string range_text(const analysis::ResultArray& axis) {
                      picture::significant_text(axis.value.back(), 4), axis.unit);
 }
 
-void require_same_axis(const analysis::ResultArray& array, const analysis::ResultArray* a, const analysis::ResultArray* b) {
+/// What makes grids one. Those of recordings follow the mill's size, which is found from the points where nobody states it.
+std::string same_grid_remedy(const std::string& analyzer, const analysis::ResultMeta& a, const analysis::ResultMeta& b) {
+  const std::string without = fmt::format("leave it out with --without {}", analyzer);
+  const double of_a = 2 * a.context.mill_radius, of_b = 2 * b.context.mill_radius;
+  if ((a.source != "recording" && b.source != "recording") || of_a == of_b)
+    return fmt::format("analyse both with the same settings of '{}', or {}", analyzer, without);
+  return fmt::format(
+      "the mill's diameter is {} m in A and {} m in B: state it for both, 'condition: {{mill_diameter: {} m}}' in a recording.yaml, and "
+      "analyse again; or {}",
+      picture::significant_text(of_a, 4), picture::significant_text(of_b, 4), picture::significant_text(std::max(of_a, of_b), 4), without);
+}
+
+void require_same_axis(const analysis::ResultArray& array, const analysis::ResultArray* a, const analysis::ResultArray* b,
+                       const std::string& remedy) {
   if (a == nullptr && b == nullptr) return;
-  const std::string remedy =
-      fmt::format("analyse both with the same settings of '{}', or leave it out with --without {}", array.analyzer, array.analyzer);
   if (a == nullptr || b == nullptr)
     throw UserError(fmt::format("{}: only one of the results has an axis for it; {}", full_name(array), remedy));
   bool same = a->unit == b->unit && a->size() == b->size();
@@ -67,7 +78,8 @@ void require_comparable(const analysis::ResultSet& a, const analysis::ResultSet&
                                 full_name(of_a), of_a.unit, of_b.unit));
   }
   if (of_a.shape.size() == of_b.shape.size()) {
-    for (std::size_t d = 0; d < of_a.shape.size(); ++d) require_same_axis(of_a, a.axis(of_a, d), b.axis(of_b, d));
+    const std::string remedy = same_grid_remedy(of_a.analyzer, a.meta, b.meta);
+    for (std::size_t d = 0; d < of_a.shape.size(); ++d) require_same_axis(of_a, a.axis(of_a, d), b.axis(of_b, d), remedy);
   }
   if (of_a.shape != of_b.shape) {
     throw UserError(fmt::format("{}: {} in A, {} in B; analyse both with the same settings of '{}'", full_name(of_a), shape_text(of_a),
