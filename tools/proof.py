@@ -226,6 +226,8 @@ class Batch:
                 continue
             if (source / "diagnosis.json").exists():
                 found = json.loads((source / "diagnosis.json").read_text())
+                if "study" in found:
+                    found["study"] = "%s/study.yaml" % name  # where it lay on this machine is nobody's business
                 replace(target / "diagnosis.json", (json.dumps(found, separators=(",", ":"), ensure_ascii=False) + "\n").encode())
             elif (source / "failed.txt").exists():
                 replace(target / "failed.txt", (source / "failed.txt").read_bytes())

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernel/config/existing_file.hpp"
 #include "kernel/config/reader.hpp"
 
 namespace millscope::config {
@@ -176,11 +177,18 @@ bool read_shares_by_mass(const Node& fill) {
 }
 
 FillCase read_fill(const Node& section) {
-  section.expect({"count", "mass", "filling", "porosity", "vessel", "region", "settle_s", "shares_by"});
+  section.expect({"count", "mass", "filling", "file", "porosity", "vessel", "region", "settle_s", "shares_by"});
   FillCase fill;
   fill.where = section.where();
-  const int ways = int{section.has("count")} + int{section.has("mass")} + int{section.has("filling")};
-  if (ways != 1) section.fail(fmt::format("gives {} of 'count', 'mass' and 'filling'; give exactly one", ways == 0 ? "none" : "several"));
+  const int ways = int{section.has("count")} + int{section.has("mass")} + int{section.has("filling")} + int{section.has("file")};
+  if (ways != 1)
+    section.fail(fmt::format("gives {} of 'count', 'mass', 'filling' and 'file'; give exactly one", ways == 0 ? "none" : "several"));
+  if (const auto node = section.find("file")) {
+    fill.file = existing_file(*node);
+    fill.settle = 0;  // they are where they are
+    if (const auto region = section.find("region"))
+      region->fail("bounds a space that is filled, but the beads come from a file; leave it out");
+  }
   if (const auto node = section.find("count")) fill.count = static_cast<std::uint64_t>(read_integer(*node, between(1, 4e9)));
   if (const auto node = section.find("mass")) fill.mass = read_number(*node, "kg", positive());
   const Range part{0, 1, true, false, "J is a part of the bare shell's volume; write 31.3 % for a percentage"};

@@ -128,6 +128,7 @@ json fill_schema() {
   return object({{"count", integer("number of beads")},
                  {"mass", quantity("kg")},
                  {"filling", quantity("J, part of the bare shell's volume")},
+                 {"file", text("beads and their places: CSV with heads x, y, z, diameter or radius, material, vx … wz")},
                  {"porosity", quantity("void part of the bed, default 0.37")},
                  {"vessel", object({{"diameter", quantity("m")}, {"length", quantity("m")}}, {"diameter", "length"})},
                  {"region", object({{"low", vector()}, {"high", vector()}}, {"low", "high"})},

@@ -95,6 +95,7 @@ void write_fill(Lines& out, const FillCase& f) {
   if (f.count) out.value("count", fmt::format("{}", *f.count));
   if (f.mass) out.value("mass", *f.mass);
   if (f.filling) out.value("filling", *f.filling);
+  if (!f.file.empty()) out.value("file", quoted(f.file));
   out.value("porosity", f.porosity);
   if (f.vessel)
     out.value("vessel", fmt::format("{{diameter: {}, length: {}}}", number_text(f.vessel->diameter), number_text(f.vessel->length)));

@@ -148,8 +148,18 @@ void put_bead(Assembly& a, std::size_t i, const BeadType& type, const base::Vect
   p.material[i] = static_cast<std::uint8_t>(std::find(a.materials.begin(), a.materials.end(), bead.material) - a.materials.begin());
 }
 
+void put_moving(Assembly& a, std::size_t i, const BeadType& type, const base::Vector3& centre, const base::Vector3& velocity,
+                const base::Vector3& spin) {
+  put_bead(a, i, type, centre);
+  for (dem::MotionLine* line : {&a.system->particles.motion[i], &a.system->particles.half[i]}) {
+    std::copy_n(velocity.data(), 3, line->v);
+    std::copy_n(spin.data(), 3, line->w);
+  }
+}
+
 void insert_beads(Assembly& a) {
   if (a.c.start) return take_over_beads(a);
+  if (!a.c.fill.file.empty()) return insert_file_beads(a);
   Random random(a.c.seed);
   const double jitter = 0.25 * (kSpacing - 1) * a.c.largest_diameter();
   const Region region = region_of(a);

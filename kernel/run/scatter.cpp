@@ -7,6 +7,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "kernel/run/sphere_cells.hpp"
+
 namespace millscope::run {
 namespace {
 
@@ -14,70 +16,6 @@ constexpr std::size_t kBatch = 4096;       // points that are held against the w
 constexpr double kFirstShare = 0.22;       // solid volume of the part that is filled first: random addition is still quick there
 constexpr std::size_t kTries = 400;        // vain tries in a row before the part grows …
 constexpr std::size_t kLastTries = 40000;  // … and before giving up, when the part is all there is
-
-/// Beads by the cubic cell of their centre. Cells are no smaller than the largest bead, so that neighbours touch at most.
-class Cells {
- public:
-  Cells(const Assembly& a, const Region& r, double diameter) : low_(r.box.low) {
-    double volume = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) volume *= r.box.high[axis] - r.box.low[axis];
-    const double size = std::max(diameter, std::cbrt(volume / 4e6));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      extent_[axis] = r.box.high[axis] - r.box.low[axis];
-      periodic_[axis] = a.c.domain.periodic[axis];
-      count_[axis] = std::max<std::int64_t>(1, static_cast<std::int64_t>(extent_[axis] / size));
-    }
-    cells_.resize(count_[0] * count_[1] * count_[2]);
-  }
-
-  bool is_free(const base::Vector3& p, double radius) const {
-    std::array<std::int64_t, 3> home{}, from{}, to{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      home[axis] = cell(p, axis);
-      // With fewer than three cells along a periodic axis each is looked at once.
-      const bool all = periodic_[axis] && count_[axis] < 3;
-      from[axis] = all ? 0 : periodic_[axis] ? home[axis] - 1 : std::max<std::int64_t>(0, home[axis] - 1);
-      to[axis] = all ? count_[axis] - 1 : periodic_[axis] ? home[axis] + 1 : std::min(count_[axis] - 1, home[axis] + 1);
-    }
-    for (std::int64_t x = from[0]; x <= to[0]; ++x) {
-      for (std::int64_t y = from[1]; y <= to[1]; ++y) {
-        for (std::int64_t z = from[2]; z <= to[2]; ++z) {
-          for (const Sphere& s : cells_[index({x, y, z})]) {
-            if (distance2(p, s.centre) < (radius + s.radius) * (radius + s.radius)) return false;
-          }
-        }
-      }
-    }
-    return true;
-  }
-
-  void add(const base::Vector3& p, double radius) { cells_[index({cell(p, 0), cell(p, 1), cell(p, 2)})].push_back({p, radius}); }
-
- private:
-  std::int64_t cell(const base::Vector3& p, std::size_t axis) const {
-    const auto at = static_cast<std::int64_t>((p[axis] - low_[axis]) / extent_[axis] * static_cast<double>(count_[axis]));
-    return std::clamp<std::int64_t>(at, 0, count_[axis] - 1);
-  }
-  std::size_t index(std::array<std::int64_t, 3> at) const {
-    for (std::size_t axis = 0; axis < 3; ++axis) at[axis] = (at[axis] + count_[axis]) % count_[axis];
-    return (at[0] * count_[1] + at[1]) * count_[2] + at[2];
-  }
-  double distance2(const base::Vector3& p, const base::Vector3& q) const {
-    double sum = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      double d = p[axis] - q[axis];
-      if (periodic_[axis]) d -= extent_[axis] * std::round(d / extent_[axis]);
-      sum += d * d;
-    }
-    return sum;
-  }
-
-  base::Vector3 low_;
-  std::array<double, 3> extent_{};
-  std::array<bool, 3> periodic_{};
-  std::array<std::int64_t, 3> count_{};
-  std::vector<std::vector<Sphere>> cells_;
-};
 
 /// Random points of the region for spheres of one radius, clear of the walls.
 class Points {
@@ -142,16 +80,16 @@ std::vector<base::Vector3> scattered(const Assembly& a, const Region& region, co
     widest = std::max(widest, 2 * s.radius);
   }
   double part = first_part(a, region, solid / kFirstShare);
-  Cells cells(a, region, widest);
-  for (const Sphere& s : occupied) cells.add(s.centre, s.radius);
+  SphereCells cells(a, region, widest);
+  for (const Sphere& s : occupied) cells.add(s);
   Points points(a, region, random);
   std::vector<base::Vector3> centres(types.size());
   for (std::size_t done = 0; done < order.size(); ++done) {
     const double radius = 0.5 * types[order[done]].diameter;
     for (std::size_t tries = 1;; ++tries) {
       const base::Vector3 p = points.next(radius, part);
-      if (cells.is_free(p, radius * (1 + 1e-6))) {
-        cells.add(p, radius);
+      if (!cells.overlapping({p, radius * (1 + 1e-6)})) {
+        cells.add({p, radius});
         centres[order[done]] = p;
         break;
       }

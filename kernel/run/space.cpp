@@ -174,10 +174,14 @@ double first_part(const Assembly& a, const Region& r, double volume) {
 }
 
 std::vector<std::uint8_t> blocked(const Assembly& a, const std::vector<base::Vector3>& centres, double radius) {
+  return blocked(a, centres, std::vector<double>(centres.size(), radius));
+}
+
+std::vector<std::uint8_t> blocked(const Assembly& a, const std::vector<base::Vector3>& centres, const std::vector<double>& radii) {
   std::vector<std::uint8_t> bad(centres.size(), 0);
   for (std::size_t g = 0; g < a.geometries.size(); ++g) {
     const std::vector<base::Vector3> sites = in_frame_of(a, g, centres);
-    mark_touching(a.geometries[g], sites, std::vector<double>(centres.size(), radius), bad);
+    mark_touching(a.geometries[g], sites, radii, bad);
     mark_hidden(a.geometries[g], sites, bad);
   }
   return bad;

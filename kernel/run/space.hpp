@@ -28,6 +28,7 @@ double first_part(const Assembly& a, const Region& r, double volume);
 Region region_of(const Assembly& a);
 
 /// 1 for each centre whose sphere of that radius touches a wall, or that a wall separates from the axis of its own interior.
+std::vector<std::uint8_t> blocked(const Assembly& a, const std::vector<base::Vector3>& centres, const std::vector<double>& radii);
 std::vector<std::uint8_t> blocked(const Assembly& a, const std::vector<base::Vector3>& centres, double radius);
 
 }  // namespace millscope::run

@@ -176,14 +176,6 @@ void check_places(const Assembly& a, Donor& donor) {
   }
 }
 
-void put_moving(Assembly& a, std::size_t i, const BeadType& type, const Left& bead) {
-  put_bead(a, i, type, bead.centre);
-  for (dem::MotionLine* line : {&a.system->particles.motion[i], &a.system->particles.half[i]}) {
-    std::copy_n(bead.velocity.data(), 3, line->v);
-    std::copy_n(bead.spin.data(), 3, line->w);
-  }
-}
-
 /// The beads that stay, in the order of their ids, each with its type here.
 std::vector<std::pair<Left, BeadType>> staying(const Donor& donor, std::vector<Wanted>& kinds, Random& random) {
   std::vector<std::size_t> order(donor.beads.size());
@@ -225,7 +217,7 @@ void take_over_beads(Assembly& a) {
   a.system->particles.resize(a.bead_count);
   std::vector<Sphere> occupied;
   for (std::size_t i = 0; i < stay.size(); ++i) {
-    put_moving(a, i, stay[i].second, stay[i].first);
+    put_moving(a, i, stay[i].second, stay[i].first.centre, stay[i].first.velocity, stay[i].first.spin);
     occupied.push_back({stay[i].first.centre, stay[i].first.radius});
   }
   std::vector<BeadType> lacking;

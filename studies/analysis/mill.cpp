@@ -71,7 +71,7 @@ void know_charge(const config::Case& c, const std::optional<config::Vessel>& ves
   context.bead_density = mass / volume;
   context.bead_radius /= share, mass /= share, volume /= share;
   // A case that serves only as the geometry of a recording may leave the charge open.
-  if (!c.fill.count && !c.fill.mass && !c.fill.filling) return;
+  if (!c.fill.count && !c.fill.mass && !c.fill.filling && c.fill.file.empty()) return;
   context.charge_count = static_cast<double>(config::bead_count(c, vessel));
   context.charge_mass = context.charge_count * mass;
   if (!vessel) return;

@@ -79,6 +79,7 @@ std::vector<NamedFile> files_of(const config::Case& c, const host::Registry& reg
       if (descriptor.parameters[i].type == ValueType::file && value.given != 0) paths.insert(value.text);
     }
   });
+  if (!c.fill.file.empty()) paths.insert(c.fill.file);
   std::vector<NamedFile> files;
   for (const std::string& path : paths) files.push_back(name_file(path));
   return files;

@@ -84,7 +84,7 @@ void concealment(const Page& page, std::string& out) {
          "| set | hidden | power | shoulder | toe | Eq. 4.3 | concealed | diagnosis |\n|---|---|---|---|---|---|---|---|\n",
          Unsuspicious().power_percent, Unsuspicious().degrees);
   const std::map<std::string, Unsuspicious> limits = unsuspicious(page.sets);
-  Count found;
+  Count found, empty;
   int unknown = 0;
   for (const Marked& m : page.sets) {
     if (!m.found) continue;
@@ -101,9 +101,13 @@ void concealment(const Page& page, std::string& out) {
            : lacks ? "no"
                    : "",
            label_of(*m.found));
+    if (m.answer.kind == Kind::none) empty.add(limits.at(m.study).holds(c));
     if (hidden && m.answer.kind == Kind::effect) found.add(!m.missed());
   }
-  append(out, "\nOf the concealed sets with one effect it is named, alone or in a class of two, in {}.{}\n\n", count_text(found),
+  append(out,
+         "\nOf the concealed sets with one effect it is named, alone or in a class of two, in {}. The same limits hold in {} of the sets "
+         "where nothing is hidden.{}\n\n",
+         count_text(found), fmt::format("{} of {}", empty.hits, empty.of),
          unknown == 0 ? "" : fmt::format(" Of {} more with one effect it is not known whether they are concealed.", unknown));
 }
 

@@ -59,7 +59,7 @@ void require_same_inside(const run::Assembly& given, const run::Assembly& common
 fs::path write_common_case(const run::Assembly& a, const host::Registry& registry, const fs::path& folder) {
   config::Case c = a.c;
   c.fill.count = a.bead_count;
-  c.fill.filling.reset(), c.fill.mass.reset();
+  c.fill.filling.reset(), c.fill.mass.reset(), c.fill.file.clear();
   for (std::size_t g = 0; g < c.geometry.size(); ++g) {
     if (c.geometry[g].plugin.kind != "mesh") put_mesh_in_place(a.geometries[g], c.geometry[g].plugin, c.domain, folder);
   }

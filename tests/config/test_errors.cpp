@@ -44,7 +44,7 @@ TEST_CASE("beads and fill") {
         "case.yaml:8: 'fill.filling' is 31.3; it must be above 0 and at most 1; J is a part of the bare shell's volume; write 31.3 % for a "
         "percentage");
   CHECK(refusal(case_with("fill", "fill: {filling: 31.3 %, count: 5}")) ==
-        "case.yaml:8: 'fill' gives several of 'count', 'mass' and 'filling'; give exactly one");
+        "case.yaml:8: 'fill' gives several of 'count', 'mass', 'filling' and 'file'; give exactly one");
   CHECK(refusal(case_with("fill", "fill: {count: 2.5}")) == "case.yaml:8: 'fill.count' is '2.5'; a whole number is expected");
 }
 

@@ -41,6 +41,17 @@ std::vector<base::Interval90> of_theta(const BankData& data, const std::vector<b
   return out;
 }
 
+/// What each later fit of a draw gains on the first one in one draw of ten; never less than one unit of Q.
+std::vector<double> usual_gains(const std::vector<PseudoData::Drawn>& drawn) {
+  constexpr double kPart = 0.9;
+  std::vector<double> usual(drawn.front().fit.size(), 1);
+  for (std::size_t j = 1; j < usual.size(); ++j) {
+    auto gain = collect(drawn, [j](const auto& d) { return d.fit[0].q - d.fit[j].q; });
+    usual[j] = std::max(1.0, base::quantile(gain, kPart));
+  }
+  return usual;
+}
+
 /// p of several statistics together (min-p; Westfall & Young 1993): how often the smallest p of a draw is as small, the largest over the
 /// laws of noise, whose draws follow each other in turn. Large values are unlikely ones. Draws and what was observed are ranked together,
 /// so that neither has a finer scale.
@@ -203,26 +214,29 @@ class Namer {
     if (!judged.fit.strengths.empty()) judged.strength = found[p_.data.theta.size()];
   }
 
-  /// Under every other candidate: how often the best of all, whichever that is in the draw, would seem better by so much.
+  /// Under every other candidate k: how often some candidate would seem better than k by as much as the best does, each measured by what it
+  /// gains by chance. So a candidate that does nothing here goes where the base goes, though another one gains more by chance.
   void compare_others() {
     const Index best = *out_.best;
     out_.kept = {best};
     for (Index k = 0; k < count(); ++k) {
       if (k == best || !tested(k)) continue;
       Judged& judged = out_.judged[k];
-      const double excess = judged.fit.q - out_.judged[best].fit.q;
-      const Choice own{k};
-      std::vector<Choice> choices{own};
+      std::vector<Choice> choices{{k}};
+      std::size_t of_best = 0;
       for (Index j = 0; j < count(); ++j) {
-        if (j != k && tested(j)) choices.push_back({j});
+        if (j == k || !tested(j)) continue;
+        if (j == best) of_best = choices.size();
+        choices.push_back({j});
       }
-      const auto drawn = pseudo_.draw(pseudo_.truth(own, judged.fit), choices, {o_.comparison_draws, 300 + static_cast<std::uint64_t>(k)});
-      const auto lead = collect(drawn, [](const auto& d) {
-        double least = d.fit[0].q;
-        for (const FitResult& fit : d.fit) least = std::min(least, fit.q);
-        return d.fit[0].q - least;
+      const auto drawn = pseudo_.draw(pseudo_.truth({k}, judged.fit), choices, {o_.comparison_draws, 300 + static_cast<std::uint64_t>(k)});
+      const std::vector<double> usual = usual_gains(drawn);
+      const auto lead = collect(drawn, [&](const auto& d) {
+        double most = 0;
+        for (std::size_t j = 1; j < d.fit.size(); ++j) most = std::max(most, (d.fit[0].q - d.fit[j].q) / usual[j]);
+        return most;
       });
-      judged.against_best_p = p_of(lead, excess);
+      judged.against_best_p = p_of(lead, (judged.fit.q - out_.judged[best].fit.q) / usual[of_best]);
       look_closer(k);
       if (judged.against_best_p > o_.level) out_.kept.push_back(k);
     }

@@ -1,0 +1,104 @@
+// Beads that a file places: each in its class of the case, none beyond a wall, none deep in another.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/config/bead_file.hpp"
+#include "kernel/run/insertion.hpp"
+#include "kernel/run/sphere_cells.hpp"
+
+namespace millscope::run {
+namespace {
+
+using base::UserError;
+using config::PlacedBead;
+
+constexpr double kDeepest = 0.05;   // of the smaller radius: snapshots of a run overlap by less, and more flies apart
+constexpr double kRounding = 1e-4;  // of a diameter that was written with few digits
+
+[[noreturn]] void refuse(const Assembly& a, const PlacedBead& bead, const std::string& why) {
+  throw UserError(base::Location{a.c.fill.file, static_cast<int>(bead.line)}, why);
+}
+
+bool holds(const config::BeadCase& bead, double diameter) {
+  const auto [least, most] =
+      std::minmax_element(bead.sizes.begin(), bead.sizes.end(), [](const auto& x, const auto& y) { return x.diameter < y.diameter; });
+  return diameter >= (1 - kRounding) * least->diameter && diameter <= (1 + kRounding) * most->diameter;
+}
+
+BeadType type_of(const Assembly& a, const PlacedBead& bead) {
+  std::vector<std::size_t> fit;
+  for (std::size_t b = 0; b < a.c.beads.size(); ++b) {
+    const config::BeadCase& c = a.c.beads[b];
+    if ((bead.material.empty() || bead.material == c.material) && holds(c, bead.diameter)) fit.push_back(b);
+  }
+  if (fit.size() == 1) return {fit[0], bead.diameter};
+  const std::string what = fmt::format("a bead of {:.6g} m{}", bead.diameter, bead.material.empty() ? "" : " of " + bead.material);
+  if (fit.empty())
+    refuse(a, bead, fmt::format("has {}, which no class below 'beads' of the case is; check its unit and material, or add a class", what));
+  refuse(a, bead,
+         fmt::format("has {}, which is of {} classes below 'beads'; give a column 'material', or sizes that do not overlap", what,
+                     fit.size()));
+}
+
+void wrap(const Assembly& a, base::Vector3& p) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!a.c.domain.periodic[axis]) continue;
+    const double low = a.c.domain.box.low[axis], length = a.c.domain.box.high[axis] - low;
+    p[axis] -= length * std::floor((p[axis] - low) / length);
+  }
+}
+
+/// Bead i and j overlap by more than they may: said with both lines.
+void check_overlaps(const Assembly& a, const std::vector<PlacedBead>& beads) {
+  Region region = region_of(a);
+  double largest = 0;
+  for (const PlacedBead& b : beads) {
+    largest = std::max(largest, b.diameter);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      region.box.low[axis] = std::min(region.box.low[axis], b.centre[axis]);
+      region.box.high[axis] = std::max(region.box.high[axis], b.centre[axis]);
+    }
+  }
+  SphereCells cells(a, region, largest);
+  for (const PlacedBead& b : beads) {
+    const double radius = 0.5 * b.diameter;
+    const auto hit = cells.overlapping({b.centre, radius}, kDeepest);
+    if (hit) {
+      const PlacedBead& other = beads[*hit];
+      refuse(a, b,
+             fmt::format("has a bead that overlaps that of line {} by more than {:g} % of the smaller radius; correct the file, or check "
+                         "that its lengths have one unit",
+                         other.line, 100 * kDeepest));
+    }
+    cells.add({b.centre, radius});
+  }
+}
+
+void check_walls(const Assembly& a, const std::vector<PlacedBead>& beads) {
+  std::vector<base::Vector3> centres;
+  std::vector<double> radii;
+  for (const PlacedBead& b : beads) centres.push_back(b.centre), radii.push_back(0.5 * b.diameter * (1 - kDeepest));
+  const std::vector<std::uint8_t> bad = blocked(a, centres, radii);
+  const auto first = std::find(bad.begin(), bad.end(), 1);
+  if (first == bad.end()) return;
+  refuse(
+      a, beads[static_cast<std::size_t>(first - bad.begin())],
+      fmt::format("has a bead in a wall or beyond it, as {} of {} beads are; check the frame of the file: z is the mill's axis, in metres",
+                  std::count(bad.begin(), bad.end(), 1), bad.size()));
+}
+
+}  // namespace
+
+void insert_file_beads(Assembly& a) {
+  std::vector<PlacedBead> beads = config::read_bead_file(a.c.fill.file);
+  std::vector<BeadType> types;
+  for (PlacedBead& b : beads) wrap(a, b.centre), types.push_back(type_of(a, b));
+  check_walls(a, beads);
+  check_overlaps(a, beads);
+  a.system->particles.resize(beads.size());
+  for (std::size_t i = 0; i < beads.size(); ++i) put_moving(a, i, types[i], beads[i].centre, beads[i].velocity, beads[i].spin);
+}
+
+}  // namespace millscope::run
