@@ -41,6 +41,8 @@ std::vector<base::Interval90> of_theta(const BankData& data, const std::vector<b
   return out;
 }
 
+constexpr double kNothing = 0.01;  // of Q: less is no gain
+
 /// What each later fit of a draw gains on the first one in one draw of ten; never less than one unit of Q.
 std::vector<double> usual_gains(const std::vector<PseudoData::Drawn>& drawn) {
   constexpr double kPart = 0.9;
@@ -215,7 +217,8 @@ class Namer {
   }
 
   /// Under every other candidate k: how often some candidate would seem better than k by as much as the best does, each measured by what it
-  /// gains by chance. So a candidate that does nothing here goes where the base goes, though another one gains more by chance.
+  /// gains by chance, lest one that gains much so hides the best. Of a candidate that does nothing here the model is the base's, and so is
+  /// p.
   void compare_others() {
     const Index best = *out_.best;
     out_.kept = {best};
@@ -236,7 +239,8 @@ class Namer {
         for (std::size_t j = 1; j < d.fit.size(); ++j) most = std::max(most, (d.fit[0].q - d.fit[j].q) / usual[j]);
         return most;
       });
-      judged.against_best_p = p_of(lead, (judged.fit.q - out_.judged[best].fit.q) / usual[of_best]);
+      const bool nothing = judged.delta_q < kNothing && p_.alternatives[k].candidate;
+      judged.against_best_p = nothing ? out_.judged[best].p_family : p_of(lead, (judged.fit.q - out_.judged[best].fit.q) / usual[of_best]);
       look_closer(k);
       if (judged.against_best_p > o_.level) out_.kept.push_back(k);
     }
