@@ -65,6 +65,17 @@ struct Maker {
   }
 };
 
+/// Before the first is simulated: a mill that cannot be put together spoils all sets.
+void require_playable(const std::vector<campaign::Simulation>& simulations, const host::Registry& registry) {
+  for (const campaign::Simulation& s : simulations) {
+    try {
+      engine::require_playable(config::read_case(s.case_file.string(), s.settings), registry);
+    } catch (const UserError& e) {
+      throw UserError(fmt::format("{}: {}", s.label, e.what()));
+    }
+  }
+}
+
 void refuse_failed(const std::vector<campaign::Simulation>& simulations, const std::vector<campaign::Outcome>& outcomes) {
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     if (outcomes[i].state == campaign::State::failed)
@@ -93,7 +104,7 @@ void make(const Challenge& challenge, const diagnose::Question& question, const 
       simulations.push_back(
           simulation_of(challenge, question, truths[t], c, fmt::format("{}, {}", set_name(t), question.study.conditions[c].name)));
   }
-  for (const campaign::Simulation& s : simulations) engine::require_playable(config::read_case(s.case_file.string(), s.settings), registry);
+  require_playable(simulations, registry);
   fs::create_directories(options.output / "answers");
   if (options.campaign.cache.empty()) options.campaign.cache = options.output / "answers" / "cache";
   say(fmt::format("{} sets of {} conditions, {:.4g} s each", truths.size(), conditions, challenge.seconds));

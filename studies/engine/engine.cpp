@@ -28,9 +28,14 @@ void require_known(const config::Case& c) {
 
 void require_playable(const config::Case& c, const host::Registry& registry) {
   require_known(c);
-  if (c.run.engine.empty()) return;
+  run::Assembly a = run::assemble(c, registry, {1, ""});
+  if (c.run.engine.empty()) {
+    run::insert_beads(a);
+    run::begin(a);  // its period must hold beads and reach of forces
+    return;
+  }
   liggghts::installed_version();
-  liggghts::require_playable(run::assemble(c, registry), registry);
+  liggghts::require_playable(a, registry);
 }
 
 std::string version_of(const config::Case& c) {

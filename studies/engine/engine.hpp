@@ -14,7 +14,8 @@ namespace millscope::engine {
 /// Throws base::UserError for a case that names no engine that is known.
 void require_known(const config::Case& c);
 
-/// Throws base::UserError, a line for each obstacle, where the engine that a case names cannot play it, or is not installed.
+/// Throws base::UserError where the mill cannot be put together; a line for each obstacle where the engine that the case names cannot play it
+/// or is not installed.
 void require_playable(const config::Case& c, const host::Registry& registry);
 
 /// The version of the engine that a case names, as the engine itself tells it, and of what translates for it here. Throws base::UserError

@@ -155,6 +155,16 @@ TEST_CASE("sets that could not be read back are not sealed") {
   CHECK_FALSE(fs::exists(made.sets / "manifest.json"));
 }
 
+TEST_CASE("a mill that cannot be put together is refused before any is simulated") {
+  Made made;
+  std::string text = kChallenge;
+  text.insert(text.rfind(']'), ", {kind: outside, name: long_beads, set: {beads.glass5.diameter: 15 mm}}");
+  std::ofstream(made.folder / "c.yaml") << text;
+  made.challenge = read_challenge(made.folder / "c.yaml");
+  CHECK_THROWS_WITH(made.make_sets(), Catch::Contains("set_00") && Catch::Contains("lengthen the slice"));
+  CHECK_FALSE(fs::exists(made.sets / "answers" / "cache"));
+}
+
 TEST_CASE("a nuisance apart is in every truth what the challenge makes it, or the set itself") {
   Made made;
   std::string study = kStudy, text = kChallenge;
