@@ -163,7 +163,7 @@ void take_solid(Reader& reader, Soup& soup) {
   reader.take(&count, sizeof count);
   if (count > reader.left() / (9 * sizeof(double))) throw Refusal("");
   if (count == 0) return;
-  const auto found = std::find(soup.names.begin(), soup.names.end(), name);
+  const auto found = std::find(soup.names.begin(), soup.names.end(), name);  // of few: import_child sends no more than kMostSlots
   const auto slot = static_cast<std::uint32_t>(found - soup.names.begin());
   if (found == soup.names.end()) soup.names.push_back(name);
   const std::size_t old = soup.corners.size();

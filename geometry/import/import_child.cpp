@@ -12,6 +12,8 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "geometry/import/guarded_import.hpp"
@@ -186,12 +188,34 @@ std::string slot_name(std::string name) {
   return name.substr(0, 100);
 }
 
-/// One solid without a name is "all"; of several each has a number.
+/// The slot of each solid: its name, another one where a shorter or cleaner name is taken; of several without a name each has a number,
+/// but where they are many, as of an exporter that makes a solid of every face, they are one.
+std::vector<std::string> slots_of(const std::vector<Solid>& solids) {
+  constexpr std::size_t kManyNameless = 50, kMostSlots = 250;
+  const auto nameless =
+      static_cast<std::size_t>(std::count_if(solids.begin(), solids.end(), [](const Solid& s) { return s.name.empty(); }));
+  const bool numbered = solids.size() > 1 && nameless <= kManyNameless;
+  std::unordered_map<std::string, std::string> slot_of;  // name: slot
+  std::unordered_set<std::string> taken;
+  std::vector<std::string> slots;
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    const std::string name = !solids[i].name.empty() ? solids[i].name : numbered ? "solid_" + std::to_string(i + 1) : "all";
+    const auto [at, fresh] = slot_of.try_emplace(name, slot_name(name));
+    for (int k = 2; fresh && !taken.insert(at->second).second; ++k) at->second = slot_name(name).substr(0, 90) + "_" + std::to_string(k);
+    if (taken.size() > kMostSlots)
+      throw Refusal("has more than " + std::to_string(kMostSlots) +
+                    " solids with names of their own: join those of one material and export again");
+    slots.push_back(at->second);
+  }
+  return slots;
+}
+
 void send(int pipe, const Solids& file) {
+  const std::vector<std::string> slots = slots_of(file.solids);
   for (std::size_t i = 0; i < file.solids.size(); ++i) {
     const Solid& s = file.solids[i];
     write_block(pipe, Block::solid);
-    write_text(pipe, slot_name(!s.name.empty() ? s.name : file.solids.size() == 1 ? "all" : "solid_" + std::to_string(i + 1)));
+    write_text(pipe, slots[i]);
     const std::uint64_t count = s.corners.size() / 9;
     write_all(pipe, &count, sizeof count);
     write_all(pipe, s.corners.data(), s.corners.size() * sizeof(double));

@@ -31,7 +31,7 @@ bool looks_like_text(std::string_view data) {
           head.find("end solid") != std::string::npos);
 }
 
-/// Line by line; several statements may share one.
+/// Line by line; several statements may share one, but for `solid` and `facet`, whose rest is a name and a normal.
 class TextReader {
  public:
   explicit TextReader(std::string_view data) : lines_(data) {}

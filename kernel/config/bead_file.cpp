@@ -88,9 +88,10 @@ class BeadFile {
       const std::size_t end = std::min(rest.find('\n'), rest.size());
       const std::string_view line = trimmed(rest.substr(0, end));
       rest.remove_prefix(std::min(end + 1, rest.size()));
-      if (line.empty() || (line[0] == '#' && !columns_.empty())) continue;
+      const bool remark = !line.empty() && line[0] == '#';
+      if (line.empty() || (remark && !columns_.empty()) || (remark && !are_heads(trimmed(line.substr(1))))) continue;
       if (columns_.empty())
-        read_heads(line[0] == '#' ? trimmed(line.substr(1)) : line);
+        read_heads(remark ? trimmed(line.substr(1)) : line);
       else
         beads.push_back(read_bead(line));
     }
@@ -103,6 +104,30 @@ class BeadFile {
 
   bool has(std::size_t quantity) const {
     return std::any_of(columns_.begin(), columns_.end(), [&](const ReadColumn& c) { return c.quantity == quantity; });
+  }
+
+  /// A remark may name the columns: then x, y and z among others.
+  static bool are_heads(std::string_view line) {
+    const Words words = split(line, separator_of(line));
+    return std::all_of(kBeadColumns.begin(), kBeadColumns.begin() + kDiameter, [&](const BeadColumn& wanted) {
+      return std::any_of(words.begin(), words.end(), [&](std::string_view word) { return plain_name(word) == wanted.name; });
+    });
+  }
+
+  /// Of "X [mm]" x; of "v_x [m/s]" vx; of "x_mm" x.
+  static std::string plain_name(std::string_view head) {
+    std::string name;
+    for (const char c : trimmed(head.substr(0, head.find_first_of("[(")))) {
+      if (c != '_' && c != ' ') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    const auto is = [&](const std::string& text) {
+      return text == "material" ||
+             std::any_of(kBeadColumns.begin(), kBeadColumns.end(), [&](const BeadColumn& known) { return text == known.name; });
+    };
+    const std::size_t mark = head.find_last_of('_');
+    if (!is(name) && mark != std::string_view::npos && head.find_first_of("[(") == std::string_view::npos)
+      return plain_name(head.substr(0, mark));
+    return name;
   }
 
   void read_heads(std::string_view line) {
@@ -125,12 +150,19 @@ class BeadFile {
 
   /// "x [mm]", "x (mm)", "x_mm", "X".
   ReadColumn column_of(std::string_view head) const {
-    const std::size_t mark = head.find_first_of("[(_");
-    std::string name(trimmed(head.substr(0, mark)));
-    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string name = plain_name(head);
+    std::size_t mark = head.find_first_of("[(");
+    if (mark == std::string_view::npos && head.find('_') != std::string_view::npos &&
+        plain_name(head.substr(0, head.find_last_of('_'))) == name)
+      mark = head.find_last_of('_');
     if (name == "material") return {std::nullopt, true, {}};
     const auto known = std::find_if(kBeadColumns.begin(), kBeadColumns.end(), [&](const BeadColumn& q) { return name == q.name; });
-    if (known == kBeadColumns.end()) return {};
+    if (known == kBeadColumns.end()) {
+      // A speed that is passed over would leave the beads at rest.
+      if (name.starts_with("v") || name.starts_with("w") || name.starts_with("omega") || name.starts_with("spin"))
+        fail(fmt::format("has a column '{}'; call velocities vx, vy, vz and spins wx, wy, wz, or leave it out", head));
+      return {};
+    }
     const auto quantity = static_cast<std::size_t>(known - kBeadColumns.begin());
     if (has(quantity)) fail(fmt::format("names '{}' twice", name));
     std::string_view unit = mark == std::string_view::npos ? std::string_view(known->unit) : head.substr(mark + 1);
@@ -149,7 +181,8 @@ class BeadFile {
 
   PlacedBead read_bead(std::string_view line) const {
     const Words words = split(line, separator_);
-    if (words.size() < columns_.size()) fail(fmt::format("has {} columns, but {} heads", words.size(), columns_.size()));
+    const bool comma_behind = words.size() == columns_.size() + 1 && words.back().empty();
+    if (words.size() != columns_.size() && !comma_behind) fail(fmt::format("has {} columns, but {} heads", words.size(), columns_.size()));
     PlacedBead bead;
     bead.line = line_;
     for (std::size_t k = 0; k < columns_.size(); ++k) {
@@ -186,5 +219,43 @@ class BeadFile {
 }  // namespace
 
 std::vector<PlacedBead> read_bead_file(const std::string& path) { return BeadFile(path).read(); }
+
+std::size_t class_of(const std::vector<BeadCase>& classes, const PlacedBead& bead, const std::string& path) {
+  constexpr double kRounding = 1e-4;  // of a diameter that was written with few digits
+  std::vector<std::size_t> fit;
+  for (std::size_t b = 0; b < classes.size(); ++b) {
+    const auto [least, most] = std::minmax_element(classes[b].sizes.begin(), classes[b].sizes.end(),
+                                                   [](const auto& x, const auto& y) { return x.diameter < y.diameter; });
+    const bool size = bead.diameter >= (1 - kRounding) * least->diameter && bead.diameter <= (1 + kRounding) * most->diameter;
+    if (size && (bead.material.empty() || bead.material == classes[b].material)) fit.push_back(b);
+  }
+  if (fit.size() == 1) return fit[0];
+  const base::Location where{path, static_cast<int>(bead.line)};
+  const std::string what = fmt::format("a bead of {:.6g} m{}", bead.diameter, bead.material.empty() ? "" : " of " + bead.material);
+  if (fit.empty())
+    throw UserError(where,
+                    fmt::format("has {}, which no class below 'beads' of the case is; check its unit and material, or add a class", what));
+  throw UserError(where, fmt::format("has {}, which is of {} classes below 'beads'; give a column 'material', or sizes that do not overlap",
+                                     what, fit.size()));
+}
+
+void take_mixture(std::vector<BeadCase>& classes, const std::string& path) {
+  const std::vector<PlacedBead> beads = read_bead_file(path);
+  std::vector<std::vector<double>> counts;
+  for (const BeadCase& c : classes) counts.emplace_back(c.sizes.size(), 0);
+  for (const PlacedBead& bead : beads) {
+    const std::size_t b = class_of(classes, bead, path);
+    const auto nearest = std::min_element(classes[b].sizes.begin(), classes[b].sizes.end(), [&](const auto& x, const auto& y) {
+      return std::fabs(x.diameter - bead.diameter) < std::fabs(y.diameter - bead.diameter);
+    });
+    counts[b][static_cast<std::size_t>(nearest - classes[b].sizes.begin())] += 1;
+  }
+  for (std::size_t b = 0; b < classes.size(); ++b) {
+    double own = 0;
+    for (const double count : counts[b]) own += count;
+    classes[b].number_share = own / static_cast<double>(beads.size());
+    for (std::size_t k = 0; own > 0 && k < counts[b].size(); ++k) classes[b].sizes[k].number_fraction = counts[b][k] / own;
+  }
+}
 
 }  // namespace millscope::config

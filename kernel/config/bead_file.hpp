@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "kernel/base/vector3.hpp"
+#include "kernel/config/case.hpp"
 
 namespace millscope::config {
 
@@ -23,5 +24,11 @@ struct PlacedBead {
 
 /// At least one bead. Throws base::UserError with file and line.
 std::vector<PlacedBead> read_bead_file(const std::string& path);
+
+/// Of a bead of the file, by its material and its diameter, which lies in the range of one class. Throws base::UserError with its line.
+std::size_t class_of(const std::vector<BeadCase>& classes, const PlacedBead& bead, const std::string& path);
+
+/// Shares of the classes, and of their sizes by the nearest one, are those of the file.
+void take_mixture(std::vector<BeadCase>& classes, const std::string& path);
 
 }  // namespace millscope::config

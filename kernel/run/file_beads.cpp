@@ -14,32 +14,10 @@ namespace {
 using base::UserError;
 using config::PlacedBead;
 
-constexpr double kDeepest = 0.05;   // of the smaller radius: snapshots of a run overlap by less, and more flies apart
-constexpr double kRounding = 1e-4;  // of a diameter that was written with few digits
+constexpr double kDeepest = 0.05;  // of the smaller radius: snapshots of a run overlap by less, and more flies apart
 
 [[noreturn]] void refuse(const Assembly& a, const PlacedBead& bead, const std::string& why) {
   throw UserError(base::Location{a.c.fill.file, static_cast<int>(bead.line)}, why);
-}
-
-bool holds(const config::BeadCase& bead, double diameter) {
-  const auto [least, most] =
-      std::minmax_element(bead.sizes.begin(), bead.sizes.end(), [](const auto& x, const auto& y) { return x.diameter < y.diameter; });
-  return diameter >= (1 - kRounding) * least->diameter && diameter <= (1 + kRounding) * most->diameter;
-}
-
-BeadType type_of(const Assembly& a, const PlacedBead& bead) {
-  std::vector<std::size_t> fit;
-  for (std::size_t b = 0; b < a.c.beads.size(); ++b) {
-    const config::BeadCase& c = a.c.beads[b];
-    if ((bead.material.empty() || bead.material == c.material) && holds(c, bead.diameter)) fit.push_back(b);
-  }
-  if (fit.size() == 1) return {fit[0], bead.diameter};
-  const std::string what = fmt::format("a bead of {:.6g} m{}", bead.diameter, bead.material.empty() ? "" : " of " + bead.material);
-  if (fit.empty())
-    refuse(a, bead, fmt::format("has {}, which no class below 'beads' of the case is; check its unit and material, or add a class", what));
-  refuse(a, bead,
-         fmt::format("has {}, which is of {} classes below 'beads'; give a column 'material', or sizes that do not overlap", what,
-                     fit.size()));
 }
 
 void wrap(const Assembly& a, base::Vector3& p) {
@@ -52,14 +30,21 @@ void wrap(const Assembly& a, base::Vector3& p) {
 
 /// Bead i and j overlap by more than they may: said with both lines.
 void check_overlaps(const Assembly& a, const std::vector<PlacedBead>& beads) {
-  Region region = region_of(a);
+  Region region;
   double largest = 0;
+  region.box.low = region.box.high = beads.front().centre;
   for (const PlacedBead& b : beads) {
     largest = std::max(largest, b.diameter);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       region.box.low[axis] = std::min(region.box.low[axis], b.centre[axis]);
       region.box.high[axis] = std::max(region.box.high[axis], b.centre[axis]);
     }
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (a.c.domain.periodic[axis])
+      region.box.low[axis] = a.c.domain.box.low[axis], region.box.high[axis] = a.c.domain.box.high[axis];
+    else
+      region.box.low[axis] -= largest, region.box.high[axis] += largest;
   }
   SphereCells cells(a, region, largest);
   for (const PlacedBead& b : beads) {
@@ -73,6 +58,23 @@ void check_overlaps(const Assembly& a, const std::vector<PlacedBead>& beads) {
                          other.line, 100 * kDeepest));
     }
     cells.add({b.centre, radius});
+  }
+}
+
+/// Beyond the ends of what a geometry calls its inside; blocked() looks from its axis alone.
+void check_ends(const Assembly& a, const std::vector<PlacedBead>& beads) {
+  for (const GeometryUse& g : a.geometries) {
+    if (!g.interior.is_bounded) continue;
+    for (const PlacedBead& b : beads) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (a.c.domain.periodic[axis] || (b.centre[axis] >= g.interior.low[axis] && b.centre[axis] <= g.interior.high[axis])) continue;
+        refuse(
+            a, b,
+            fmt::format("has a bead at {} = {:.4g} m, beyond a wall that reaches from {:.4g} to {:.4g} m; check the frame and the units of "
+                        "the file: z is the mill's axis",
+                        "xyz"[axis], b.centre[axis], g.interior.low[axis], g.interior.high[axis]));
+      }
+    }
   }
 }
 
@@ -94,7 +96,8 @@ void check_walls(const Assembly& a, const std::vector<PlacedBead>& beads) {
 void insert_file_beads(Assembly& a) {
   std::vector<PlacedBead> beads = config::read_bead_file(a.c.fill.file);
   std::vector<BeadType> types;
-  for (PlacedBead& b : beads) wrap(a, b.centre), types.push_back(type_of(a, b));
+  for (PlacedBead& b : beads) wrap(a, b.centre), types.push_back({config::class_of(a.c.beads, b, a.c.fill.file), b.diameter});
+  check_ends(a, beads);
   check_walls(a, beads);
   check_overlaps(a, beads);
   a.system->particles.resize(beads.size());

@@ -53,6 +53,9 @@ std::vector<std::uint32_t> tracked_beads(const Assembly& a) {
   if (!ids.empty()) return ids;
   Random random(a.c.seed ^ 0x747261636b73ULL);  // another stream than the filling's
   std::vector<std::uint32_t> all = followable(a);
+  if (t.count > all.size())
+    throw base::UserError(
+        fmt::format("output.tracks.count is {}, but {} beads may be followed; follow fewer, or add tracers", t.count, all.size()));
   for (std::size_t k = 0; k < t.count; ++k) {
     std::swap(all[k], all[k + random.below(all.size() - k)]);
     ids.push_back(all[k]);

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <numeric>
 
 #include "kernel/base/statistics.hpp"
 #include "studies/recording/clean.hpp"
@@ -38,29 +38,43 @@ bool moves_finely(const Run& rows) {
   return fine >= 2;
 }
 
-/// A place with one number three times, (0, 0, 0) or (-1, -1, -1), that comes twice; or any that the bead leaves and comes back to. Rows
-/// that were written twice, with their times, are one visit.
-std::vector<Place> signs(const Run& rows, bool fine) {
-  struct Visits {
-    std::size_t rows = 0;
-    int times = 0;
-    double latest = -std::numeric_limits<double>::infinity();  // s
-  };
-  std::map<Place, Visits> visited;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Place here = place(rows, i);
-    Visits& v = visited[here];
-    ++v.rows;
-    const bool fresh = rows.time[i] > v.latest;
-    v.times += fresh && (i == 0 || place(rows, i - 1) != here);
-    if (fresh) v.latest = rows.time[i];
+/// Numbers that stand for "no place".
+bool is_usual_sign(double x) {
+  const double size = std::fabs(x);
+  for (const double unit : {1.0, 1e-3, 1e-2}) {  // of m, mm, cm
+    for (const double sign : {0.0, 1.0, 999.0, 9999.0, 99999.0}) {
+      if (std::fabs(size - sign * unit) <= 1e-9 * sign * unit) return true;
+    }
   }
+  return false;
+}
+
+/// A place with one number three times that stands for none, (0, 0, 0) or (-1, -1, -1), and comes twice; but in most rows only of a bead
+/// with a label, for else it rests there. Or any that the bead leaves and comes back to. Rows that were written twice, with their times,
+/// are one visit.
+std::vector<Place> signs(const Run& rows, bool fine) {
+  std::vector<std::size_t> order(rows.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+    const Place a = place(rows, i), b = place(rows, j);
+    return a != b ? a < b : rows.time[i] != rows.time[j] ? rows.time[i] < rows.time[j] : i < j;
+  });
   std::vector<Place> equal, left;
-  for (const auto& [here, v] : visited) {
-    if (here[0] == here[1] && here[1] == here[2] && v.rows > 1)
+  for (std::size_t first = 0; first < order.size();) {
+    const Place here = place(rows, order[first]);
+    std::size_t last = first;
+    int visits = 0;
+    for (; last < order.size() && place(rows, order[last]) == here; ++last) {
+      const bool again = last > first && rows.time[order[last]] == rows.time[order[last - 1]];
+      const std::size_t i = order[last];
+      visits += !again && (i == 0 || place(rows, i - 1) != here);
+    }
+    const std::size_t count = last - first;
+    if (here[0] == here[1] && here[1] == here[2] && is_usual_sign(here[0]) && count > 1 && (2 * count < rows.size() || !rows.name.empty()))
       equal.push_back(here);
-    else if (fine && v.times >= kSign)
+    else if (fine && visits >= kSign)
       left.push_back(here);
+    first = last;
   }
   if (left.size() <= kSigns) equal.insert(equal.end(), left.begin(), left.end());
   std::sort(equal.begin(), equal.end());
@@ -68,16 +82,27 @@ std::vector<Place> signs(const Run& rows, bool fine) {
 }
 
 /// Marks rows that repeat the place of the row before. Two in a row happen by chance where one row follows the other at once; three do not,
-/// nor do pairs that are more than one row in a hundred.
+/// nor do pairs that are more than one row in a hundred. A bead that has rested goes on slowly; one that was lost is elsewhere.
 void mark_repeats(const Run& rows, std::vector<char>& keep) {
-  constexpr double kChance = 0.01;
-  const auto again = [&](std::size_t i) { return i > 0 && place(rows, i - 1) == place(rows, i) && rows.time[i - 1] != rows.time[i]; };
+  constexpr double kChance = 0.01, kSlow = 0.25;
+  std::vector<double> steps;
   std::size_t repeats = 0;
-  for (std::size_t i = 1; i < rows.size(); ++i) repeats += again(i);
-  const bool many = static_cast<double>(repeats) > kChance * static_cast<double>(rows.size());
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    const bool thrice = again(i - 1) || (i + 1 < rows.size() && again(i + 1));
-    if (again(i) && (many || thrice)) keep[i] = 0;
+    const double step = distance(rows, i - 1, i);
+    if (step > 0) steps.push_back(step);
+    repeats += step == 0 && rows.time[i] != rows.time[i - 1];
+  }
+  if (steps.empty()) return;
+  const bool many = static_cast<double>(repeats) > kChance * static_cast<double>(rows.size());
+  const double usual = base::quantile(steps, 0.5);
+  for (std::size_t first = 0; first < rows.size();) {
+    std::size_t last = first + 1;
+    while (last < rows.size() && place(rows, last) == place(rows, first)) ++last;
+    const bool held = last < rows.size() ? distance(rows, first, last) > kSlow * usual : many;
+    for (std::size_t i = first + 1; held && i < last; ++i) {
+      if ((many || last - first > 2) && rows.time[i] != rows.time[i - 1]) keep[i] = 0;
+    }
+    first = last;
   }
 }
 

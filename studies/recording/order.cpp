@@ -20,6 +20,7 @@ constexpr double kSetBack = 1;         // s
 std::vector<char> true_times(const std::vector<double>& time) {
   constexpr double kYear = 3.2e7;  // s
   std::vector<char> keep(time.size(), 1);
+  if (time.empty()) return keep;
   std::vector<double> some;
   for (std::size_t i = 0; i < time.size(); i += time.size() / 10000 + 1) some.push_back(time[i]);
   const double middle = base::quantile(some, 0.5);
@@ -129,11 +130,6 @@ class Cover {
  private:
   std::map<double, double> spans_;  // s: from, to
 };
-
-double distance(const Run& rows, std::size_t i, std::size_t j) {
-  return std::hypot(rows.position[0][j] - rows.position[0][i], rows.position[1][j] - rows.position[1][i],
-                    rows.position[2][j] - rows.position[2][i]);
-}
 
 /// Half of the steps from row to row are shorter, m.
 double usual_step(const Run& rows) {

@@ -66,15 +66,22 @@ std::vector<Run> read_table(const RecordingFile& file, const Description& descri
   check_times(table.rows.time, description.columns ? description.columns_place : base::Location{file.path.string(), 0}, known.time_unit);
   units = {known.time_unit, known.length_unit};
   std::vector<Run> runs;
+  std::uint64_t unseen = 0;
   for (Run& one : runs_of_labels(std::move(table), description.labels, description.labels_place)) {
     drop_lost(one);
-    refuse_several(one, file.path);
     const std::string label = one.name;
+    if (one.size() == 0 && !label.empty()) {  // of a bead that was never seen
+      unseen += one.report.rows;
+      continue;
+    }
+    refuse_several(one, file.path);
     for (Run& part : order_rows(std::move(one))) {
       if (!label.empty()) part.name = plain_name(file.path) + "_" + label;
       runs.push_back(std::move(part));
     }
   }
+  if (runs.empty()) throw UserError(fmt::format("{}: holds no usable point: no bead was seen", file.path.string()));
+  runs.front().report.rows += unseen, runs.front().report.lost += unseen;
   for (const Run& run : runs) report.false_times += run.report.false_times;
   if (mostly_bad()) fail_unusable(file.path, report, fault, known.words);
   for (Run& run : runs) run.format = known.words;
@@ -176,6 +183,17 @@ void clean(Recording& recording) {
     count_gaps(run, recording.gap_limit);
   }
   const auto empty = std::find_if(recording.runs.begin(), recording.runs.end(), [](const Run& run) { return run.size() == 0; });
+  const bool others = std::any_of(recording.runs.begin(), recording.runs.end(), [](const Run& run) { return run.size() > 0; });
+  if (empty != recording.runs.end() && others && empty->source == recording.runs.front().source) {
+    // Of a file with several tracers one that is nowhere in the mill, a reflection: the first run carries its rows.
+    RunReport gone;
+    for (const Run& run : recording.runs) {
+      if (run.size() == 0) gone.rows += run.report.rows, gone.lost += run.report.rows;
+    }
+    std::erase_if(recording.runs, [](const Run& run) { return run.size() == 0; });
+    recording.runs.front().report.rows += gone.rows, recording.runs.front().report.lost += gone.lost;
+    return;
+  }
   if (empty == recording.runs.end()) return;
   throw UserError(
       fmt::format("{}: holds no usable point: all {} of {} lie outside the mill that 'condition' and 'frame' state, or far from the "

@@ -1,6 +1,7 @@
 #include "studies/recording/select.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace millscope::recording {
 namespace {
@@ -28,6 +29,11 @@ std::uint64_t keep_only(Run& run, const std::vector<char>& keep) {
     values.resize(kept);
   });
   return gone;
+}
+
+double distance(const Run& run, std::size_t i, std::size_t j) {
+  return std::hypot(run.position[0][j] - run.position[0][i], run.position[1][j] - run.position[1][i],
+                    run.position[2][j] - run.position[2][i]);
 }
 
 void reorder(Run& run, const std::vector<std::size_t>& order) {

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
 
 #include "kernel/base/statistics.hpp"
 #include "studies/recording/clean.hpp"
@@ -27,19 +30,58 @@ std::string short_label(const std::string& label) {
   return label.substr(0, label[last] == '.' ? last : last + 1);
 }
 
+void reserve_points(Run& run, const Run& like, std::size_t count) {
+  run.time.reserve(count);
+  for (auto& x : run.position) x.reserve(count);
+  if (!like.spread.empty()) run.spread.reserve(count);
+  if (!like.events.empty()) run.events.reserve(count);
+}
+
+void append_point(Run& run, const Run& from, std::size_t i) {
+  run.time.push_back(from.time[i]);
+  for (std::size_t axis = 0; axis < 3; ++axis) run.position[axis].push_back(from.position[axis][i]);
+  if (!from.spread.empty()) run.spread.push_back(from.spread[i]);
+  if (!from.events.empty()) run.events.push_back(from.events[i]);
+}
+
 double squared_distance(const Run& r, std::size_t i, std::size_t j) {
   double sum = 0;
   for (const auto& x : r.position) sum += (x[j] - x[i]) * (x[j] - x[i]);
   return sum;
 }
 
-/// Part of the rows from which the next is far while the one after it is near: two beads that take turns. One bead, of which noise is all
-/// that is seen, has one in seven (differences along a line, correlated by a half: a ratio of Cauchy's).
+/// In the order of time, rows of one time in that of the file.
+Run in_order(Run rows) {
+  if (std::is_sorted(rows.time.begin(), rows.time.end())) return rows;
+  std::vector<std::size_t> order(rows.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return rows.time[i] < rows.time[j]; });
+  reorder(rows, order);
+  return rows;
+}
+
+/// The smallest step along an axis: the last digit, or less than any that matters.
+double last_digit(const Run& rows) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& x : rows.position) {
+    for (std::size_t i = 1; i < x.size(); ++i) {
+      if (x[i] != x[i - 1]) least = std::min(least, std::fabs(x[i] - x[i - 1]));
+    }
+  }
+  return std::isfinite(least) ? least : 0;
+}
+
+/// Part of the rows from which the next is far, by many last digits, while the one after it is near: two beads that take turns. One bead,
+/// of which noise is all that is seen, has one in seven (differences along a line, correlated by a half: a ratio of Cauchy's).
 double turns(const Run& rows, std::size_t stride) {
   constexpr double kNear = 1.0 / 16;  // squared
+  constexpr double kDigits = 10;
+  const double far = std::pow(kDigits * last_digit(rows), 2);
   std::size_t all = 0, found = 0;
-  for (std::size_t i = 0; i + 2 < rows.size(); i += stride, ++all)
-    found += squared_distance(rows, i, i + 2) < kNear * squared_distance(rows, i, i + 1);
+  for (std::size_t i = 0; i + 2 < rows.size(); i += stride, ++all) {
+    const double step = squared_distance(rows, i, i + 1);
+    found += step > far && squared_distance(rows, i, i + 2) < kNear * step;
+  }
   return all == 0 ? 0 : static_cast<double>(found) / static_cast<double>(all);
 }
 
@@ -69,23 +111,40 @@ std::vector<Run> runs_of_labels(Table table, const std::vector<std::string>& wan
                                          names.empty() ? "the file has no column of labels that is read"
                                                        : fmt::format("there are {}", fmt::join(names, ", "))));
   }
-  const bool numbers_rows = names.size() > kMostBeads || table.rows.size() < kFewestRows * names.size();
-  if (wanted.empty() && (names.size() < 2 || numbers_rows)) return {std::move(table.rows)};
-  std::vector<Run> runs;
-  std::uint64_t lost = 0;
+  std::vector<std::size_t> rows_of(names.size(), 0);
+  for (const std::size_t label : table.label) ++rows_of[label];
+  // -1 and what nobody wants go first: neither tells how many beads there are.
+  std::vector<char> keep(table.label.size(), 1);
+  std::size_t beads = 0, of_beads_rows = 0;
+  std::vector<std::optional<std::size_t>> place(names.size());
   for (std::size_t k = 0; k < names.size(); ++k) {
-    std::vector<char> keep(table.label.size());
-    for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = table.label[i] == k;
-    Run one = table.rows;
-    keep_only(one, keep);
-    one.report = {};
-    one.report.rows = one.report.used = one.size();
-    one.name = names[k];
-    if (is_no_bead(table.labels[k]) || (!wanted.empty() && !of_beads(names[k])))
-      lost += one.size();
-    else
-      runs.push_back(std::move(one));
+    if (is_no_bead(table.labels[k]) || (!wanted.empty() && !of_beads(names[k]))) continue;
+    place[k] = beads++;
+    of_beads_rows += rows_of[k];
   }
+  const bool numbers_rows = beads > kMostBeads || of_beads_rows < kFewestRows * beads;
+  if (table.label.empty()) return {std::move(table.rows)};
+  if (wanted.empty() && (beads == names.size()) && (beads < 2 || numbers_rows)) return {std::move(table.rows)};
+  if (wanted.empty() && (beads == 1 || numbers_rows)) {
+    for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = static_cast<char>(place[table.label[i]].has_value());
+    const RunReport before = table.rows.report;
+    const std::uint64_t gone = keep_only(table.rows, keep);
+    table.rows.report.lost = before.lost + gone;
+    if (table.rows.size() == 0) throw UserError(where, "no row has the label of a bead");
+    return {std::move(table.rows)};
+  }
+  std::vector<Run> runs(beads);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (place[k]) runs[*place[k]].name = names[k], reserve_points(runs[*place[k]], table.rows, rows_of[k]);
+  }
+  std::uint64_t lost = 0;
+  for (std::size_t i = 0; i < table.label.size(); ++i) {
+    if (place[table.label[i]])
+      append_point(runs[*place[table.label[i]]], table.rows, i);
+    else
+      ++lost;
+  }
+  for (Run& run : runs) run.report.rows = run.report.used = run.size();
   if (runs.empty()) throw UserError(where, "no row has the label of a bead");
   // Lines that hold no point, and points of no bead, belong to no run: the first carries them.
   RunReport& head = runs.front().report;
@@ -101,7 +160,8 @@ void refuse_several(const Run& rows, const std::filesystem::path& file) {
   constexpr double kTurns = 0.2;
   if (rows.size() < kEnough) return;
   const std::size_t stride = rows.size() / kSample + 1;
-  if (turns(rows, stride) > kTurns)
+  // One bead that two programs wrote in turns is in order by time; a clock that was set back is in the order of the file.
+  if (turns(rows, stride) > kTurns && turns(in_order(rows), stride) > kTurns)
     throw UserError(
         fmt::format("{}: the points jump to and fro between two places, as of two tracers in one file; give each its own file, or "
                     "a column with the head 'label'",

@@ -86,6 +86,10 @@ class RowReader {
     const int wanted = static_cast<int>(target_.size()), columns = std::max(wanted, layout_.least_columns);
     for (int column = 0; column < columns; ++column) {
       p = skip_blanks(p, end);
+      if (p == end && column == layout_.label && layout_.separator != ' ') {
+        label = {};
+        continue;
+      }
       if (p == end) return "has too few columns";
       const std::optional<int> quantity = column < wanted ? target_[column] : std::nullopt;
       if (!quantity) {

@@ -91,6 +91,8 @@ TEST_CASE("Every solid of an STL is a slot, by its whole name") {
   CHECK(slots_of(folder, {"Solid body of solid liner - endsolid facet vertex"}) == "Solid body of solid liner - endsolid facet vertex");
   CHECK(slots_of(folder, {"a", "b", "a", "b"}) == "a|b");
   CHECK(slots_of(folder, {"x|y"}) == "x_y");
+  CHECK(slots_of(folder, {"x|y", "x_y"}) == "x_y|x_y_2");
+  CHECK(slots_of(folder, std::vector<std::string>(96, "")) == "all");  // a solid of every face
 }
 
 TEST_CASE("Keywords of an STL are read in any case and spelling, and normals not at all") {

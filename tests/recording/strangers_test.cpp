@@ -234,6 +234,47 @@ TEST_CASE("blocks that were written in another order are still one run") {
   CHECK(r.runs[0].size() == 3000);
 }
 
+TEST_CASE("honest tracks that look like something else are left alone") {
+  const Scratch scratch;
+  std::mt19937_64 random(4);
+  std::string coarse = "t x y z\n", threads = "t x y z\n", through = "t x y z\n", paused = "t x y z\n";
+  for (int k = 0; k < 1000; ++k) {
+    coarse += std::to_string(k) + " 100 50 " + (random() % 2 == 0 ? "200" : "201") + "\n";  // at rest, of whole millimetres
+    threads += text_of(circle(k % 2 == 0 ? k / 2 : 500 + k / 2)) + "\n";                    // written by two at once
+    const Row r = circle(k);
+    const std::string number = std::to_string(std::lround(r.x / 10) * 10 + 35);
+    through += std::to_string(k) + " " + number + " " + number + " " + number + "\n";  // one number three times, often
+    const double gone = k < 500 ? 0 : k - 500, along = 1e-5 * gone * gone;             // starts from rest, without noise
+    paused += text_of({1.0 * k, 100 * std::cos(along), 100 * std::sin(along), 30 + 0.01 * along}) + "\n";
+  }
+  CHECK(read_recording(scratch.file("coarse.txt", coarse)).runs[0].size() == 1000);
+  CHECK(read_recording(scratch.file("threads.txt", threads)).runs[0].size() == 1000);
+  CHECK(read_recording(scratch.file("through.txt", through)).runs[0].report.lost == 0);
+  CHECK(read_recording(scratch.file("paused.txt", paused)).runs[0].report.lost == 0);
+}
+
+TEST_CASE("a label that was never seen, or never in the mill, leaves the others") {
+  const Scratch scratch;
+  std::string unseen = "t,x,y,z,label\n", outside = unseen, many = unseen;
+  for (int k = 0; k < 500; ++k) {
+    unseen += text_of(circle(2 * k), ",") + ",1\n" + text_of({2.0 * k, 0, 0, 0}, ",") + ",2\n";
+    outside += text_of(circle(2 * k), ",") + ",1\n";
+    if (k % 50 == 0) outside += text_of({2.0 * k, 9000, 9000, 9000.0 + k}, ",") + ",2\n";
+    many += text_of(circle(2 * k), ",") + "," + std::to_string(k / 3) + "\n" + text_of({2.0 * k, 7.0 * (k % 13), 3, 1}, ",") + ",-1\n";
+  }
+  const Recording one = read_recording(scratch.file("unseen.csv", unseen));
+  REQUIRE(one.runs.size() == 1);
+  CHECK(one.runs[0].report.lost == 500);
+  CHECK(one.runs[0].report.rows == 1000);
+  const Recording inside = read_recording(scratch.file("outside.csv", outside));
+  REQUIRE(inside.runs.size() == 1);
+  CHECK(inside.runs[0].size() == 500);
+  const Recording tracks = read_recording(scratch.file("many.csv", many));  // numbers of short tracks; -1 is no bead's all the same
+  REQUIRE(tracks.runs.size() == 1);
+  CHECK(tracks.runs[0].size() == 500);
+  CHECK(tracks.runs[0].report.lost == 500);
+}
+
 TEST_CASE("a smoothed track of a tracer at rest is read, whatever its size") {
   const Scratch scratch;
   std::mt19937_64 random(3);

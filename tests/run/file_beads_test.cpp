@@ -76,6 +76,23 @@ TEST_CASE("heads have a unit each or are SI, and other columns are passed over")
   }
 }
 
+TEST_CASE("shares are those of the file, and no walls need bound it") {
+  const Folder folder;
+  Setup s;
+  s.beads = "{small: {material: glass, diameter: 4 mm, share: 50 %}, large: {material: glass, diameter: 5 mm, share: 50 %}}";
+  s.fill = "{file: " +
+           folder.file(
+               "# made by hand\nx [mm],y [mm],z [mm],diameter [mm],v_x [m/s],v_y [m/s],v_z [m/s]\n"
+               "0,5,0,4,1,0,0\n9,5,0,4,0,0,0\n18,5,0,4,0,0,0\n27,5,0,5,0,0,0,\n") +
+           "}";
+  s.geometry = kFloor;
+  Assembly a = assembled(s);
+  run::insert_beads(a);
+  CHECK(a.c.beads[0].number_share + a.c.beads[1].number_share == Approx(1));
+  CHECK(std::max(a.c.beads[0].number_share, a.c.beads[1].number_share) == Approx(0.75));
+  CHECK(a.system->particles.motion[0].v[0] == 1);
+}
+
 TEST_CASE("a file of beads that cannot be is refused at its line") {
   const Folder folder;
   const std::string heads = "x [mm],y [mm],z [mm],diameter [mm]\n";
@@ -85,10 +102,14 @@ TEST_CASE("a file of beads that cannot be is refused at its line") {
   CHECK_THAT(why(folder, "x [kg],y [mm],z [mm],radius [mm]\n0,0,0,5\n"), Contains("the unit 'kg' for 'x'"));
   CHECK_THAT(why(folder, "x [mm],y [mm],z [mm],radius [mm],vx\n0,0,0,5,0\n"), Contains("give all three or none"));
   CHECK_THAT(why(folder, heads + "0,0,0\n"), Contains("beads.csv:2") && Contains("3 columns, but 4 heads"));
+  CHECK_THAT(why(folder, heads + "1,5,-20,3,5\n"), Contains("5 columns, but 4 heads"));  // a decimal comma
+  CHECK_THAT(why(folder, "x [mm],y [mm],z [mm],radius [mm],vel_x\n0,0,0,5,0\n"),
+             Contains("a column 'vel_x'") && Contains("call velocities vx"));
   CHECK_THAT(why(folder, heads + "0,0,nan,5\n"), Contains("beads.csv:2") && Contains("'nan'"));
   CHECK_THAT(why(folder, heads + "0,0,3,5\n0,0,3,7\n"), Contains("beads.csv:3") && Contains("no class below 'beads'"));
   CHECK_THAT(why(folder, heads + "0,0,3,5\n0,-49,3,5\n"), Contains("beads.csv:3") && Contains("1 of 2 beads"));
-  CHECK_THAT(why(folder, heads + "0,0,3,5\n0,400,3,5\n"), Contains("beads.csv:3") && Contains("in a wall or beyond it"));
+  CHECK_THAT(why(folder, heads + "0,0,3,5\n0,400,3,5\n"),
+             Contains("beads.csv:3") && Contains("beyond a wall that reaches from -0.05 to 0.05 m"));
   CHECK_THAT(why(folder, heads + "0,0,1,5\n9,0,3,5\n0,0,18,5\n"), Contains("beads.csv:4") && Contains("line 2"));  // over the period
   CHECK(why(folder, heads + "0,0,3,5\n0,4.9,3,5\n").empty());                                                      // 4 % of the radius
   CHECK_THAT(why(folder, "x [mm],y [mm],z [mm],diameter [mm],material\n0,0,3,5,gold\n"), Contains("of gold"));
