@@ -28,9 +28,7 @@ using Clock = std::chrono::steady_clock;
 std::string lower_extension(const std::string& path) {
   const std::size_t slash = path.find_last_of('/'), dot = path.find_last_of('.');
   if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) return "";
-  std::string extension = path.substr(dot + 1);
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
+  return detail::lower(path.substr(dot + 1));
 }
 
 void check_extension(const std::string& extension) {

@@ -26,6 +26,12 @@ bool Lines::next(std::string_view& line) {
   return true;
 }
 
+std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
 std::string_view take_word(std::string_view& line) {
   const std::size_t begin = line.find_first_not_of(" \t\r\n");
   if (begin == std::string_view::npos) return line = {};

@@ -28,6 +28,7 @@ class Lines {
   std::size_t number_ = 0;
 };
 
+std::string lower(std::string_view text);
 /// Takes the next word off the front; empty at the end.
 std::string_view take_word(std::string_view& line);
 bool read_count(std::string_view word, long long& value);

@@ -11,17 +11,12 @@ namespace millscope::geometry {
 
 namespace {
 
+using detail::lower;
 using detail::refuse;
 using detail::refuse_cut_short;
 
 constexpr std::size_t kHeader = 84, kTriangle = 50, kNormal = 12;  // bytes of a binary file
 constexpr std::string_view kBlanks = " \t";
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
 
 bool looks_like_text(std::string_view data) {
   const std::string head = lower(data.substr(0, 4096));

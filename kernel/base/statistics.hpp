@@ -1,4 +1,4 @@
-// 90 % intervals, and quantiles, each by the rule that its users need.
+// 90 % intervals, p-values that hold together, and quantiles, each by the rule that its users need.
 //
 //   quantile               rank round(f (n − 1)), a half upwards: always one of the values; of two middle values the upper
 //   quantile_below         rank ⌊f (n − 1)⌋: for a scale that no more than the rest may reach beyond
@@ -68,6 +68,10 @@ inline double interpolated_quantile(std::span<const double> sorted, double fract
   const std::size_t above = std::min(below + 1, sorted.size() - 1);
   return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
+
+/// Holm 1979, step-down: p-values that hold for all together, however they hang together, in the order given. The k-th smallest times how
+/// many are left, never falling, at most 1.
+std::vector<double> holm(const std::vector<double>& p);
 
 /// NaN where nothing has a weight.
 double weighted_quantile(std::vector<std::pair<double, double>> value_and_weight, double fraction);

@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -18,7 +19,7 @@ namespace millscope::config {
 namespace {
 
 using base::UserError;
-using Words = std::vector<std::string_view>;
+using Words = std::vector<std::string>;
 
 constexpr std::string_view kBlanks = " \t\r";
 
@@ -36,12 +37,9 @@ constexpr std::array<BeadColumn, 11> kBeadColumns{{{"x", "m"},
                                                    {"wx", "rad/s"},
                                                    {"wy", "rad/s"},
                                                    {"wz", "rad/s"}}};
+constexpr std::string_view kMaterial = "material";
+constexpr std::array<std::string_view, 4> kMotions{"v", "w", "omega", "spin"};  // of names that may mean one
 constexpr std::size_t kDiameter = 3, kRadius = 4, kVelocity = 5, kSpin = 8;
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  return first == std::string_view::npos ? std::string_view() : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
 
 char separator_of(std::string_view heads) {
   for (const char c : {';', ',', '\t'}) {
@@ -57,15 +55,40 @@ Words split(std::string_view line, char separator) {
     if (separator == ' ') begin = std::min(line.find_first_not_of(kBlanks, begin), line.size() + 1);
     if (begin > line.size()) break;
     const std::size_t end = std::min(separator == ' ' ? line.find_first_of(kBlanks, begin) : line.find(separator, begin), line.size());
-    const std::string_view word = trimmed(line.substr(begin, end - begin));
-    const bool unit = separator == ' ' && !words.empty() && !word.empty() && (word[0] == '[' || word[0] == '(');
-    if (unit)
-      words.back() = {words.back().data(), static_cast<std::size_t>(word.data() + word.size() - words.back().data())};
+    std::string word = base::trimmed(line.substr(begin, end - begin), kBlanks);
+    if (separator == ' ' && !words.empty() && (word.starts_with('[') || word.starts_with('(')))
+      words.back() += " " + word;
     else
-      words.push_back(word);
+      words.push_back(std::move(word));
     begin = end + 1;
   }
   return words;
+}
+
+std::optional<std::size_t> column_of_name(std::string_view name) {
+  const auto known = std::find_if(kBeadColumns.begin(), kBeadColumns.end(), [&](const BeadColumn& c) { return name == c.name; });
+  return known == kBeadColumns.end() ? std::nullopt : std::optional<std::size_t>(known - kBeadColumns.begin());
+}
+
+/// "X [mm]" is x in mm, "v_x" vx, "x_mm" x in mm: what stands behind the last '_' is a unit where the whole is no name.
+struct Head {
+  std::string name;
+  std::optional<std::string> unit;
+};
+
+Head head_of(std::string_view text) {
+  const std::size_t bracket = text.find_first_of("[(");
+  Head head;
+  for (const char c : text.substr(0, bracket)) {
+    if (c != '_' && kBlanks.find(c) == kBlanks.npos) head.name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  if (bracket != text.npos) {
+    head.unit = base::trimmed(text.substr(bracket + 1), " \t\r])");
+    return head;
+  }
+  const std::size_t mark = text.find_last_of('_');
+  if (head.name == kMaterial || column_of_name(head.name) || mark == text.npos) return head;
+  return {head_of(text.substr(0, mark)).name, std::string(text.substr(mark + 1))};
 }
 
 struct ReadColumn {
@@ -86,12 +109,13 @@ class BeadFile {
     while (!rest.empty()) {
       ++line_;
       const std::size_t end = std::min(rest.find('\n'), rest.size());
-      const std::string_view line = trimmed(rest.substr(0, end));
+      const std::string line = base::trimmed(rest.substr(0, end), kBlanks);
       rest.remove_prefix(std::min(end + 1, rest.size()));
-      const bool remark = !line.empty() && line[0] == '#';
-      if (line.empty() || (remark && !columns_.empty()) || (remark && !are_heads(trimmed(line.substr(1))))) continue;
+      const bool remark = line.starts_with('#');
+      const std::string told = remark ? base::trimmed(line.substr(1), kBlanks) : line;
+      if (line.empty() || (remark && (!columns_.empty() || !are_heads(told)))) continue;
       if (columns_.empty())
-        read_heads(remark ? trimmed(line.substr(1)) : line);
+        read_heads(told);
       else
         beads.push_back(read_bead(line));
     }
@@ -110,29 +134,13 @@ class BeadFile {
   static bool are_heads(std::string_view line) {
     const Words words = split(line, separator_of(line));
     return std::all_of(kBeadColumns.begin(), kBeadColumns.begin() + kDiameter, [&](const BeadColumn& wanted) {
-      return std::any_of(words.begin(), words.end(), [&](std::string_view word) { return plain_name(word) == wanted.name; });
+      return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return head_of(word).name == wanted.name; });
     });
-  }
-
-  /// Of "X [mm]" x; of "v_x [m/s]" vx; of "x_mm" x.
-  static std::string plain_name(std::string_view head) {
-    std::string name;
-    for (const char c : trimmed(head.substr(0, head.find_first_of("[(")))) {
-      if (c != '_' && c != ' ') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-    const auto is = [&](const std::string& text) {
-      return text == "material" ||
-             std::any_of(kBeadColumns.begin(), kBeadColumns.end(), [&](const BeadColumn& known) { return text == known.name; });
-    };
-    const std::size_t mark = head.find_last_of('_');
-    if (!is(name) && mark != std::string_view::npos && head.find_first_of("[(") == std::string_view::npos)
-      return plain_name(head.substr(0, mark));
-    return name;
   }
 
   void read_heads(std::string_view line) {
     separator_ = separator_of(line);
-    for (const std::string_view word : split(line, separator_)) columns_.push_back(column_of(word));
+    for (const std::string& word : split(line, separator_)) columns_.push_back(column_of(word));
     for (std::size_t q = 0; q < kDiameter; ++q) {
       if (!has(q))
         fail(
@@ -148,26 +156,19 @@ class BeadFile {
     }
   }
 
-  /// "x [mm]", "x (mm)", "x_mm", "X".
-  ReadColumn column_of(std::string_view head) const {
-    const std::string name = plain_name(head);
-    std::size_t mark = head.find_first_of("[(");
-    if (mark == std::string_view::npos && head.find('_') != std::string_view::npos &&
-        plain_name(head.substr(0, head.find_last_of('_'))) == name)
-      mark = head.find_last_of('_');
-    if (name == "material") return {std::nullopt, true, {}};
-    const auto known = std::find_if(kBeadColumns.begin(), kBeadColumns.end(), [&](const BeadColumn& q) { return name == q.name; });
-    if (known == kBeadColumns.end()) {
+  ReadColumn column_of(std::string_view text) const {
+    const Head head = head_of(text);
+    if (head.name == kMaterial) return {std::nullopt, true, {}};
+    const std::optional<std::size_t> quantity = column_of_name(head.name);
+    if (!quantity) {
       // A speed that is passed over would leave the beads at rest.
-      if (name.starts_with("v") || name.starts_with("w") || name.starts_with("omega") || name.starts_with("spin"))
-        fail(fmt::format("has a column '{}'; call velocities vx, vy, vz and spins wx, wy, wz, or leave it out", head));
+      if (std::any_of(kMotions.begin(), kMotions.end(), [&](std::string_view begin) { return head.name.starts_with(begin); }))
+        fail(fmt::format("has a column '{}'; call velocities vx, vy, vz and spins wx, wy, wz, or leave it out", text));
       return {};
     }
-    const auto quantity = static_cast<std::size_t>(known - kBeadColumns.begin());
-    if (has(quantity)) fail(fmt::format("names '{}' twice", name));
-    std::string_view unit = mark == std::string_view::npos ? std::string_view(known->unit) : head.substr(mark + 1);
-    while (!unit.empty() && (unit.back() == ']' || unit.back() == ')' || unit.back() == ' ')) unit.remove_suffix(1);
-    return {quantity, false, unit_of(trimmed(unit), *known)};
+    if (has(*quantity)) fail(fmt::format("names '{}' twice", head.name));
+    const BeadColumn& known = kBeadColumns[*quantity];
+    return {quantity, false, unit_of(head.unit.value_or(known.unit), known)};
   }
 
   Unit unit_of(std::string_view text, const BeadColumn& quantity) const {
@@ -187,7 +188,7 @@ class BeadFile {
     bead.line = line_;
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       const ReadColumn& column = columns_[k];
-      if (column.material) bead.material = std::string(words[k]);
+      if (column.material) bead.material = words[k];
       if (column.quantity) set(bead, *column.quantity, column.unit.to_si(number(words[k])));
     }
     if (!(bead.diameter > 0)) fail(fmt::format("has a bead of {:.4g} m; a diameter is more than 0", bead.diameter));
@@ -216,10 +217,6 @@ class BeadFile {
   std::vector<ReadColumn> columns_;
 };
 
-}  // namespace
-
-std::vector<PlacedBead> read_bead_file(const std::string& path) { return BeadFile(path).read(); }
-
 std::size_t class_of(const std::vector<BeadCase>& classes, const PlacedBead& bead, const std::string& path) {
   constexpr double kRounding = 1e-4;  // of a diameter that was written with few digits
   std::vector<std::size_t> fit;
@@ -239,22 +236,26 @@ std::size_t class_of(const std::vector<BeadCase>& classes, const PlacedBead& bea
                                      what, fit.size()));
 }
 
-void take_mixture(std::vector<BeadCase>& classes, const std::string& path) {
-  const std::vector<PlacedBead> beads = read_bead_file(path);
+}  // namespace
+
+std::vector<PlacedBead> read_bead_file(const std::string& path) { return BeadFile(path).read(); }
+
+void place_beads(Case& c) {
+  c.fill.placed = read_bead_file(c.fill.file);
   std::vector<std::vector<double>> counts;
-  for (const BeadCase& c : classes) counts.emplace_back(c.sizes.size(), 0);
-  for (const PlacedBead& bead : beads) {
-    const std::size_t b = class_of(classes, bead, path);
-    const auto nearest = std::min_element(classes[b].sizes.begin(), classes[b].sizes.end(), [&](const auto& x, const auto& y) {
-      return std::fabs(x.diameter - bead.diameter) < std::fabs(y.diameter - bead.diameter);
+  for (const BeadCase& bead : c.beads) counts.emplace_back(bead.sizes.size(), 0);
+  for (PlacedBead& placed : c.fill.placed) {
+    placed.bead_class = class_of(c.beads, placed, c.fill.file);
+    const std::vector<SizeClass>& sizes = c.beads[placed.bead_class].sizes;
+    const auto nearest = std::min_element(sizes.begin(), sizes.end(), [&](const auto& x, const auto& y) {
+      return std::fabs(x.diameter - placed.diameter) < std::fabs(y.diameter - placed.diameter);
     });
-    counts[b][static_cast<std::size_t>(nearest - classes[b].sizes.begin())] += 1;
+    counts[placed.bead_class][static_cast<std::size_t>(nearest - sizes.begin())] += 1;
   }
-  for (std::size_t b = 0; b < classes.size(); ++b) {
-    double own = 0;
-    for (const double count : counts[b]) own += count;
-    classes[b].number_share = own / static_cast<double>(beads.size());
-    for (std::size_t k = 0; own > 0 && k < counts[b].size(); ++k) classes[b].sizes[k].number_fraction = counts[b][k] / own;
+  for (std::size_t b = 0; b < c.beads.size(); ++b) {
+    const double own = std::accumulate(counts[b].begin(), counts[b].end(), 0.0);
+    c.beads[b].number_share = own / static_cast<double>(c.fill.placed.size());
+    for (std::size_t k = 0; own > 0 && k < counts[b].size(); ++k) c.beads[b].sizes[k].number_fraction = counts[b][k] / own;
   }
 }
 

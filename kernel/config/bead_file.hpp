@@ -6,29 +6,19 @@
 // blanks. A head without a unit is SI, as numbers of a case are; other heads are passed over. Lines that begin with # are none.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
-#include "kernel/base/vector3.hpp"
 #include "kernel/config/case.hpp"
 
 namespace millscope::config {
 
-struct PlacedBead {
-  std::size_t line = 0;                        ///< from 1
-  base::Vector3 centre{}, velocity{}, spin{};  ///< m, m/s, rad/s
-  double diameter = 0;                         ///< m
-  std::string material;                        ///< "" where the file names none
-};
-
-/// At least one bead. Throws base::UserError with file and line.
+/// At least one bead; their classes are not known yet. Throws base::UserError with file and line.
 std::vector<PlacedBead> read_bead_file(const std::string& path);
 
-/// Of a bead of the file, by its material and its diameter, which lies in the range of one class. Throws base::UserError with its line.
-std::size_t class_of(const std::vector<BeadCase>& classes, const PlacedBead& bead, const std::string& path);
-
-/// Shares of the classes, and of their sizes by the nearest one, are those of the file.
-void take_mixture(std::vector<BeadCase>& classes, const std::string& path);
+/// Reads fill.file. Each bead is of the class whose material is its own and in whose range of sizes its diameter lies; shares of the
+/// classes, and of their sizes by the nearest one, become those of the file. Throws base::UserError with the line of a bead of no class or
+/// of several.
+void place_beads(Case& c);
 
 }  // namespace millscope::config

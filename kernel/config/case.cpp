@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "kernel/config/bead_file.hpp"
 #include "kernel/config/units.hpp"
 
 namespace millscope::config {
@@ -78,7 +77,7 @@ double Case::tracer_part(double radius, double bead_mass) const {
 std::uint64_t bead_count(const Case& c, const std::optional<Vessel>& vessel) {
   const FillCase& fill = c.fill;
   if (fill.count) return *fill.count;
-  if (!fill.file.empty()) return read_bead_file(fill.file).size();
+  if (!fill.file.empty()) return fill.placed.size();
   double wanted = 0;
   if (fill.mass) {
     wanted = *fill.mass / c.mean_bead_mass();

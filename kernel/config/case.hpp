@@ -65,16 +65,26 @@ struct Box {
   Vector3 low{}, high{};
 };
 
+/// A bead that a file puts in its place (bead_file.hpp).
+struct PlacedBead {
+  std::size_t line = 0;                  ///< of the file, from 1
+  Vector3 centre{}, velocity{}, spin{};  ///< m, m/s, rad/s
+  double diameter = 0;                   ///< m
+  std::string material;                  ///< "" where the file names none
+  std::size_t bead_class = 0;            ///< of Case::beads
+};
+
 /// `fill`: exactly one of `count`, `mass`, `filling`, `file`.
 struct FillCase {
   std::optional<std::uint64_t> count;
-  std::string file;               ///< of beads that are put where it says (bead_file.hpp); "": none
-  std::optional<double> mass;     ///< kg, > 0
-  std::optional<double> filling;  ///< J, 0 < J ≤ 1, on the bare shell's volume
-  double porosity = 0.37;         ///< φ of the bed at rest, 0 ≤ φ < 1; used with `filling`
-  std::optional<Vessel> vessel;   ///< default: the geometry's interior, its length the period when the axis is periodic
-  std::optional<Box> region;      ///< where beads are put, m; default: the geometry's interior
-  double settle = 0.3;            ///< `settle_s`, s ≥ 0: time that the charge falls with the walls at rest before t = 0; of a file 0
+  std::string file;                ///< of beads that are put where it says; "": none
+  std::vector<PlacedBead> placed;  ///< what it holds, in its order
+  std::optional<double> mass;      ///< kg, > 0
+  std::optional<double> filling;   ///< J, 0 < J ≤ 1, on the bare shell's volume
+  double porosity = 0.37;          ///< φ of the bed at rest, 0 ≤ φ < 1; used with `filling`
+  std::optional<Vessel> vessel;    ///< default: the geometry's interior, its length the period when the axis is periodic
+  std::optional<Box> region;       ///< where beads are put, m; default: the geometry's interior
+  double settle = 0.3;             ///< `settle_s`, s ≥ 0: time that the charge falls with the walls at rest before t = 0; of a file 0
   Location where;
 };
 

@@ -40,7 +40,7 @@ Case from_tree(const Node& root, const std::string& file) {
   c.fill = read_fill(fill);
   const Node beads = root.at("beads", "bead classes by name: {glass5: {material: glass, diameter: 5 mm}}");
   c.beads = read_beads(beads, c.materials, read_shares_by_mass(fill));
-  if (!c.fill.file.empty()) take_mixture(c.beads, c.fill.file);
+  if (!c.fill.file.empty()) place_beads(c);
   c.contact = read_contact(root.at("contact", "the contact law: {law: {kind: hertz_mindlin}}"));
   c.pairs =
       read_pairs(root.at("pairs", "values per pair of materials: {glass~glass: {restitution: 0.8, …}}"), root.find("groups"), c.materials);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/config/bead_file.hpp"
 #include "kernel/run/insertion.hpp"
 #include "kernel/run/sphere_cells.hpp"
 
@@ -18,14 +17,6 @@ constexpr double kDeepest = 0.05;  // of the smaller radius: snapshots of a run 
 
 [[noreturn]] void refuse(const Assembly& a, const PlacedBead& bead, const std::string& why) {
   throw UserError(base::Location{a.c.fill.file, static_cast<int>(bead.line)}, why);
-}
-
-void wrap(const Assembly& a, base::Vector3& p) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!a.c.domain.periodic[axis]) continue;
-    const double low = a.c.domain.box.low[axis], length = a.c.domain.box.high[axis] - low;
-    p[axis] -= length * std::floor((p[axis] - low) / length);
-  }
 }
 
 /// Bead i and j overlap by more than they may: said with both lines.
@@ -94,14 +85,16 @@ void check_walls(const Assembly& a, const std::vector<PlacedBead>& beads) {
 }  // namespace
 
 void insert_file_beads(Assembly& a) {
-  std::vector<PlacedBead> beads = config::read_bead_file(a.c.fill.file);
-  std::vector<BeadType> types;
-  for (PlacedBead& b : beads) wrap(a, b.centre), types.push_back({config::class_of(a.c.beads, b, a.c.fill.file), b.diameter});
+  std::vector<PlacedBead> beads = a.c.fill.placed;
+  for (PlacedBead& b : beads) {
+    for (int axis = 0; axis < 3; ++axis) b.centre[axis] = dem::wrapped(a.system->settings(), axis, b.centre[axis]);
+  }
   check_ends(a, beads);
   check_walls(a, beads);
   check_overlaps(a, beads);
   a.system->particles.resize(beads.size());
-  for (std::size_t i = 0; i < beads.size(); ++i) put_moving(a, i, types[i], beads[i].centre, beads[i].velocity, beads[i].spin);
+  for (std::size_t i = 0; i < beads.size(); ++i)
+    put_moving(a, i, {beads[i].bead_class, beads[i].diameter}, beads[i].centre, beads[i].velocity, beads[i].spin);
 }
 
 }  // namespace millscope::run

@@ -53,9 +53,8 @@ void add_counts(const Score& s, std::string& out) {
 void add_p_values(const char* of, const std::vector<double>& p, std::string& out) {
   if (p.empty()) return;
   add(out,
-      "Of these {} sets, {}: should lie evenly between 0 and 1 or higher. By chance they would be as low with a probability of {:.2g}, and "
-      "as "
-      "high, if they lie evenly, with {:.2g} (Kolmogorov, one-sided).\n\n",
+      "Of these {} sets, {}: should lie evenly between 0 and 1 or higher. By chance they would be as low with a probability of {:.2g}, "
+      "and as high, if they lie evenly, with {:.2g} (Kolmogorov, one-sided).\n\n",
       p.size(), of, low_p(p), high_p(p));
 }
 
@@ -65,8 +64,7 @@ void add_groups(const Page& page, std::string& out) {
   if (groups.size() < 2) return;
   out +=
       "| played by | sets of | nothing hidden: physics named | one effect, λ ≥ 30: named, alone or in a class of two | two: both named, "
-      "together | "
-      "outside: said so | decoy: physics named |\n|---|---|---|---|---|---|---|\n";
+      "together | outside: said so | decoy: physics named |\n|---|---|---|---|---|---|---|\n";
   const auto brief = [](const Count& c) { return c.of == 0 ? std::string() : fmt::format("{} of {}", c.hits, c.of); };
   for (const Group& g : groups) {
     const Score s = score(g.sets);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/challenge/concealment.hpp"
 
 namespace millscope::challenge {
@@ -112,7 +113,7 @@ void judge_coverage(const std::vector<Marked>& sets, Score& s) {
     c.varies = c.of == kStrengthRow || varies(sets, c.of);
     if (c.varies) p.push_back(binomial_p(c.inside, kCovered));
   }
-  p = holm(p);
+  p = base::holm(p);
   auto next = p.begin();
   for (Coverage& c : s.coverage) {
     if (c.varies) c.p = *next++;

@@ -5,7 +5,6 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <random>
 #include <tuple>
@@ -61,19 +60,6 @@ double binomial_p(const Count& c, double share) {
     if (likely <= here) p += likely;
   }
   return std::min(1.0, p);
-}
-
-std::vector<double> holm(const std::vector<double>& p) {
-  std::vector<std::size_t> order(p.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
-  std::vector<double> out(p.size());
-  double largest = 0;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    largest = std::max(largest, std::min(1.0, static_cast<double>(p.size() - i) * p[order[i]]));
-    out[order[i]] = largest;
-  }
-  return out;
 }
 
 double low_p(std::vector<double> numbers) {

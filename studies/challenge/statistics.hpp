@@ -22,9 +22,6 @@ double lower_bound(const Count& count, double confidence);
 /// That a count is at most as likely as this one, if each trial hits with the probability `share`: the exact binomial test, two-sided.
 double binomial_p(const Count& count, double share);
 
-/// Holm 1979: p-values that hold for all of them together, in the order given.
-std::vector<double> holm(const std::vector<double>& p);
-
 /// Kolmogorov's test, one-sided (Smirnov 1944, in the approximation of Stephens 1970): that numbers which lie evenly in [0, 1], or higher,
 /// come out as low by chance; and as high if they lie evenly or lower. 1 for none.
 double low_p(std::vector<double> numbers);

@@ -60,10 +60,9 @@ void misses(const Page& page, std::string& out) {
   if (std::none_of(page.sets.begin(), page.sets.end(), missed)) return;
   out +=
       "## Misses\n\nAll sets whose diagnosis is not what is hidden: something missing where nothing is, one effect that is not named alone "
-      "or in a class of "
-      "two, two that are not named together, what lies outside not said to, a decoy taken for physics or said to lie outside, and those "
-      "that "
-      "failed. The remarks are of whoever looked into them, after opening.\n\n"
+      "or in a class of two, two that are not named together, what lies outside not said to, a decoy taken for physics or said to lie "
+      "outside, and those "
+      "that failed. The remarks are of whoever looked into them, after opening.\n\n"
       "| set | hidden | λ | diagnosis | remark |\n|---|---|---|---|---|\n";
   for (const Marked& m : page.sets) {
     if (missed(m))

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <span>
 
+#include "kernel/base/statistics.hpp"
+
 namespace millscope::crosscheck {
 namespace {
 
@@ -44,16 +46,11 @@ void judge(Compared& c, const Limits& limits, std::size_t seeds) {
   c.seeds_needed = static_cast<double>(seeds) * std::pow(reach / (size - *c.limit), 2);
 }
 
-/// Holm's step-down: the k-th smallest p times how many are left, never falling.
 void adjust(std::vector<Compared>& all) {
-  std::vector<std::size_t> order(all.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return all[a].p < all[b].p; });
-  double floor = 0;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    Compared& c = all[order[k]];
-    c.adjusted_p = floor = std::max(floor, std::min(1.0, static_cast<double>(order.size() - k) * c.p));
-  }
+  std::vector<double> p;
+  for (const Compared& c : all) p.push_back(c.p);
+  p = base::holm(p);
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].adjusted_p = p[k];
 }
 
 }  // namespace

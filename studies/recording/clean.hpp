@@ -1,12 +1,12 @@
 // From rows to points in time order. Every rule counts what it sets aside. For the files of this room.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "kernel/base/error.hpp"
-
 #include "studies/recording/recording.hpp"
 #include "studies/recording/table.hpp"
 #include "studies/recording/travel.hpp"
@@ -23,6 +23,12 @@ void drop_lost(Run& rows);
 
 /// Throws base::UserError for rows, in the order of the file, that no single bead can have: of two that take turns, or at random places.
 void refuse_several(const Run& rows, const std::filesystem::path& file);
+
+/// Rows of one time stay in the order of the file. Counts those that ran backwards.
+void sort_by_time(Run& run);
+
+/// Counts rows that belong to no run as lost ones of this run.
+void carry_lost(Run& run, std::uint64_t rows);
 
 /// Rows in the order of the file → one run, or several where the clock was set back for good. Sorts, and sets aside false times and
 /// duplicates.

@@ -11,6 +11,9 @@ namespace millscope::recording {
 
 using Words = std::vector<std::string_view>;
 
+/// Without blanks and quotes around it.
+std::string_view trimmed(std::string_view text);
+
 /// The words between separators, without blanks and quotes around them.
 Words split(std::string_view line, char separator);
 

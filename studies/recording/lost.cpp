@@ -108,6 +108,11 @@ void mark_repeats(const Run& rows, std::vector<char>& keep) {
 
 }  // namespace
 
+void carry_lost(Run& run, std::uint64_t rows) {
+  run.report.rows += rows;
+  run.report.lost += rows;
+}
+
 void drop_lost(Run& rows) {
   const bool fine = moves_finely(rows);
   const std::vector<Place> none = signs(rows, fine);

@@ -174,6 +174,8 @@ Run cut(const Run& whole, std::size_t first, std::size_t last) {
   return run;
 }
 
+}  // namespace
+
 void sort_by_time(Run& run) {
   for (std::size_t i = 1; i < run.size(); ++i) run.report.backwards += run.time[i] < run.time[i - 1];
   if (run.report.backwards == 0) return;
@@ -182,6 +184,8 @@ void sort_by_time(Run& run) {
   std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return run.time[i] < run.time[j]; });
   reorder(run, order);
 }
+
+namespace {
 
 /// Of several rows with one time the one with the smallest spread is kept, the first of the file where that does not decide.
 void drop_duplicates(Run& run) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "kernel/base/statistics.hpp"
 #include "studies/recording/clean.hpp"
@@ -12,6 +13,7 @@
 namespace millscope::recording {
 namespace {
 
+constexpr const char* kNoUnit = "check the columns and the units; no usual unit makes sense of them";
 constexpr double kLargestMill = 20;       // m, across; the largest mills have 13 m
 constexpr double kSmallestMill = 0.005;   // m
 constexpr double kFalls = 3;              // times √(2 g D)
@@ -50,10 +52,9 @@ double scale_of(const std::array<Scale, n>& scales, const std::string& unit) {
   return found == scales.end() ? 0 : found->si;
 }
 
-constexpr const char* kNoUnit = "check the columns and the units; no usual unit makes sense of them";
-
-/// The change of one unit, else of both, that makes sense of the numbers.
-std::string hint(const Measured& m, const Condition& condition, const std::string& time_unit, const std::string& length_unit) {
+/// The change of one unit, else of both, that makes sense of the numbers; nothing: none does.
+std::optional<std::string> hint(const Measured& m, const Condition& condition, const std::string& time_unit,
+                                const std::string& length_unit) {
   const double length = scale_of(kLengths, length_unit), time = scale_of(kTimes, time_unit);
   if (length == 0 || time == 0) return "check the units";
   const auto works = [&](const Scale& l, const Scale& t) {
@@ -77,7 +78,7 @@ std::string hint(const Measured& m, const Condition& condition, const std::strin
         return fmt::format("{}, and {}: say so under 'columns' in a recording.yaml", say_length(l), say_time(t));
     }
   }
-  return kNoUnit;
+  return std::nullopt;
 }
 
 Measured measure(const std::vector<Run>& runs, double gap_limit) {
@@ -119,14 +120,14 @@ void check_units(const std::vector<Run>& runs, const Condition& condition, const
                  const std::string& length_unit) {
   const Measured m = measure(runs, default_gap_limit(runs));
   const auto refuse = [&](const std::string& what) {
-    throw base::UserError(where, fmt::format("{}; {}", what, hint(m, condition, time_unit, length_unit)));
+    throw base::UserError(where, fmt::format("{}; {}", what, hint(m, condition, time_unit, length_unit).value_or(kNoUnit)));
   };
   if (m.across > kLargestMill || m.along > 2 * kLargestMill) {
     refuse(fmt::format("the points span {:.4g} m across and {:.4g} m along z, and no mill is that large", m.across, m.along));
   }
   const bool small = m.moves() && m.across < kSmallestMill;
   // A tracer at rest drifts by less than its own spread, and no unit makes a mill of it: smoothed points hide that it is noise.
-  if (small && (m.spread > m.across || hint(m, condition, time_unit, length_unit) == kNoUnit)) return;
+  if (small && (m.spread > m.across || !hint(m, condition, time_unit, length_unit))) return;
   if (small) {
     refuse(fmt::format("the points move within {:.3g} m across, and no mill is that small", m.across));
   }

@@ -81,7 +81,7 @@ std::vector<Run> read_table(const RecordingFile& file, const Description& descri
     }
   }
   if (runs.empty()) throw UserError(fmt::format("{}: holds no usable point: no bead was seen", file.path.string()));
-  runs.front().report.rows += unseen, runs.front().report.lost += unseen;
+  carry_lost(runs.front(), unseen);
   for (const Run& run : runs) report.false_times += run.report.false_times;
   if (mostly_bad()) fail_unusable(file.path, report, fault, known.words);
   for (Run& run : runs) run.format = known.words;
@@ -170,6 +170,17 @@ void refuse_few(const Recording& recording) {
                               recording.file.string(), usable, rows, kFewest));
 }
 
+/// Of a file with several runs those that are nowhere in the mill, as a reflection is: another run of the file carries their rows.
+void drop_reflections(std::vector<Run>& runs) {
+  for (std::size_t i = runs.size(); i-- > 0;) {
+    const auto seen = [&](const Run& other) { return other.size() > 0 && other.source == runs[i].source; };
+    const auto other = runs[i].size() > 0 ? runs.end() : std::find_if(runs.begin(), runs.end(), seen);
+    if (other == runs.end()) continue;
+    carry_lost(*other, runs[i].report.rows);
+    runs.erase(runs.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
 void clean(Recording& recording) {
   const Extent extent = measure_extent(recording.runs);
   if (!(recording.travel.speed > 0)) recording.travel = measure_travel(recording.runs, recording.gap_limit);
@@ -182,18 +193,8 @@ void clean(Recording& recording) {
     }
     count_gaps(run, recording.gap_limit);
   }
+  drop_reflections(recording.runs);
   const auto empty = std::find_if(recording.runs.begin(), recording.runs.end(), [](const Run& run) { return run.size() == 0; });
-  const bool others = std::any_of(recording.runs.begin(), recording.runs.end(), [](const Run& run) { return run.size() > 0; });
-  if (empty != recording.runs.end() && others && empty->source == recording.runs.front().source) {
-    // Of a file with several tracers one that is nowhere in the mill, a reflection: the first run carries its rows.
-    RunReport gone;
-    for (const Run& run : recording.runs) {
-      if (run.size() == 0) gone.rows += run.report.rows, gone.lost += run.report.rows;
-    }
-    std::erase_if(recording.runs, [](const Run& run) { return run.size() == 0; });
-    recording.runs.front().report.rows += gone.rows, recording.runs.front().report.lost += gone.lost;
-    return;
-  }
   if (empty == recording.runs.end()) return;
   throw UserError(
       fmt::format("{}: holds no usable point: all {} of {} lie outside the mill that 'condition' and 'frame' state, or far from the "

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
+#include <utility>
 
 namespace millscope::recording {
 namespace {
@@ -37,12 +39,27 @@ double distance(const Run& run, std::size_t i, std::size_t j) {
 }
 
 void reorder(Run& run, const std::vector<std::size_t>& order) {
-  for_each_array(run, [&](auto& values) {
-    if (values.empty()) return;
-    auto old = values;
-    values.resize(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) values[i] = old[order[i]];
-  });
+  Run turned = chosen(run, order);
+  run.time = std::move(turned.time);
+  run.position = std::move(turned.position);
+  run.spread = std::move(turned.spread);
+  run.events = std::move(turned.events);
+}
+
+Run chosen(const Run& run, const std::vector<std::size_t>& points) {
+  const auto choose = [&](const auto& values) {
+    std::decay_t<decltype(values)> out;
+    if (values.empty()) return out;
+    out.reserve(points.size());
+    for (const std::size_t i : points) out.push_back(values[i]);
+    return out;
+  };
+  Run out;
+  out.time = choose(run.time);
+  for (std::size_t axis = 0; axis < 3; ++axis) out.position[axis] = choose(run.position[axis]);
+  out.spread = choose(run.spread);
+  out.events = choose(run.events);
+  return out;
 }
 
 }  // namespace millscope::recording

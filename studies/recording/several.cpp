@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <optional>
 
 #include "kernel/base/statistics.hpp"
 #include "studies/recording/clean.hpp"
@@ -30,36 +28,6 @@ std::string short_label(const std::string& label) {
   return label.substr(0, label[last] == '.' ? last : last + 1);
 }
 
-void reserve_points(Run& run, const Run& like, std::size_t count) {
-  run.time.reserve(count);
-  for (auto& x : run.position) x.reserve(count);
-  if (!like.spread.empty()) run.spread.reserve(count);
-  if (!like.events.empty()) run.events.reserve(count);
-}
-
-void append_point(Run& run, const Run& from, std::size_t i) {
-  run.time.push_back(from.time[i]);
-  for (std::size_t axis = 0; axis < 3; ++axis) run.position[axis].push_back(from.position[axis][i]);
-  if (!from.spread.empty()) run.spread.push_back(from.spread[i]);
-  if (!from.events.empty()) run.events.push_back(from.events[i]);
-}
-
-double squared_distance(const Run& r, std::size_t i, std::size_t j) {
-  double sum = 0;
-  for (const auto& x : r.position) sum += (x[j] - x[i]) * (x[j] - x[i]);
-  return sum;
-}
-
-/// In the order of time, rows of one time in that of the file.
-Run in_order(Run rows) {
-  if (std::is_sorted(rows.time.begin(), rows.time.end())) return rows;
-  std::vector<std::size_t> order(rows.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return rows.time[i] < rows.time[j]; });
-  reorder(rows, order);
-  return rows;
-}
-
 /// The smallest step along an axis: the last digit, or less than any that matters.
 double last_digit(const Run& rows) {
   double least = std::numeric_limits<double>::infinity();
@@ -74,13 +42,12 @@ double last_digit(const Run& rows) {
 /// Part of the rows from which the next is far, by many last digits, while the one after it is near: two beads that take turns. One bead,
 /// of which noise is all that is seen, has one in seven (differences along a line, correlated by a half: a ratio of Cauchy's).
 double turns(const Run& rows, std::size_t stride) {
-  constexpr double kNear = 1.0 / 16;  // squared
-  constexpr double kDigits = 10;
-  const double far = std::pow(kDigits * last_digit(rows), 2);
+  constexpr double kNear = 0.25, kDigits = 10;
+  const double far = kDigits * last_digit(rows);
   std::size_t all = 0, found = 0;
   for (std::size_t i = 0; i + 2 < rows.size(); i += stride, ++all) {
-    const double step = squared_distance(rows, i, i + 1);
-    found += step > far && squared_distance(rows, i, i + 2) < kNear * step;
+    const double step = distance(rows, i, i + 1);
+    found += step > far && distance(rows, i, i + 2) < kNear * step;
   }
   return all == 0 ? 0 : static_cast<double>(found) / static_cast<double>(all);
 }
@@ -91,8 +58,8 @@ bool is_random(const Run& rows, std::size_t stride) {
   const std::size_t half = rows.size() / 2;
   std::vector<double> near, far, pauses;
   for (std::size_t i = 0; i + 1 < half; i += stride) {
-    near.push_back(std::sqrt(squared_distance(rows, i, i + 1)));
-    far.push_back(std::sqrt(squared_distance(rows, i, i + half)));
+    near.push_back(distance(rows, i, i + 1));
+    far.push_back(distance(rows, i, i + half));
     pauses.push_back(std::fabs(rows.time[i + 1] - rows.time[i]));
   }
   const double step = base::quantile(near, 0.5), any = base::quantile(far, 0.5), pause = base::quantile(pauses, 0.5);
@@ -111,47 +78,33 @@ std::vector<Run> runs_of_labels(Table table, const std::vector<std::string>& wan
                                          names.empty() ? "the file has no column of labels that is read"
                                                        : fmt::format("there are {}", fmt::join(names, ", "))));
   }
-  std::vector<std::size_t> rows_of(names.size(), 0);
-  for (const std::size_t label : table.label) ++rows_of[label];
-  // -1 and what nobody wants go first: neither tells how many beads there are.
-  std::vector<char> keep(table.label.size(), 1);
-  std::size_t beads = 0, of_beads_rows = 0;
-  std::vector<std::optional<std::size_t>> place(names.size());
+  if (names.empty()) return {std::move(table.rows)};
+  std::vector<std::size_t> beads;  // labels of some; -1 and what nobody wants tell not how many there are
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (is_no_bead(table.labels[k]) || (!wanted.empty() && !of_beads(names[k]))) continue;
-    place[k] = beads++;
-    of_beads_rows += rows_of[k];
+    if (!is_no_bead(table.labels[k]) && (wanted.empty() || of_beads(names[k]))) beads.push_back(k);
   }
-  const bool numbers_rows = beads > kMostBeads || of_beads_rows < kFewestRows * beads;
-  if (table.label.empty()) return {std::move(table.rows)};
-  if (wanted.empty() && (beads == names.size()) && (beads < 2 || numbers_rows)) return {std::move(table.rows)};
-  if (wanted.empty() && (beads == 1 || numbers_rows)) {
-    for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = static_cast<char>(place[table.label[i]].has_value());
-    const RunReport before = table.rows.report;
-    const std::uint64_t gone = keep_only(table.rows, keep);
-    table.rows.report.lost = before.lost + gone;
-    if (table.rows.size() == 0) throw UserError(where, "no row has the label of a bead");
-    return {std::move(table.rows)};
-  }
-  std::vector<Run> runs(beads);
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    if (place[k]) runs[*place[k]].name = names[k], reserve_points(runs[*place[k]], table.rows, rows_of[k]);
-  }
-  std::uint64_t lost = 0;
-  for (std::size_t i = 0; i < table.label.size(); ++i) {
-    if (place[table.label[i]])
-      append_point(runs[*place[table.label[i]]], table.rows, i);
-    else
-      ++lost;
+  if (beads.empty()) throw UserError(where, "no row has the label of a bead");
+  std::vector<std::vector<std::size_t>> rows(names.size());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < table.label.size(); ++i) rows[table.label[i]].push_back(i);
+  for (const std::size_t k : beads) kept += rows[k].size();
+  const bool numbers_rows = beads.size() > kMostBeads || kept < kFewestRows * beads.size();
+  std::vector<Run> runs;
+  if (wanted.empty() && (beads.size() == 1 || numbers_rows)) {
+    std::vector<std::size_t> all;
+    for (const std::size_t k : beads) all.insert(all.end(), rows[k].begin(), rows[k].end());
+    std::sort(all.begin(), all.end());
+    runs.push_back(chosen(table.rows, all));
+  } else {
+    for (const std::size_t k : beads) runs.push_back(chosen(table.rows, rows[k])), runs.back().name = names[k];
   }
   for (Run& run : runs) run.report.rows = run.report.used = run.size();
-  if (runs.empty()) throw UserError(where, "no row has the label of a bead");
   // Lines that hold no point, and points of no bead, belong to no run: the first carries them.
   RunReport& head = runs.front().report;
-  head.rows += table.rows.report.rows - table.rows.size() + lost;
+  head.rows += table.rows.report.rows - table.rows.size();
   head.unreadable = table.rows.report.unreadable;
   head.not_finite = table.rows.report.not_finite;
-  head.lost = lost;
+  carry_lost(runs.front(), table.rows.size() - kept);
   return runs;
 }
 
@@ -161,7 +114,9 @@ void refuse_several(const Run& rows, const std::filesystem::path& file) {
   if (rows.size() < kEnough) return;
   const std::size_t stride = rows.size() / kSample + 1;
   // One bead that two programs wrote in turns is in order by time; a clock that was set back is in the order of the file.
-  if (turns(rows, stride) > kTurns && turns(in_order(rows), stride) > kTurns)
+  Run in_order = rows;
+  sort_by_time(in_order);
+  if (turns(rows, stride) > kTurns && turns(in_order, stride) > kTurns)
     throw UserError(
         fmt::format("{}: the points jump to and fro between two places, as of two tracers in one file; give each its own file, or "
                     "a column with the head 'label'",

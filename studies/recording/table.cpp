@@ -6,6 +6,8 @@
 #include <cstring>
 #include <unordered_map>
 
+#include "studies/recording/heads.hpp"
+
 namespace millscope::recording {
 namespace {
 
@@ -161,19 +163,12 @@ bool all_finite(const Layout& layout, const std::array<double, kQuantities>& val
   return true;
 }
 
-/// Without blanks and quotes around it.
-std::string_view plain_label(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\"");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
 /// Takes labels in, of which neighbours are often the same.
 class Labels {
  public:
   explicit Labels(Table& table) : table_(table) {}
   void add(std::string_view text) {
-    const std::string_view plain = plain_label(text);
+    const std::string_view plain = trimmed(text);
     if (table_.label.empty() || plain != table_.labels[table_.label.back()]) {
       const auto [at, fresh] = places_.try_emplace(std::string(plain), table_.labels.size());
       if (fresh) table_.labels.emplace_back(plain);

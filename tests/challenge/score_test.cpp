@@ -89,7 +89,7 @@ TEST_CASE("an exact test of a count, and Holm's of several") {
   CHECK_THAT(binomial_p({2, 2}, 0.9), WithinAbs(1, 1e-12));
   CHECK_THAT(binomial_p({0, 3}, 0.5), WithinAbs(0.25, 1e-12));  // both tails
   CHECK(binomial_p({}, 0.9) == 1);
-  const std::vector<double> p = holm({0.01, 0.04, 0.03, 0.9});
+  const std::vector<double> p = millscope::base::holm({0.01, 0.04, 0.03, 0.9});
   CHECK_THAT(p[0], WithinAbs(0.04, 1e-12));
   CHECK_THAT(p[1], WithinAbs(0.09, 1e-12));  // not below that of the smaller 0.03
   CHECK_THAT(p[2], WithinAbs(0.09, 1e-12));

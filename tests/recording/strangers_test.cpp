@@ -269,6 +269,10 @@ TEST_CASE("a label that was never seen, or never in the mill, leaves the others"
   const Recording inside = read_recording(scratch.file("outside.csv", outside));
   REQUIRE(inside.runs.size() == 1);
   CHECK(inside.runs[0].size() == 500);
+  scratch.file("before.csv", unseen);
+  const Recording later = read_recording(scratch.file("two.yaml", "files: [before.csv, outside.csv]\n"));  // in whichever file it is
+  REQUIRE(later.runs.size() == 2);
+  CHECK(later.runs[1].report.lost == inside.runs[0].report.lost);
   const Recording tracks = read_recording(scratch.file("many.csv", many));  // numbers of short tracks; -1 is no bead's all the same
   REQUIRE(tracks.runs.size() == 1);
   CHECK(tracks.runs[0].size() == 500);
