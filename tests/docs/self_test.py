@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The check of the documentation finds each kind of fault in a small tree, and nothing in a sound one."""
+"""The checks of the documentation find each kind of fault in a small tree, and nothing in a sound one."""
 
 import sys
 import unittest
@@ -8,6 +8,7 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(folder) for folder in Path(__file__).resolve().parents[:2]]
 import check_docs  # noqa: E402
+import check_sentences  # noqa: E402
 from small_tree import SmallTreeTest  # noqa: E402
 
 HELP = {
@@ -98,6 +99,58 @@ class DocumentationCheck(SmallTreeTest):
                     (self.root / name).unlink()
                 self.assertEqual(len(found), 1, found)
                 self.assertIn(message, found[0])
+
+
+# A page whose sentences have 3, 4, 5, 3 and 6 words; what else stands there does not count.
+PLAIN = """# A heading of many words that would spoil the average of this page, but headings do not count
+
+Run `millscope run case.yaml -o out`. See [the long page of cases](cases.md#a-very-long-anchor-of-many-words).
+- one item of a
+  list
+- and one more
+
+| a table | whose many words do not count, as nobody reads a table from its beginning to its end |
+|---|---|
+
+```
+code has as many words as it likes, and it likes many words
+```
+    so has this kind of code, which begins with four spaces
+
+Eq. 4 holds at 0.5 % of power.
+"""
+
+
+class SentencesCheck(SmallTreeTest):
+    sound = {"README.md": PLAIN, **{name: "Many words. " + "word " * 99 for name in check_sentences.WRITTEN}}
+
+    def faults(self):
+        return list(check_sentences.check(self.root))
+
+    def test_words_are_counted(self):
+        counted = check_sentences.measured(self.root)["README.md"]
+        self.assertEqual([(words, line) for words, line, _ in counted], [(2, 3), (6, 3), (5, 4), (3, 6), (7, 16)])
+
+    def test_a_sound_page_and_those_that_programs_write_pass(self):
+        self.assertEqual(self.faults(), [])
+
+    def test_a_long_sentence_is_found(self):
+        self.write("README.md", PLAIN + "\nBut " + "very " * 39 + "long. Short.\n")
+        self.assertEqual(self.faults(), ['README.md:18: a sentence of 41 words, at most 40 are allowed; divide it: "But very very very very very very very …"'])
+        self.write("README.md", PLAIN + "\nBut " + "very " * 38 + "long. Short.\n")
+        self.assertEqual(self.faults(), [])
+
+    def test_a_long_average_is_found(self):
+        self.write("docs/a.md", ("A " + "word " * 18 + "more.\n") * 3)
+        self.assertEqual(self.faults(), ["docs/a.md: 20.0 words per sentence on average, at most 18 are allowed; one thought a sentence"])
+
+    def test_a_full_stop_within_a_sentence_does_not_end_it(self):
+        self.write("docs/a.md", "Read e.g. The Book (Jones et al. 1990, Fig. 3), by A. Smith. It has 3.5 pages! Does it? “It does.” 3 of them.\n")
+        self.assertEqual([words for words, _, _ in check_sentences.measured(self.root)["docs/a.md"]], [13, 4, 2, 2, 3])
+
+    def test_an_exception_that_is_gone_is_found(self):
+        (self.root / "docs/proof.md").unlink()
+        self.assertEqual(self.faults(), ["docs/proof.md: is an exception of check_sentences.py and not there; take it off the list"])
 
 
 if __name__ == "__main__":
