@@ -26,7 +26,7 @@ APART = re.compile(r"^\s*(?:#{1,6}\s|\||<!--|-{3,}\s*$|\[[^\]]+\]:\s)")  # headi
 LINK = re.compile(r"!?\[((?:[^\[\]]|\[[^\]]*\])*)\]\([^()\s]*(?:\([^()]*\))?[^()\s]*\)")
 CODE = re.compile(r"(`+).+?\1|\$[^$]+\$")
 # A stop ends a sentence where what follows can begin one.
-END = re.compile(r"""[.!?][)\]"'”’*_]*\s+(?=[("'“‘*_\[]*[A-Z0-9Α-Ωα-ωλθσ§])""")
+END = re.compile(r"""[.!?][)\]"'”’*_]*\s+(?=[("'“‘*_\[]*(?:[A-Z0-9Α-Ωα-ω§]|millscope\b))""")
 SHORT = re.compile(r"(?:\b(?:e\.g|i\.e|[Ee]q|[Ff]ig|al|vs|cf|[Nn]o|[Pp]p|[A-Z])\.)$")
 
 
