@@ -42,7 +42,7 @@ docs: ## the documentation as a site: build/docs/index.html
 	mkdocs build --strict --quiet
 	@echo "open build/docs/index.html"
 
-install: binary ## build and install to PREFIX (command, plugins, SDK, completion, manual)
+install: binary ## build and install to PREFIX (command, plugins, SDK, completion, manual, Python package)
 	cmake --install $(BUILD) --prefix $(PREFIX)
 
 format: ## clang-format every source

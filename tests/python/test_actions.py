@@ -6,7 +6,7 @@ import time
 import unittest
 from unittest import mock
 
-from support import FolderTest, needs_package
+from support import SOURCE, FolderTest, needs_package
 
 try:
     import millscope
@@ -100,6 +100,22 @@ class Actions(FolderTest):
             script.chmod(0o755)
             with self.subTest(text), mock.patch.dict(os.environ, {"MILLSCOPE": str(script)}), self.assertRaisesRegex(millscope.Error, line):
                 millscope.call("run", "x")
+
+    def test_the_words_of_studies(self):
+        """A stand-in writes down its words and leaves a fixture: the real ones take hours."""
+        fixtures, script = SOURCE / "tests/report/fixtures", self.folder / "millscope"
+        for action, left, opened in ((millscope.diagnose, "diagnosis", millscope.Diagnosis), (millscope.calibrate, "retuned", millscope.Calibration)):
+            script.write_text(f"#!/bin/sh\nprintf '%s\\n' \"$@\" > {self.folder}/words\ncp -r {fixtures}/{left} \"$4\"\n")
+            script.chmod(0o755)
+            with self.subTest(left), mock.patch.dict(os.environ, {"MILLSCOPE": str(script)}):
+                found = action("study.yaml", self.folder / left, settings={"budget.simulations": 80, "a.range": [0.1, "5 mm"]}, slots=2, options=["--draws", 99])
+                self.assertIsInstance(found, opened)
+            words = (self.folder / "words").read_text().splitlines()
+            self.assertEqual(words, [action.__name__, "study.yaml", "-o", str(self.folder / left), "--slots", "2", "--set", "budget.simulations=80",
+                                     "--set", "a.range=[0.1, 5 mm]", "--draws", "99"])
+        for action in (millscope.diagnose, millscope.calibrate):
+            with self.assertRaisesRegex(millscope.Error, "nothing.yaml"):
+                action(self.folder / "nothing.yaml", self.folder / "no", progress=False)
 
     def test_what_is_drawn_over_and_what_stays(self):
         script = self.folder / "millscope"
