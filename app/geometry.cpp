@@ -1,16 +1,12 @@
 // geometry export, geometry report.
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "app/commands.hpp"
-#include "kernel/base/nearest.hpp"
 #include "kernel/config/case.hpp"
-#include "kernel/config/document.hpp"
 #include "kernel/config/values.hpp"
-#include "kernel/host/objects.hpp"
+#include "kernel/host/geometry_file.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/stl.hpp"
 
@@ -25,29 +21,6 @@ struct Named {
   std::string name;
   host::GeometryObject object;
 };
-
-/// Refuses what is not among the choices of the plugin's own parameter `unit`.
-void check_unit(const Descriptor& mesh, const std::string& unit) {
-  std::vector<std::string> known;
-  for (std::uint64_t i = 0; i < mesh.parameter_count; ++i) {
-    if (std::string_view(mesh.parameters[i].name) != "unit") continue;
-    std::stringstream choices(mesh.parameters[i].choices);
-    for (std::string choice; std::getline(choices, choice, '|');) known.push_back(choice);
-  }
-  if (std::find(known.begin(), known.end(), unit) == known.end())
-    throw UserError(fmt::format("--unit '{}' is not known; {}", unit, base::suggestion(unit, known)));
-}
-
-host::GeometryObject from_mesh_file(const std::string& file, const std::string& unit, const host::Registry& registry) {
-  const host::Loaded& plugin = registry.find(Kind::geometry, "mesh");
-  check_unit(*plugin.descriptor, unit);
-  // JSON's quoting is also YAML's.
-  const nlohmann::json values_of_mesh = {{"file", file}, {"unit", unit}};
-  const config::Node node =
-      config::parse_document(values_of_mesh.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), "command line");
-  const config::ResolvedValues values = config::resolve(*plugin.descriptor, node, Scope::instance);
-  return host::GeometryObject::create(plugin, values.view(), {"", 0});
-}
 
 std::vector<Named> from_case(const std::string& file, const std::vector<std::string>& overrides, const host::Registry& registry) {
   std::vector<Named> all;
@@ -65,7 +38,9 @@ std::vector<Named> load(const Options& options, const host::Registry& registry) 
   const std::string file = options.text("FILE");
   if (file.ends_with(".yaml") || file.ends_with(".yml")) return from_case(file, options.list("set"), registry);
   std::vector<Named> all;
-  all.push_back({file, from_mesh_file(file, options.text("unit"), registry)});
+  const bool asks = !host::units_of(host::reader_of(file, registry)).empty();
+  const std::string unit = options.has("unit") ? options.text("unit") : asks ? "mm" : "";
+  all.push_back({file, host::open_geometry({file, unit, false}, registry, "command line")});
   return all;
 }
 
@@ -110,19 +85,20 @@ int report(const Options& options) {
 }  // namespace
 
 int geometry(const Arguments& arguments) {
-  Options options(
-      "geometry export|report FILE",
-      "Writes a geometry of a case as STL (solids named by material slot, in metres), or reports on a case's geometries or a mesh file: "
-      "triangles, box, area, open edges, degenerate and duplicate faces, orientation.",
-      "millscope geometry export configs/crosscheck/slice_parametric.yaml -o liner.stl");
+  Options options("geometry export|report FILE",
+                  "Writes a geometry of a case as STL (solids named by material slot, in metres), or reports on a case's geometries, a "
+                  "mesh file or a CAD file: "
+                  "triangles, box, area, open edges, degenerate and duplicate faces, orientation.",
+                  "millscope geometry export configs/crosscheck/slice_parametric.yaml -o liner.stl");
   options.positional("ACTION", "export or report");
   options.choices("ACTION", {"export", "report"});
-  options.positional("FILE", "a case (.yaml) or a mesh file");
+  options.positional("FILE", "a case (.yaml), a mesh (STL, OBJ, …) or CAD bodies (STEP, IGES)");
   options.add()("output,o", po::value<std::string>()->value_name("FILE.stl"), "file to write");
   options.add()("force", "replace FILE.stl");
   options.add()("name", po::value<std::string>()->value_name("NAME"), "which geometry of the case");
   options.add()("binary", "write binary STL (names of solids are lost)");
-  options.add()("unit", po::value<std::string>()->value_name("mm|cm|m|inch")->default_value("mm"), "unit of a mesh file");
+  options.add()("unit", po::value<std::string>()->value_name("mm|cm|m|inch"),
+                "unit of a mesh file (default: mm); STEP and IGES say theirs");
   options.with_overrides();
   options.with_plugins();
   if (!options.parse(arguments)) return kDone;

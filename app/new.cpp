@@ -7,10 +7,10 @@
 #include "app/commands.hpp"
 #include "app/tables.hpp"
 #include "kernel/config/document.hpp"
+#include "kernel/host/geometry_file.hpp"
 #include "kernel/output/directory.hpp"
 #include "kernel/output/new_folder.hpp"
 #include "studies/new/folder.hpp"
-#include "studies/new/liner.hpp"
 #include "studies/new/materials.hpp"
 #include "studies/new/questions.hpp"
 
@@ -32,8 +32,8 @@ void add_new_options(Options& options) {
   value("bead-size", "LENGTH", "diameter of the beads (default: a sixtieth of the mill's)");
   value("speed", "SPEED", "with its unit (default: \"75 %critical\")");
   value("direction", "counter_clockwise|clockwise", "sense of turning (default: counter_clockwise)");
-  value("liner", "FILE", "your liner as a mesh: STL, OBJ, PLY, OFF, glTF, GLB, 3MF");
-  value("liner-unit", "mm|m|cm|inch", "unit in which it was drawn");
+  value("liner", "FILE", "your liner: STEP, IGES, STL, OBJ, PLY, OFF, glTF, GLB, 3MF");
+  value("liner-unit", "mm|m|cm|inch", "unit in which a mesh was drawn (STEP and IGES say theirs)");
   value("lifters", "N", "without a liner file: number of lifters, 0 for a smooth shell (default: 20)");
   value("lifter-height", "LENGTH", "(default: a sixtieth of the diameter)");
   value("lifter-width", "LENGTH", "at the base (default: a fifteenth of the diameter)");
@@ -50,8 +50,11 @@ void add_new_options(Options& options) {
 }
 
 /// Options without effect would be a mistake that nobody sees.
-void refuse_needless(const Options& options) {
+void refuse_needless(const Options& options, const host::Registry& registry) {
   if (options.has("liner")) {
+    const bool says_unit = host::units_of(host::reader_of(options.text("liner"), registry)).empty();
+    if (says_unit && options.has("liner-unit"))
+      throw UserError(fmt::format("--liner-unit: {} says its unit itself; leave --liner-unit out", options.text("liner")));
     for (const char* name : {"lifters", "lifter-height", "lifter-width", "lifter-angle"}) {
       if (options.has(name))
         throw UserError(fmt::format("--{}: the lifters are in the liner's file; leave --{} or --liner out", name, name));
@@ -110,8 +113,8 @@ int new_mill(const Arguments& arguments) {
   if (folder.empty() || folder.filename() == "." || folder.filename() == "..")
     throw UserError(fmt::format("'{}' names no new folder; give a name, e.g. my_mill", options.text("FOLDER")));
   output::refuse_folder(folder);
-  refuse_needless(options);
   const host::Registry registry = options.registry();
+  refuse_needless(options, registry);
   const bool asking = !options.has("yes") && isatty(STDIN_FILENO) != 0;
   const new_mill::Mill mill = new_mill::ask_for_mill(answers_of(options, asking), registry);
   const new_mill::Choices choices = new_mill::choose(mill);

@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "geometry/import/answer.hpp"
 #include "geometry/import/preflight.hpp"
 #include "millscope/element.hpp"
 #include "millscope/parameters.hpp"
@@ -25,22 +26,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::string lower_extension(const std::string& path) {
-  const std::size_t slash = path.find_last_of('/'), dot = path.find_last_of('.');
-  if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) return "";
-  return detail::lower(path.substr(dot + 1));
-}
-
-void check_extension(const std::string& extension) {
-  if (is_supported(extension)) return;
-  for (const char* cad : {"step", "stp", "iges", "igs", "sldprt", "ipt", "brep", "x_t", "dwg", "dxf"}) {
-    if (extension == cad)
-      throw Refusal("'." + extension +
-                    "' holds CAD surfaces, not triangles: export the body from the CAD program as STL (or 3MF, OBJ, PLY)");
-  }
-  throw Refusal("'." + extension + "' is not a mesh format that is read here: use stl, obj, ply, off, gltf, glb or 3mf");
-}
-
 std::size_t check_file(const std::string& path, const ImportLimits& limits) {
   struct stat info {};
   if (::stat(path.c_str(), &info) != 0) {
@@ -50,8 +35,7 @@ std::size_t check_file(const std::string& path, const ImportLimits& limits) {
   if (!S_ISREG(info.st_mode)) throw Refusal("is not a file: name a mesh file");
   const auto size = as_size(info.st_size);
   if (size == 0) throw Refusal("is empty: export it again");
-  const std::size_t most = (std::size_t{1} << 20) + 400 * limits.max_triangles;  // a text STL has about 270 bytes a triangle
-  if (size > most) {
+  if (size > limits.most_bytes()) {
     throw Refusal(std::to_string(size / 1000000) + " MB is more than " + std::to_string(limits.max_triangles) +
                   " triangles (max_triangles) need: export a coarser mesh or raise max_triangles");
   }
@@ -130,67 +114,6 @@ std::vector<char> read_answer(int pipe, double seconds) {
   }
 }
 
-/// Takes values off the front of the answer; asking for more than there is means that the child died on the way.
-class Reader {
- public:
-  explicit Reader(const std::vector<char>& data) : at_(data.data()), left_(data.size()) {}
-
-  void take(void* out, std::size_t size) {
-    if (size > left_) throw Refusal("");
-    if (size > 0) std::memcpy(out, at_, size);
-    at_ += size, left_ -= size;
-  }
-  std::string text() {
-    std::uint32_t size = 0;
-    take(&size, sizeof size);
-    if (size > left_) throw Refusal("");
-    std::string s(size, '\0');
-    take(s.data(), size);
-    return s;
-  }
-  std::size_t left() const { return left_; }
-
- private:
-  const char* at_;
-  std::size_t left_;
-};
-
-void take_solid(Reader& reader, Soup& soup) {
-  const std::string name = reader.text();
-  std::uint64_t count = 0;
-  reader.take(&count, sizeof count);
-  if (count > reader.left() / (9 * sizeof(double))) throw Refusal("");
-  if (count == 0) return;
-  const auto found = std::find(soup.names.begin(), soup.names.end(), name);  // of few: import_child sends no more than kMostSlots
-  const auto slot = static_cast<std::uint32_t>(found - soup.names.begin());
-  if (found == soup.names.end()) soup.names.push_back(name);
-  const std::size_t old = soup.corners.size();
-  soup.corners.resize(old + 3 * count);
-  reader.take(soup.corners.data() + old, count * 9 * sizeof(double));
-  soup.slots.insert(soup.slots.end(), count, slot);
-}
-
-/// False: the answer is not complete.
-bool parse_answer(const std::vector<char>& answer, Soup& soup) {
-  Reader reader(answer);
-  while (reader.left() > 0) {
-    Block block{};
-    reader.take(&block, 1);
-    if (block == Block::done) return true;
-    if (block == Block::refused) throw Refusal(reader.text());
-    if (block == Block::note) {
-      soup.notes.push_back(reader.text());
-      continue;
-    }
-    try {
-      take_solid(reader, soup);
-    } catch (const Refusal&) {
-      return false;
-    }
-  }
-  return false;
-}
-
 std::string how_it_died(int status) {
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
     return "took too much processor time to read: it is damaged or hostile; export it again";
@@ -201,7 +124,21 @@ std::string how_it_died(int status) {
   return "made the reader stop half-way: it is damaged or hostile; export it again, as STL if that is possible";
 }
 
-Soup read_in_child(const std::string& path, const std::string& extension, const ImportLimits& limits, std::size_t size) {
+/// The reader's last words are its answer; it never returns.
+[[noreturn]] void be_the_child(int pipe, const ReadInChild& read) noexcept {
+  try {
+    read(pipe);
+  } catch (const std::bad_alloc&) {
+    send_refusal(pipe, "needs more memory than is allowed for a file of its size: it is damaged or hostile; export it again");
+  } catch (const std::exception& e) {
+    send_refusal(pipe, e.what());
+  } catch (...) {
+    send_refusal(pipe, "the reader failed: export it again, as STL if that is possible");
+  }
+  _exit(0);
+}
+
+Soup read_in_child(const ReadInChild& read, const ImportLimits& limits, std::size_t size) {
   const double seconds = limits.base_seconds + limits.seconds_per_megabyte * static_cast<double>(size) / 1e6;
   const std::size_t extra = std::min(limits.bytes_per_byte * size, limits.bytes_per_triangle * limits.max_triangles);
   const std::size_t address_space = own_address_space() + limits.base_bytes + extra;
@@ -216,7 +153,7 @@ Soup read_in_child(const std::string& path, const std::string& extension, const 
   }
   if (pid == 0) {
     confine_child(address_space, seconds);
-    import_child(ends[1], path, extension, limits.max_triangles);
+    be_the_child(ends[1], read);
   }
   ::close(ends[1]);
   Child child(pid, ends[0]);
@@ -228,17 +165,16 @@ Soup read_in_child(const std::string& path, const std::string& extension, const 
 
 }  // namespace
 
-Soup import_mesh(const std::string& path, const ImportLimits& limits) {
-  try {
-    const std::string extension = lower_extension(path);
-    const std::size_t size = check_file(path, limits);
-    check_extension(extension);
-    Soup soup = read_in_child(path, extension, limits, size);
-    if (soup.size() == 0) throw Refusal("holds no triangles: export the body as a mesh, not as points or lines");
-    return soup;
-  } catch (const std::exception& e) {
-    throw Refusal("mesh file " + path + ": " + e.what());
-  }
+std::string lower_extension(const std::string& path) {
+  const std::size_t slash = path.find_last_of('/'), dot = path.find_last_of('.');
+  if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) return "";
+  return detail::lower(path.substr(dot + 1));
+}
+
+Soup read_guarded(const std::string& path, const ImportLimits& limits, const ReadInChild& read) {
+  Soup soup = read_in_child(read, limits, check_file(path, limits));
+  if (soup.size() == 0) throw Refusal("holds no triangles: export the body as a mesh, not as points or lines");
+  return soup;
 }
 
 }  // namespace millscope::geometry

@@ -52,9 +52,4 @@ class Mesh {
   std::unique_ptr<CandidateFinder> finder_;
 };
 
-/// What the plugin table is made of: imports the file first.
-struct MeshPlugin : Mesh {
-  explicit MeshPlugin(const Parameters& parameters);
-};
-
 }  // namespace millscope::geometry

@@ -1,8 +1,7 @@
 // The plugin library `mesh`.
-#include "geometry/import/guarded_import.hpp"
+#include "geometry/import/mesh_file.hpp"
 #include "geometry/mesh/mesh.hpp"
-
-#include "millscope/element.hpp"
+#include "geometry/mesh/mesh_parameters.hpp"
 
 namespace millscope::geometry {
 
@@ -16,23 +15,6 @@ double metres_per_unit(const std::string& unit) {
   throw Refusal("mesh: unit is missing: write unit: mm, m, cm or inch, in which the file was drawn");
 }
 
-Point point_of(const double* x) { return {x[0], x[1], x[2]}; }
-
-MeshOptions options_of(const Parameters& p) {
-  MeshOptions o;
-  o.label = p.text("file");
-  o.placement.scale = metres_per_unit(p.text("unit")) * p.number("scale");
-  o.placement.axis = p.text("axis");
-  o.placement.centre = p.flag("centre");
-  o.placement.rotate_axis = point_of(p.vector("rotate_axis"));
-  o.placement.rotate_angle = p.number("rotate_angle");
-  o.placement.translate = point_of(p.vector("translate"));
-  o.placement.repeat = static_cast<int>(p.integer("repeat"));
-  o.period = p.number("period");
-  o.max_triangles = as_size(p.integer("max_triangles"));
-  return o;
-}
-
 Soup import_file(const Parameters& p) {
   ImportLimits limits;
   limits.max_triangles = as_size(p.integer("max_triangles"));
@@ -42,7 +24,9 @@ Soup import_file(const Parameters& p) {
 
 }  // namespace
 
-MeshPlugin::MeshPlugin(const Parameters& parameters) : Mesh(import_file(parameters), options_of(parameters)) {}
+struct MeshPlugin : Mesh {
+  explicit MeshPlugin(const Parameters& p) : Mesh(import_file(p), mesh_options(p, metres_per_unit(p.text("unit")))) {}
+};
 
 }  // namespace millscope::geometry
 
@@ -50,19 +34,12 @@ namespace {
 
 using namespace millscope;
 
-constexpr Parameter kParameters[] = {
-    file_parameter("file", "STL, OBJ, PLY, OFF, glTF, GLB or 3MF file; one material slot per solid name, \"all\" for unnamed ones."),
+constexpr Parameter kOwn[] = {
+    file_parameter("file", "STL, OBJ, PLY, OFF, glTF, GLB or 3MF file; one material slot per solid name, \"all\" for unnamed ones.",
+                   "stl|obj|ply|off|gltf|glb|3mf"),
     choice_parameter("unit", "mm|m|cm|inch", nullptr, "Unit in which the file was drawn; required, so that nobody is off by a thousand."),
-    number_parameter("scale", "1", 1, 1e-6, 1e6, "Factor on top of the unit."),
-    choice_parameter("axis", "z|x|y|auto", "z", "Axis of the file that becomes z, the mill axis; auto finds the axis of rotation."),
-    flag_parameter("centre", false, "Moves the axis of rotation to x = y = 0."),
-    vector_parameter("rotate_axis", "1", 0, "Axis of a further rotation, after axis and centre; any length."),
-    number_parameter("rotate_angle", "rad", 0, -100, 100, "Angle of that rotation, right-handed."),
-    vector_parameter("translate", "m", 0, "Shift, after the rotation."),
-    integer_parameter("repeat", 1, 1, 1000, "Copies of the mesh round z, evenly spaced: for one segment of a liner."),
-    number_parameter("period", "m", 0, 0, 50, "Length along z after which the mesh goes on as at its start (a periodic slice); 0: none."),
-    integer_parameter("max_triangles", 5e6, 1, 1e8, "Files with more triangles are refused."),
 };
+constexpr geometry::MeshParameters kParameters(kOwn);
 
 constexpr Descriptor kMesh = describe<geometry::MeshPlugin>({
     .name = "mesh",
@@ -70,7 +47,7 @@ constexpr Descriptor kMesh = describe<geometry::MeshPlugin>({
     .doc = "Triangle mesh from a CAD file; exact sphere-triangle contact, shared edges and vertices count once.",
     .equation = "delta = r - |x - nearest point of the triangle|",
     .citation = "Ericson 2005, Real-Time Collision Detection, section 5.1.5",
-    .parameters = kParameters,
+    .parameters = kParameters.items,
 });
 
 }  // namespace

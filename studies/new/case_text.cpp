@@ -41,8 +41,8 @@ std::string pairs_text(const Mill& m) {
 
 std::string liner_text(const Mill& m) {
   const Liner& l = *m.liner;
-  std::string text = fmt::format("geometry:\n  liner:\n    kind: mesh\n    file: {}\n    unit: {}{}\n", config::quoted(liner_name(l)),
-                                 l.unit, std::string(6, ' ') + "# in which the file was drawn");
+  std::string text = fmt::format("geometry:\n  liner:\n    kind: {}\n    file: {}\n", l.kind, config::quoted(liner_name(l)));
+  if (!l.unit.empty()) text += fmt::format("    unit: {}      # in which the file was drawn\n", l.unit);
   if (l.turned)
     text +=
         "    axis: auto                  # the file's axis is not z through the origin: found, turned and moved there\n    centre: true\n";
@@ -140,7 +140,9 @@ std::string readme_text(const Mill& m, const Choices& c, const std::string& titl
   text +=
       "\n| file | |\n|---|---|\n| `case.yaml` | the case; change it, every choice is explained there |\n"
       "| `materials/` | copies of the materials' properties, with citations |\n";
-  if (m.liner) text += fmt::format("| `{}` | copy of the liner's mesh, drawn in {} |\n", liner_name(*m.liner), m.liner->unit);
+  if (m.liner)
+    text += fmt::format("| `{}` | copy of the liner's file{} |\n", liner_name(*m.liner),
+                        m.liner->unit.empty() ? "" : ", drawn in " + m.liner->unit);
   text +=
       "\nThe folder can be moved. `millscope run case.yaml -o slower --set mill.speed=\"60 %critical\"` changes one value for one run.\n";
   return text;

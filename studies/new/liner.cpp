@@ -2,28 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
-#include <sstream>
 
-#include "kernel/config/document.hpp"
-#include "kernel/config/values.hpp"
-#include "kernel/host/objects.hpp"
+#include "kernel/host/geometry_file.hpp"
 
 namespace millscope::new_mill {
 namespace {
 
 using base::UserError;
-
-host::GeometryObject make_mesh(const std::string& file, const std::string& unit, bool turned, const host::Registry& registry) {
-  const host::Loaded& plugin = registry.find(Kind::geometry, "mesh");
-  nlohmann::json values = {{"file", file}, {"unit", unit}};  // JSON's quoting is also YAML's
-  if (turned) values.update({{"axis", "auto"}, {"centre", true}});
-  const config::Node node = config::parse_document(values.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), "--liner");
-  return host::GeometryObject::create(plugin, config::resolve(*plugin.descriptor, node, Scope::instance).view(), {"--liner", 0});
-}
 
 /// Whether triangles across z cover most of the circle at that height.
 bool has_wall(const Surface& s, double z, double radius, double length) {
@@ -49,28 +36,18 @@ bool has_wall(const Surface& s, double z, double radius, double length) {
 
 }  // namespace
 
-std::vector<std::string> mesh_units(const host::Registry& registry) {
-  std::vector<std::string> units;
-  const Descriptor& mesh = *registry.find(Kind::geometry, "mesh").descriptor;
-  for (std::uint64_t i = 0; i < mesh.parameter_count; ++i) {
-    if (std::string_view(mesh.parameters[i].name) != "unit") continue;
-    std::stringstream choices(mesh.parameters[i].choices);
-    for (std::string choice; std::getline(choices, choice, '|');) units.push_back(choice);
-  }
-  return units;
-}
-
 Liner look_at_liner(const std::string& file, const std::string& unit, const host::Registry& registry) {
   Liner liner;
   liner.file = file;
   liner.unit = unit;
-  host::GeometryObject mesh = make_mesh(file, unit, false, registry);
+  liner.kind = host::reader_of(file, registry).name();
+  host::GeometryObject mesh = host::open_geometry({file, unit, false}, registry, "--liner");
   Interior in{};
   mesh.table().interior(mesh.self(), &in);
   if (in.is_cylinder == 0) {
     const Interior box = in;
     try {
-      mesh = make_mesh(file, unit, true, registry);
+      mesh = host::open_geometry({file, unit, true}, registry, "--liner");
       mesh.table().interior(mesh.self(), &in);
     } catch (const UserError&) {  // it could be read a moment ago: no axis is found
     }

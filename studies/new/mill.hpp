@@ -32,9 +32,9 @@ struct Lifters {
 /// A mesh that was looked at and can be used.
 struct Liner {
   std::filesystem::path file;
-  std::string unit;
-  bool turned = false;  ///< its axis is not z through the origin: the case brings it there
-  double radius = 0;    ///< of the bare shell, m
+  std::string kind, unit;  ///< the plugin that reads it; "" where the file says its unit
+  bool turned = false;     ///< its axis is not z through the origin: the case brings it there
+  double radius = 0;       ///< of the bare shell, m
   double low = 0, high = 0;
   bool wall_low = false, wall_high = false;  ///< an end wall at z = low, high
 };

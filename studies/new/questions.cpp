@@ -10,6 +10,7 @@
 #include "kernel/config/document.hpp"
 #include "kernel/config/units.hpp"
 #include "kernel/config/writer.hpp"
+#include "kernel/host/geometry_file.hpp"
 #include "studies/new/liner.hpp"
 #include "studies/new/materials.hpp"
 
@@ -70,11 +71,15 @@ void hold_to_liner(const char* option, const Value& given, double of_mesh, const
 
 void ask_for_liner(const Answer& answer, Mill& m, const host::Registry& registry) {
   std::string file;
-  answer({"liner", "file with your liner (STL, OBJ, PLY, 3MF, …), empty for lifters of a simple shape", ""},
+  answer({"liner", "file with your liner (STEP, STL, OBJ, PLY, 3MF, …), empty for lifters of a simple shape", ""},
          [&](const std::string& text) { file = text; });
   if (file.empty()) return;
+  const std::vector<std::string> units = host::units_of(host::reader_of(file, registry));
+  if (units.empty()) {  // the file says it
+    m.liner = look_at_liner(file, "", registry);
+    return;
+  }
   answer({"liner-unit", "unit in which it was drawn", "mm"}, [&](const std::string& unit) {
-    std::vector<std::string> units = mesh_units(registry);
     if (std::find(units.begin(), units.end(), unit) == units.end())
       throw UserError(fmt::format("--liner-unit '{}' is not known; {}", unit, base::suggestion(unit, units)));
     m.liner = look_at_liner(file, unit, registry);

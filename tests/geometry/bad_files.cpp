@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cstring>
 
-#include "geometry/import/guarded_import.hpp"
+#include "geometry/import/mesh_file.hpp"
 #include "tests/geometry/helpers.hpp"
 
 using namespace geometry_test;

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <sstream>
 
-#include "geometry/import/guarded_import.hpp"
+#include "geometry/import/mesh_file.hpp"
 #include "tests/geometry/helpers.hpp"
 #include "tests/skip.hpp"
 

@@ -100,6 +100,21 @@ class Liner(CliTest):
         self.refuse("--liner", "liner.stl", "--liner-unit", "m", *BEADS, "--length", "50 mm", parts=("--length 50 mm: the liner's length is 26 mm",))
         self.refuse("--liner", "liner.stl", "--liner-unit", "m", "--lifters", "8", parts=("--lifters: the lifters are in the liner's file",))
 
+    def test_a_step_drawing(self):
+        if " step " not in self.succeed("plugins").stdout:
+            self.skipTest("this test is skipped: millscope was built without OpenCASCADE")
+        drawing = os.path.join(os.environ["MILLSCOPE_SOURCE_DIR"], "examples/liner.step")
+        self.refuse("--liner", drawing, "--liner-unit", "mm", parts=("--liner-unit: ", "says its unit itself"))
+        self.succeed("new", "my_mill", "--liner", drawing, "--bead-size", "16 mm")
+        case = self.case()
+        for line in ("diameter: 300 mm", "length: 80 mm", "kind: step", "period: 0.08 "):
+            self.assertIn(line, case)
+        self.assertNotIn("unit:", case)
+        self.assertTrue((self.folder / "my_mill/liner.step").exists())
+        summary = self.run_case("out", "--set", "time.end_s=0.02", "--set", "time.analyze_from_s=0.01", case="my_mill/case.yaml")
+        self.assertGreater(summary["particles"], 100)
+        self.assertIn("solids: 2 (lifter, shell)", self.succeed("geometry", "report", drawing).stdout)
+
     def test_names_of_files(self):
         name = 'my "liner": #1.stl'
         shutil.copy(self.folder / "liner.stl", self.folder / name)

@@ -116,7 +116,8 @@ TEST_CASE("every geometry holds to the suite of its kind") {
              {"mill",
               {"diameter=0.3 length=0.1", "diameter=0.3 length=0.1 lifters=8 lifter_height=0.02 lifter_width=0.05",
                "diameter=0.3 length=0.1 lifters=8 lifter_height=0.02 lifter_width=0.05 end_faces=1 phase=0.3"}},
-             {"mesh", {"unit=mm file=" + box}}},
+             {"mesh", {"unit=mm file=" + box}},
+             {"step", {"file=" MILLSCOPE_SOURCE_DIR "/tests/sdk/shell.step"}}},
             [](const Descriptor& d, const Values& values) {
               GeometrySetting setting;
               setting.bead_radius = 5e-3;

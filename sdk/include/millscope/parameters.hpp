@@ -77,8 +77,9 @@ constexpr Parameter choice_parameter(const char* name, const char* choices, cons
 constexpr Parameter text_parameter(const char* name, const char* fallback, const char* doc) {
   return {name, "", doc, "", "", fallback, 0, 0, 0, ValueType::text, Scope::instance, 0, 0};
 }
-constexpr Parameter file_parameter(const char* name, const char* doc) {
-  return {name, "", doc, "", "", nullptr, 0, 0, 0, ValueType::file, Scope::instance, 0, 0};
+/// `extensions`: those that the plugin reads, "stl|obj"; a geometry whose parameter `file` says them is found by the name of a file alone.
+constexpr Parameter file_parameter(const char* name, const char* doc, const char* extensions = "") {
+  return {name, "", doc, "", extensions, nullptr, 0, 0, 0, ValueType::file, Scope::instance, 0, 0};
 }
 constexpr Parameter vector_parameter(const char* name, const char* unit, double fallback, const char* doc) {
   return {name, unit, doc, "", "", nullptr, fallback, -kUnbounded, kUnbounded, ValueType::vector, Scope::instance, 0, 0};

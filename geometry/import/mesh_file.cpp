@@ -1,3 +1,5 @@
+#include "geometry/import/mesh_file.hpp"
+
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fcntl.h>
@@ -7,16 +9,12 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <exception>
-#include <new>
-#include <unordered_map>
-#include <unordered_set>
-#include <vector>
 
-#include "geometry/import/guarded_import.hpp"
+#include "geometry/import/answer.hpp"
 #include "geometry/import/preflight.hpp"
 #include "geometry/import/stl.hpp"
 #include "millscope/element.hpp"
@@ -26,24 +24,21 @@ namespace millscope::geometry {
 
 namespace {
 
-void write_all(int pipe, const void* data, std::size_t size) {
-  const char* at = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t written = ::write(pipe, at, size);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) _exit(1);  // the host is gone
-    at += written;
-    size -= as_size(written);
+void check_extension(const std::string& extension) {
+  if (is_supported(extension)) return;
+  for (const char* solid : {"step", "stp", "iges", "igs"}) {
+    if (extension == solid) {
+      throw Refusal("'." + extension +
+                    "' holds CAD surfaces, not triangles: write 'kind: step' in the place of 'kind: mesh' (docs/importing_a_liner.md), or "
+                    "export the body as STL");
+    }
   }
+  for (const char* cad : {"sldprt", "ipt", "brep", "x_t", "dwg", "dxf"}) {
+    if (extension == cad)
+      throw Refusal("'." + extension + "' holds CAD surfaces, not triangles: export the body from the CAD program as STEP or STL");
+  }
+  throw Refusal("'." + extension + "' is not a mesh format that is read here: use stl, obj, ply, off, gltf, glb or 3mf");
 }
-
-void write_text(int pipe, const std::string& text) {
-  const auto size = static_cast<std::uint32_t>(text.size());
-  write_all(pipe, &size, sizeof size);
-  write_all(pipe, text.data(), text.size());
-}
-
-void write_block(int pipe, Block block) { write_all(pipe, &block, 1); }
 
 /// A file seen as memory, for the preflight.
 class MappedFile {
@@ -180,77 +175,22 @@ void note_rounding(Solids& file) {
   file.notes.emplace_back(text);
 }
 
-/// A name that a list of slots can hold: no bars, no control characters, not too long.
-std::string slot_name(std::string name) {
-  for (char& c : name) {
-    if (c == '|' || static_cast<unsigned char>(c) < ' ') c = '_';
-  }
-  return name.substr(0, 100);
-}
-
-/// The slot of each solid: its name, another one where a shorter or cleaner name is taken; of several without a name each has a number,
-/// but where they are many, as of an exporter that makes a solid of every face, they are one.
-std::vector<std::string> slots_of(const std::vector<Solid>& solids) {
-  constexpr std::size_t kManyNameless = 50, kMostSlots = 250;
-  const auto nameless =
-      static_cast<std::size_t>(std::count_if(solids.begin(), solids.end(), [](const Solid& s) { return s.name.empty(); }));
-  const bool numbered = solids.size() > 1 && nameless <= kManyNameless;
-  std::unordered_map<std::string, std::string> slot_of;  // name: slot
-  std::unordered_set<std::string> taken;
-  std::vector<std::string> slots;
-  for (std::size_t i = 0; i < solids.size(); ++i) {
-    const std::string name = !solids[i].name.empty() ? solids[i].name : numbered ? "solid_" + std::to_string(i + 1) : "all";
-    const auto [at, fresh] = slot_of.try_emplace(name, slot_name(name));
-    for (int k = 2; fresh && !taken.insert(at->second).second; ++k) at->second = slot_name(name).substr(0, 90) + "_" + std::to_string(k);
-    if (taken.size() > kMostSlots)
-      throw Refusal("has more than " + std::to_string(kMostSlots) +
-                    " solids with names of their own: join those of one material and export again");
-    slots.push_back(at->second);
-  }
-  return slots;
-}
-
-void send(int pipe, const Solids& file) {
-  const std::vector<std::string> slots = slots_of(file.solids);
-  for (std::size_t i = 0; i < file.solids.size(); ++i) {
-    const Solid& s = file.solids[i];
-    write_block(pipe, Block::solid);
-    write_text(pipe, slots[i]);
-    const std::uint64_t count = s.corners.size() / 9;
-    write_all(pipe, &count, sizeof count);
-    write_all(pipe, s.corners.data(), s.corners.size() * sizeof(double));
-  }
-  for (const std::string& note : file.notes) {
-    write_block(pipe, Block::note);
-    write_text(pipe, note);
-  }
-  write_block(pipe, Block::done);
-}
-
-void import_into(int pipe, const std::string& path, const std::string& extension, std::size_t max_triangles) {
-  Solids file = extension == "stl" ? read_stl(MappedFile(path).view(), max_triangles) : read_by_assimp(path, extension, max_triangles);
-  if (file.single_precision) note_rounding(file);
-  send(pipe, file);
-}
-
 }  // namespace
 
-void import_child(int pipe, const std::string& path, const std::string& extension, std::size_t max_triangles) noexcept {
-  const auto refuse = [pipe](const char* reason) {
-    write_block(pipe, Block::refused);
-    write_text(pipe, reason);
-    _exit(0);
-  };
+Soup import_mesh(const std::string& path, const ImportLimits& limits) {
   try {
-    import_into(pipe, path, extension, max_triangles);
-  } catch (const std::bad_alloc&) {
-    refuse("needs more memory than is allowed for a file of its size: it is damaged or hostile; export it again");
+    const std::string extension = lower_extension(path);
+    const auto read = [&](int pipe) {
+      check_extension(extension);
+      Solids file = extension == "stl" ? read_stl(MappedFile(path).view(), limits.max_triangles)
+                                       : read_by_assimp(path, extension, limits.max_triangles);
+      if (file.single_precision) note_rounding(file);
+      send_solids(pipe, file);
+    };
+    return read_guarded(path, limits, read);
   } catch (const std::exception& e) {
-    refuse(e.what());
-  } catch (...) {
-    refuse("the reader failed: export it again, as STL if that is possible");
+    throw Refusal("mesh file " + path + ": " + e.what());
   }
-  _exit(0);
 }
 
 }  // namespace millscope::geometry

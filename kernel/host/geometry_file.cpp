@@ -1,0 +1,72 @@
+#include "kernel/host/geometry_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "kernel/base/nearest.hpp"
+#include "kernel/config/document.hpp"
+#include "kernel/config/values.hpp"
+
+namespace millscope::host {
+
+namespace {
+
+using base::UserError;
+
+std::vector<std::string> choices_of(const Loaded& plugin, std::string_view parameter) {
+  std::vector<std::string> all;
+  for (std::uint64_t i = 0; i < plugin.descriptor->parameter_count; ++i) {
+    if (plugin.descriptor->parameters[i].name != parameter) continue;
+    std::stringstream choices(plugin.descriptor->parameters[i].choices);
+    for (std::string choice; std::getline(choices, choice, '|');) all.push_back(choice);
+  }
+  return all;
+}
+
+std::string extension_of(const std::string& file) {
+  std::string text = std::filesystem::path(file).extension().string();
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text.empty() ? text : text.substr(1);
+}
+
+}  // namespace
+
+const Loaded& reader_of(const std::string& file, const Registry& registry) {
+  const std::string extension = extension_of(file);
+  std::string known;
+  for (const Loaded& plugin : registry.loaded()) {
+    if (static_cast<Kind>(plugin.descriptor->kind) != Kind::geometry) continue;
+    for (const std::string& read : choices_of(plugin, "file")) {
+      if (read == extension) return plugin;
+      known += (known.empty() ? "" : ", ") + read;
+    }
+  }
+  const bool solid = extension == "step" || extension == "stp" || extension == "iges" || extension == "igs";
+  throw UserError(fmt::format("{}: no plugin reads '.{}' files; {}. Read are: {}", file, extension,
+                              solid ? "install millscope-step (docs/importing_a_liner.md), or export the body as STL"
+                                    : "export the body from the CAD program as STEP or STL",
+                              known));
+}
+
+std::vector<std::string> units_of(const Loaded& reader) { return choices_of(reader, "unit"); }
+
+GeometryObject open_geometry(const GeometryFile& what, const Registry& registry, const std::string& where) {
+  const Loaded& reader = reader_of(what.file, registry);
+  const std::vector<std::string> units = units_of(reader);
+  if (units.empty() && !what.unit.empty())
+    throw UserError(fmt::format("{}: '{}' says its unit itself; leave the unit '{}' out", where, what.file, what.unit));
+  if (!units.empty() && std::find(units.begin(), units.end(), what.unit) == units.end())
+    throw UserError(fmt::format("{}: the unit '{}' is not known; {}", where, what.unit, base::suggestion(what.unit, units)));
+  nlohmann::json values = {{"file", what.file}};
+  if (!units.empty()) values["unit"] = what.unit;
+  if (what.turned) values.update({{"axis", "auto"}, {"centre", true}});
+  // JSON's quoting is also YAML's.
+  const config::Node node = config::parse_document(values.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), where);
+  return GeometryObject::create(reader, config::resolve(*reader.descriptor, node, Scope::instance).view(), {where, 0});
+}
+
+}  // namespace millscope::host
