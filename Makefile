@@ -6,7 +6,7 @@ CMAKE_OPTIONS ?=
 SOURCES = $(shell git ls-files '*.cpp' '*.hpp')
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench figures verify proof docs install format tidy asan tsan clean packages packages-test binary
+.PHONY: help demo test bench figures verify proof docs install package format tidy asan tsan clean packages packages-test binary
 
 help: ## list these targets
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## (.*)/  make \1\t\2/' | expand -t 18
@@ -44,6 +44,9 @@ docs: ## the documentation as a site: build/docs/index.html
 
 install: binary ## build and install to PREFIX (command, plugins, SDK, completion, manual, Python package)
 	cmake --install $(BUILD) --prefix $(PREFIX)
+
+package: binary ## Debian packages, and the sources with the report page as it is built: build/packages (tools/package_test.sh tries them)
+	tools/package.sh $(BUILD) build/packages
 
 format: ## clang-format every source
 	clang-format -i $(SOURCES)

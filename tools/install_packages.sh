@@ -15,6 +15,9 @@ if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   exit 0
 fi
 
+# A release carries the report page as it is built, and needs no Node.js for it.
+[ ! -f "$(dirname "$0")/../studies/report/page.html" ] || wanted=$(echo "$wanted" | grep -v '^nodejs?\|^npm?')
+
 missing=""
 for package in $wanted; do
   # npm?npm: only where there is no such command; another Node.js than Debian's will do.

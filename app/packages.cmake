@@ -1,0 +1,41 @@
+# `make package`: Debian packages of what is installed, one for each component that people choose by itself. What each needs is found from
+# its files (dpkg-shlibdeps); the fonts are opened by name, so no file tells of them.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME millscope)
+set(CPACK_PACKAGE_CONTACT "millscope maintainers <maintainers@millscope.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL program sdk python)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME millscope)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS fonts-dejavu-core)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "millscope-step, millscope-dev, python3-millscope, paraview")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "simulates tumbling mills, reads recordings of a tracked bead (PEPT) and says where the two differ.")
+
+set(CPACK_DEBIAN_SDK_PACKAGE_NAME millscope-dev)
+set(CPACK_DEBIAN_SDK_PACKAGE_DEPENDS "millscope (= ${PROJECT_VERSION}), g++, cmake")
+set(CPACK_DEBIAN_SDK_PACKAGE_ARCHITECTURE all)
+set(CPACK_COMPONENT_SDK_DESCRIPTION "headers, templates and CMake functions to write plugins of one's own.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-millscope)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "millscope (= ${PROJECT_VERSION}), python3, python3-h5py, python3-pandas, python3-yaml")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "runs, recordings and results as arrays and tables, the commands as functions.")
+
+if(TARGET step_plugin)
+  list(APPEND CPACK_COMPONENTS_ALL step)
+  set(CPACK_DEBIAN_STEP_PACKAGE_NAME millscope-step)
+  set(CPACK_DEBIAN_STEP_PACKAGE_DEPENDS "millscope (= ${PROJECT_VERSION})")
+  set(CPACK_COMPONENT_STEP_DESCRIPTION "reads STEP and IGES drawings of liners.")
+endif()
+
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/millscope RENAME copyright)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/millscope FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN proof EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/configs DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/millscope PATTERN proof EXCLUDE)
+include(CPack)
