@@ -4,22 +4,29 @@
 set -eu
 packages=${1:-build/packages} root=${2:-build/debian12}
 here=$(cd "$(dirname "$0")/.." && pwd)
-[ "$(id -u)" = 0 ] || { echo "millscope: a root of its own needs root's rights; run it with sudo" >&2; exit 1; }
-command -v debootstrap >/dev/null || { echo "millscope: apt-get install debootstrap" >&2; exit 1; }
-mirror=$(sed -n 's/^URIs: *//p; s/^deb \(\[[^]]*\] \)\?\([^ ]*\) .*/\2/p' /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null | head -n 1)
+fail() { echo "millscope: $1" >&2; exit 1; }
+[ "$(id -u)" = 0 ] || fail "a root of its own needs root's rights; run it with sudo"
+command -v debootstrap >/dev/null || fail "apt-get install debootstrap"
+marker=made_by_package_test  # nothing is removed or installed in a folder that this script has not made
+if [ ! -e "$root" ]; then
+  mirror=$(sed -n 's/^URIs: *//p; s/^deb \(\[[^]]*\] \)\?\([^ ]*\) .*/\2/p' /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null | head -n 1)
+  rm -rf "$root.new"
+  debootstrap --variant=minbase bookworm "$root.new" "$mirror" >"$root.log" 2>&1 || { tail -n 3 "$root.log" >&2; fail "debootstrap failed"; }
+  touch "$root.new/$marker"
+  mv "$root.new" "$root"
+fi
+[ -f "$root/$marker" ] || fail "$root was not made by this script; name a folder that does not exist"
 
 step() {  # step NAME COMMAND…: in the root, timed, with the last lines of what it says
   name=$1; shift
   begin=$(date +%s)
-  if ! chroot "$root" sh -c "cd /root && $*" >"$root/log" 2>&1; then tail -n 20 "$root/log" >&2; echo "millscope: '$name' failed" >&2; exit 1; fi
+  if ! chroot "$root" sh -c "cd /root && $*" >"$root/log" 2>&1; then tail -n 20 "$root/log" >&2; fail "'$name' failed"; fi
   echo "$name: $(($(date +%s) - begin)) s"
 }
 
-if [ ! -x "$root/bin/sh" ]; then
-  debootstrap --variant=minbase bookworm "$root" "$mirror" >/dev/null || { echo "millscope: debootstrap failed" >&2; exit 1; }
-fi
-mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
+mount -t proc proc "$root/proc"
 trap 'umount "$root/proc"' EXIT
+trap 'exit 130' INT TERM
 cp -f /etc/resolv.conf "$root/etc/"
 rm -rf "$root/root/"*
 cp "$packages"/*.deb "$here/examples/liner.step" "$root/root/"
@@ -35,5 +42,5 @@ step "install millscope-step" "apt-get install -y --no-install-recommends ./mill
 step "new from STEP" millscope new stepped --liner liner.step --yes
 step "run from STEP" millscope run stepped/case.yaml -o second
 step "install python3-millscope" "apt-get install -y --no-install-recommends ./python3-millscope_*.deb"
-step "read from Python" "python3 -c 'import millscope; print(millscope.open_run(\"first\").summary[\"power_W\"])'"
+step "read from Python" "python3 -c 'import millscope; print(millscope.open_run(\"first\").power)'"
 chroot "$root" sh -c "cd /root && grep -A 6 power_W second/summary.json"

@@ -20,7 +20,9 @@ std::string name_of(const TDF_Label& label) {
   char* at = text.data();
   name->Get().ToUTF8CString(at);
   const std::size_t first = text.find_first_not_of(' ');
-  return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(' ') - first + 1);
+  if (first == std::string::npos) return {};
+  text = text.substr(first, text.find_last_not_of(' ') - first + 1);
+  return text == "NONE" ? std::string() : text;  // what some programs write for no name
 }
 
 /// Of a label or a shape; the colour of surfaces goes before that of all.
@@ -37,6 +39,7 @@ std::string colour_text(const Document& document, const Labelled& of) {
 struct Use {
   TopLoc_Location place;
   std::string name, colour;
+  bool hidden = false;
 };
 
 class Walk {
@@ -46,11 +49,14 @@ class Walk {
     document.shapes->GetFreeShapes(roots);
     for (int i = 1; i <= roots.Length(); ++i) visit(roots.Value(i), {});
   }
-  std::vector<Body> bodies;
+  Bodies found;
 
  private:
   void visit(const TDF_Label& label, Use use) {
-    if (use.colour.empty()) use.colour = colour_text(document_, label);
+    use.hidden = use.hidden || !document_.colours->IsVisible(label);
+    const bool is_part = !XCAFDoc_ShapeTool::IsReference(label) && !XCAFDoc_ShapeTool::IsAssembly(label);
+    if (is_part) return add_part(label, use);
+    if (use.colour.empty()) use.colour = colour_text(document_, label);  // the outermost assembly has the last word
     if (XCAFDoc_ShapeTool::IsReference(label)) {
       TDF_Label part;
       XCAFDoc_ShapeTool::GetReferredShape(label, part);
@@ -58,7 +64,6 @@ class Walk {
       use.name = name_of(label);
       return visit(part, std::move(use));
     }
-    if (!XCAFDoc_ShapeTool::IsAssembly(label)) return add_part(label, use);
     TDF_LabelSequence parts;
     XCAFDoc_ShapeTool::GetComponents(label, parts);
     for (int i = 1; i <= parts.Length(); ++i) visit(parts.Value(i), use);
@@ -66,27 +71,30 @@ class Walk {
 
   void add_part(const TDF_Label& label, const Use& use) {
     const TopoDS_Shape part = XCAFDoc_ShapeTool::GetShape(label);
-    const std::string own = name_of(label), name = own.empty() ? use.name : own;
-    const std::size_t first = bodies.size();
+    const std::string own = name_of(label), name = own.empty() ? use.name : own, colour = colour_text(document_, label);
+    std::vector<Body>& all = found.all;
+    const std::size_t first = all.size();
     for (TopExp_Explorer at(part, TopAbs_SOLID); at.More(); at.Next()) {
       TDF_Label solid;
       const bool known = document_.shapes->FindSubShape(label, at.Current(), solid);
-      bodies.push_back({known ? name_of(solid) : "", use.colour, at.Current(), use.place, true});
+      all.push_back({known ? name_of(solid) : "", use.colour, colour, at.Current(), use.place, true});
     }
-    const bool single = bodies.size() == first + 1;
-    for (std::size_t i = first; i < bodies.size(); ++i) {
-      if (bodies[i].name.empty()) bodies[i].name = name.empty() || single ? name : name + "_" + std::to_string(i - first + 1);
+    const bool single = all.size() == first + 1;
+    for (std::size_t i = first; i < all.size(); ++i) {
+      if (all[i].name.empty()) all[i].name = name.empty() || single ? name : name + "_" + std::to_string(i - first + 1);
     }
-    add_free_faces(part, name, use);
+    TopoDS_Compound free;
+    if (free_faces(part, free)) all.push_back({name, use.colour, colour, free, use.place, false});
+    if (all.size() == first) ++found.without_faces;
+    if (use.hidden) found.hidden += all.size() - first;
   }
 
-  void add_free_faces(const TopoDS_Shape& part, const std::string& name, const Use& use) {
-    TopoDS_Compound faces;
+  static bool free_faces(const TopoDS_Shape& part, TopoDS_Compound& faces) {
     BRep_Builder builder;
     builder.MakeCompound(faces);
     bool any = false;
     for (TopExp_Explorer at(part, TopAbs_FACE, TopAbs_SOLID); at.More(); at.Next()) builder.Add(faces, at.Current()), any = true;
-    if (any) bodies.push_back({name, use.colour, faces, use.place, false});
+    return any;
   }
 
   const Document& document_;
@@ -94,8 +102,8 @@ class Walk {
 
 }  // namespace
 
-std::vector<Body> bodies_of(const Document& document) { return Walk(document).bodies; }
+Bodies bodies_of(const Document& document) { return Walk(document).found; }
 
-std::string colour_of(const Document& document, const TopoDS_Shape& face) { return colour_text(document, face); }
+std::string colour_of(const Document& document, const TopoDS_Shape& shape) { return colour_text(document, shape); }
 
 }  // namespace millscope::cad

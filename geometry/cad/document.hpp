@@ -16,25 +16,31 @@ struct Document {
   Handle(TDocStd_Document) data;
   Handle(XCAFDoc_ShapeTool) shapes;
   Handle(XCAFDoc_ColorTool) colours;
-  std::string unit;  ///< of the file: "inch"
+  std::string unit;                ///< of the file: "inch"
+  std::vector<std::string> notes;  ///< what the reader warns of
 };
 
-/// Throws Refusal for a file that is cut short, damaged, or states no unit of length.
+/// Throws Refusal for a file that is cut short, has a body or a face that is not understood, refers to other files, or states no unit.
 Document read_document(const std::string& path);
 
 /// One solid, or the faces of a part that belong to no solid.
 struct Body {
-  std::string name;    ///< its own, or its part's; "" for none
-  std::string colour;  ///< where the part is used, or the part's own: "colour_ff8000"; "" for none
-  TopoDS_Shape shape;  ///< in the part's frame
+  std::string name;         ///< its own, or its part's; "" for none
+  std::string use_colour;   ///< that an assembly gives to this use of the part: "colour_ff8000"; "" for none
+  std::string part_colour;  ///< of the part
+  TopoDS_Shape shape;       ///< in the part's frame
   TopLoc_Location place;
   bool is_solid = true;
 };
 
-/// All bodies, a part that is used often as often.
-std::vector<Body> bodies_of(const Document& document);
+struct Bodies {
+  std::vector<Body> all;          ///< a part that is used often as often
+  std::size_t hidden = 0;         ///< of these, not shown by the program that drew them
+  std::size_t without_faces = 0;  ///< parts of lines and points alone, which are not in `all`
+};
+Bodies bodies_of(const Document& document);
 
-/// Of a face, as "colour_ff8000" (sRGB); "" for none.
-std::string colour_of(const Document& document, const TopoDS_Shape& face);
+/// Of a face or a solid by itself, as "colour_ff8000" (sRGB); "" for none.
+std::string colour_of(const Document& document, const TopoDS_Shape& shape);
 
 }  // namespace millscope::cad

@@ -10,8 +10,8 @@ namespace millscope::geometry {
 struct StepPlugin : Mesh {
   explicit StepPlugin(const Parameters& p)
       : Mesh(import_cad(p.text("file"), cad_limits(as_size(p.integer("max_triangles"))),
-                        {p.number("chord"), p.number("angle"), p.text("slots") == "colour"}),
-             mesh_options(p, 1e-3)) {}
+                        {p.number("chord") / p.number("scale"), p.number("angle"), p.text("slots") == "colour"}),
+             mesh_options(p, 1e-3, true)) {}
 };
 
 }  // namespace millscope::geometry
@@ -24,13 +24,12 @@ using namespace millscope;
 [[gnu::used]] constexpr char kReader[] = "read_cad " MILLSCOPE_READ_CAD ", OpenCASCADE " OCC_VERSION_COMPLETE;
 
 constexpr Parameter kOwn[] = {
-    file_parameter("file", "STEP (AP203, AP214, AP242) or IGES file; it says its unit itself.", "step|stp|iges|igs"),
+    file_parameter("file", "STEP (AP203, AP214, AP242) or IGES file; it says its unit itself.", geometry::kCadExtensions),
     number_parameter("chord", "m", 2.5e-4, 1e-6, 0.1,
                      "Largest distance between a face and its triangles; a twentieth of a bead is plenty."),
     number_parameter("angle", "rad", 0.2, 0.01, 1, "Largest angle between neighbouring triangles of a curved face."),
-    choice_parameter(
-        "slots", "name|colour", "name",
-        "What a material goes by: the names of bodies, or the colours of faces as colour_ff8000 (red, green, blue), no_colour."),
+    choice_parameter("slots", "name|colour", "name",
+                     "What a material goes by: names of bodies, or colours as colour_ff8000 (red, green, blue), no_colour."),
 };
 constexpr geometry::MeshParameters kParameters(kOwn);
 

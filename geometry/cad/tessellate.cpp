@@ -26,24 +26,29 @@ double area_of(const double* corners) {
   return 0.5 * std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
 }
 
+/// Faces nearer to each other than this share their edges from then on, mm: what programs leave between the faces of one body.
+constexpr double kSewing = 0.02;
+
+/// The library's own bound of the distance is exceeded twofold on a sphere; of the angle it is not.
+constexpr double kPartOfChord = 0.5;
+
 class Tessellator {
  public:
   Tessellator(const Document& document, const Request& request) : document_(document), request_(request) {}
 
-  void add(const Body& body) {
-    body.is_solid ? ++solids_ : ++surfaces_;
-    BRepBuilderAPI_Sewing sewing(0.5 * request_.chord);
-    TopoDS_Shape shape = body.shape;
-    if (!body.is_solid) {  // faces that share no edges would be cut at different points along them
-      sewing.Add(body.shape);
-      sewing.Perform();
-      shape = sewing.SewedShape();
+  void add_all(const Bodies& bodies) {
+    hidden_ = bodies.hidden, without_faces_ = bodies.without_faces;
+    BRepBuilderAPI_Sewing sewing(std::min(kSewing, 0.5 * request_.chord));
+    for (const Body& body : bodies.all) {
+      body.is_solid ? ++solids_ : ++surfaces_;
+      if (body.is_solid) {
+        cut(body.shape);
+        for (TopExp_Explorer at(body.shape, TopAbs_FACE); at.More(); at.Next()) add_face(body, at.Current(), at.Current(), body.place);
+      } else {
+        for (TopExp_Explorer at(body.shape, TopAbs_FACE); at.More(); at.Next()) sewing.Add(at.Current().Moved(body.place));
+      }
     }
-    BRepMesh_IncrementalMesh(shape, request_.chord, false, request_.angle, false);
-    for (TopExp_Explorer at(body.shape, TopAbs_FACE); at.More(); at.Next()) {
-      const bool sewn = !body.is_solid && sewing.IsModifiedSubShape(at.Current());
-      add_face(body, at.Current(), TopoDS::Face(sewn ? sewing.ModifiedSubShape(at.Current()) : at.Current()));
-    }
+    if (surfaces_ > 0) add_open(bodies, sewing);
   }
 
   geometry::Solids result() {
@@ -61,19 +66,42 @@ class Tessellator {
                   "%zu faces; area of the faces %.6g m², of their triangles %.6g m²",
                   request_.chord, request_.angle, document_.unit.c_str(), solids_, surfaces_, faces_, 1e-6 * exact_area_, 1e-6 * cut_area_);
     out.notes.emplace_back(text);
+    if (hidden_ > 0) out.notes.push_back("bodies hidden in the drawing, used all the same: " + std::to_string(hidden_));
+    if (without_faces_ > 0) out.notes.push_back("parts without faces, left out: " + std::to_string(without_faces_));
+    out.notes.insert(out.notes.end(), document_.notes.begin(), document_.notes.end());
     return out;
   }
 
  private:
-  std::string slot(const Body& body, const TopoDS_Shape& face) const {
-    if (!request_.by_colour) return body.name;
-    for (const std::string& colour : {colour_of(document_, face), colour_of(document_, body.shape), body.colour}) {
-      if (!colour.empty()) return colour;
-    }
-    return "no_colour";
+  void cut(const TopoDS_Shape& shape) const {
+    BRepMesh_IncrementalMesh(shape, kPartOfChord * request_.chord, false, request_.angle, false);
   }
 
-  void add_face(const Body& body, const TopoDS_Shape& original, const TopoDS_Face& face) {
+  /// Faces that belong to no solid, whichever part they are of: cut one by one they would have different points along their edges.
+  void add_open(const Bodies& bodies, BRepBuilderAPI_Sewing& sewing) {
+    sewing.Perform();
+    cut(sewing.SewedShape());
+    for (const Body& body : bodies.all) {
+      if (body.is_solid) continue;
+      for (TopExp_Explorer at(body.shape, TopAbs_FACE); at.More(); at.Next()) {
+        const TopoDS_Shape face = at.Current().Moved(body.place);
+        add_face(body, at.Current(), sewing.IsModifiedSubShape(face) ? sewing.ModifiedSubShape(face) : face, {});
+      }
+    }
+  }
+
+  std::string slot(const Body& body, const TopoDS_Shape& face) const {
+    if (!request_.by_colour) return body.name;
+    if (!body.use_colour.empty()) return body.use_colour;
+    for (const TopoDS_Shape& shape : {face, body.shape}) {
+      const std::string colour = colour_of(document_, shape);
+      if (!colour.empty()) return colour;
+    }
+    return body.part_colour.empty() ? "no_colour" : body.part_colour;
+  }
+
+  void add_face(const Body& body, const TopoDS_Shape& original, const TopoDS_Shape& shape, const TopLoc_Location& where) {
+    const TopoDS_Face face = TopoDS::Face(shape);
     ++faces_;
     GProp_GProps surface;
     BRepGProp::SurfaceProperties(face, surface);
@@ -90,7 +118,7 @@ class Tessellator {
                     " triangles (max_triangles): raise chord and angle (half a millimetre of chord is plenty for 5 mm beads)");
     }
     std::vector<double>& out = corners_[slot(body, original)];
-    const gp_Trsf place = (body.place * in_part).Transformation();
+    const gp_Trsf place = (where * in_part).Transformation();
     const bool turned = (face.Orientation() == TopAbs_REVERSED) != place.IsNegative();
     for (int t = 1; t <= cut->NbTriangles(); ++t) {
       int corner[3];
@@ -107,7 +135,7 @@ class Tessellator {
   const Document& document_;
   const Request& request_;
   std::map<std::string, std::vector<double>> corners_;
-  std::size_t faces_ = 0, uncut_ = 0, triangles_ = 0, solids_ = 0, surfaces_ = 0;
+  std::size_t faces_ = 0, uncut_ = 0, triangles_ = 0, solids_ = 0, surfaces_ = 0, hidden_ = 0, without_faces_ = 0;
   double exact_area_ = 0, cut_area_ = 0;  // mm²
 };
 
@@ -115,7 +143,7 @@ class Tessellator {
 
 geometry::Solids tessellate(const Document& document, const Request& request) {
   Tessellator tessellator(document, request);
-  for (const Body& body : bodies_of(document)) tessellator.add(body);
+  tessellator.add_all(bodies_of(document));
   return tessellator.result();
 }
 

@@ -68,20 +68,23 @@ std::vector<std::string> slots_of(const std::vector<Solid>& solids) {
   return slots;
 }
 
-/// Takes values off the front of the answer; asking for more than there is means that the child died on the way.
+/// The child died on the way.
+struct CutShort {};
+
+/// Takes values off the front of the answer; asking for more than there is means that it is cut short.
 class Reader {
  public:
   explicit Reader(const std::vector<char>& data) : at_(data.data()), left_(data.size()) {}
 
   void take(void* out, std::size_t size) {
-    if (size > left_) throw Refusal("");
+    if (size > left_) throw CutShort();
     if (size > 0) std::memcpy(out, at_, size);
     at_ += size, left_ -= size;
   }
   std::string text() {
     std::uint32_t size = 0;
     take(&size, sizeof size);
-    if (size > left_) throw Refusal("");
+    if (size > left_) throw CutShort();
     std::string s(size, '\0');
     take(s.data(), size);
     return s;
@@ -97,9 +100,9 @@ void take_solid(Reader& reader, Soup& soup) {
   const std::string name = reader.text();
   std::uint64_t count = 0;
   reader.take(&count, sizeof count);
-  if (count > reader.left() / (9 * sizeof(double))) throw Refusal("");
+  if (count > reader.left() / (9 * sizeof(double))) throw CutShort();
   if (count == 0) return;
-  const auto found = std::find(soup.names.begin(), soup.names.end(), name);  // of few: import_child sends no more than kMostSlots
+  const auto found = std::find(soup.names.begin(), soup.names.end(), name);  // of few: send_solids sends no more than kMostSlots
   const auto slot = static_cast<std::uint32_t>(found - soup.names.begin());
   if (found == soup.names.end()) soup.names.push_back(name);
   const std::size_t old = soup.corners.size();
@@ -128,26 +131,24 @@ void send_solids(int pipe, const Solids& file) {
 }
 
 void send_refusal(int pipe, const char* reason) {
+  std::string line(reason);
+  for (char& c : line) c = static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   write_block(pipe, Block::refused);
-  write_text(pipe, reason);
+  write_text(pipe, line);
 }
 
 bool parse_answer(const std::vector<char>& answer, Soup& soup) {
   Reader reader(answer);
-  while (reader.left() > 0) {
-    Block block{};
-    reader.take(&block, 1);
-    if (block == Block::done) return true;
-    if (block == Block::refused) throw Refusal(reader.text());
-    if (block == Block::note) {
-      soup.notes.push_back(reader.text());
-      continue;
+  try {
+    while (reader.left() > 0) {
+      Block block{};
+      reader.take(&block, 1);
+      if (block == Block::done) return true;
+      if (block == Block::refused) throw Refusal(reader.text());
+      if (block == Block::note) soup.notes.push_back(reader.text());
+      if (block == Block::solid) take_solid(reader, soup);
     }
-    try {
-      take_solid(reader, soup);
-    } catch (const Refusal&) {
-      return false;
-    }
+  } catch (const CutShort&) {
   }
   return false;
 }

@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -24,11 +25,18 @@ std::string program() {
 }
 
 void check_extension(const std::string& extension) {
-  for (const char* known : {"step", "stp", "iges", "igs"}) {
-    if (extension == known) return;
-  }
+  if (!extension.empty() && ("|" + std::string(kCadExtensions) + "|").find("|" + extension + "|") != std::string::npos) return;
   throw Refusal("'." + extension + "' is no CAD format that is read here: use step, stp, iges or igs; for triangles (STL, OBJ, …) write " +
                 "'kind: mesh'");
+}
+
+/// No program is started from where others can write: the rule of the plugins' loader (kernel/host).
+void require_private(const std::string& path) {
+  struct stat info {};
+  for (const std::string& place : {path, std::filesystem::path(path).parent_path().string()}) {
+    if (::stat(place.c_str(), &info) == 0 && (info.st_mode & (S_IWGRP | S_IWOTH)) != 0)
+      throw Refusal("is not read, because others can write to " + place + ", from where its reader would be started: chmod go-w " + place);
+  }
 }
 
 /// Of the child: becomes the program, whose answer goes into the pipe.
@@ -56,6 +64,7 @@ Soup import_cad(const std::string& path, const ImportLimits& limits, const Tesse
     const auto read = [&](int pipe) {
       check_extension(lower_extension(path));
       const std::string reader = program();
+      require_private(reader);
       become(reader,
              {reader, path, std::to_string(1e3 * tessellation.chord), std::to_string(tessellation.angle),
               tessellation.by_colour ? "colour" : "name", std::to_string(limits.max_triangles), std::to_string(pipe)},

@@ -8,8 +8,10 @@
 
 namespace millscope::geometry {
 
+inline constexpr char kCadExtensions[] = "step|stp|iges|igs";
+
 struct Tessellation {
-  double chord = 2.5e-4;   ///< largest distance between a surface and its triangles, m
+  double chord = 2.5e-4;   ///< largest distance between a face and its triangles, m of the drawing
   double angle = 0.2;      ///< largest angle between neighbouring triangles of a curved face, rad
   bool by_colour = false;  ///< slots by the colours of faces, not by the names of bodies
 };

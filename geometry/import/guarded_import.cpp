@@ -32,7 +32,7 @@ std::size_t check_file(const std::string& path, const ImportLimits& limits) {
     throw Refusal(std::string("cannot be opened (") + std::strerror(errno) +
                   "): check the path; it counts from the folder of the YAML file");
   }
-  if (!S_ISREG(info.st_mode)) throw Refusal("is not a file: name a mesh file");
+  if (!S_ISREG(info.st_mode)) throw Refusal("is not a file: name one that holds the body");
   const auto size = as_size(info.st_size);
   if (size == 0) throw Refusal("is empty: export it again");
   if (size > limits.most_bytes()) {
@@ -115,6 +115,8 @@ std::vector<char> read_answer(int pipe, double seconds) {
 }
 
 std::string how_it_died(int status) {
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)  // what the system's loader ends with
+    return "could not be read, because a library of its reader is missing: install millscope again, with what it depends on";
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
     return "took too much processor time to read: it is damaged or hostile; export it again";
   if (WIFSIGNALED(status) && WTERMSIG(status) != SIGKILL) {

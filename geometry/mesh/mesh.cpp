@@ -22,10 +22,15 @@ void check_finite(const Soup& soup) {
   }
 }
 
-void check_extent(const Soup& soup, double scale) {
+void check_extent(const Soup& soup, const MeshOptions& options) {
+  const double scale = options.placement.scale;
   const Point e = bounds_of(soup.corners).extent();
   const double in_file = std::max({e.x, e.y, e.z}), size = scale * in_file;
   if (size >= kSmallest && size <= kLargest) return;
+  if (options.says_unit) {
+    throw Refusal("its largest extent is " + std::to_string(size) +
+                  " m in the unit that it states, but must be 0.005 m to 50 m: correct the " + "drawing's unit, or give a scale");
+  }
   std::string better;
   for (const auto& [unit, metres] : {std::pair{"mm", 1e-3}, {"cm", 1e-2}, {"inch", 0.0254}, {"m", 1.0}}) {
     if (in_file * metres >= kSmallest && in_file * metres <= kLargest) better += std::string(better.empty() ? "" : ", ") + unit;
@@ -61,7 +66,7 @@ void check_period(const IndexedMesh& mesh, double period) {
 
 Soup placed(Soup soup, const MeshOptions& options) {
   check_finite(soup);
-  check_extent(soup, options.placement.scale);
+  check_extent(soup, options);
   check_count(soup, options);
   place(soup, options.placement);
   return soup;
@@ -84,7 +89,7 @@ Mesh::Mesh(Soup soup, const MeshOptions& options) {
     report_ = "file: " + options.label + "\n" + survey_text(survey_, mesh_, topology_, names);
     for (const std::string& note : notes) report_ += "note: " + note + "\n";
   } catch (const Refusal& e) {
-    throw Refusal("mesh file " + options.label + ": " + e.what());
+    throw Refusal((options.says_unit ? "CAD file " : "mesh file ") + options.label + ": " + e.what());
   }
   Triangles triangles;
   triangles.planes.reserve(mesh_.triangles.size());

@@ -13,7 +13,8 @@
 namespace millscope::geometry {
 
 struct MeshOptions {
-  std::string label;  ///< what messages call it: the file
+  std::string label;       ///< what messages call it: the file
+  bool says_unit = false;  ///< the file says its unit, and the user does not
   Placement placement;
   double period = 0;  ///< along z, m; 0: none
   std::size_t max_triangles = 5'000'000;

@@ -32,10 +32,12 @@ struct MeshParameters {
   }
 };
 
-inline MeshOptions mesh_options(const Parameters& p, double metres_per_unit) {
+/// `says_unit`: the file says its unit itself.
+inline MeshOptions mesh_options(const Parameters& p, double metres_per_unit, bool says_unit) {
   const auto point = [](const double* x) { return Point{x[0], x[1], x[2]}; };
   MeshOptions o;
   o.label = p.text("file");
+  o.says_unit = says_unit;
   o.placement.scale = metres_per_unit * p.number("scale");
   o.placement.axis = p.text("axis");
   o.placement.centre = p.flag("centre");

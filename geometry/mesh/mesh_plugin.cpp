@@ -25,7 +25,7 @@ Soup import_file(const Parameters& p) {
 }  // namespace
 
 struct MeshPlugin : Mesh {
-  explicit MeshPlugin(const Parameters& p) : Mesh(import_file(p), mesh_options(p, metres_per_unit(p.text("unit")))) {}
+  explicit MeshPlugin(const Parameters& p) : Mesh(import_file(p), mesh_options(p, metres_per_unit(p.text("unit")), false)) {}
 };
 
 }  // namespace millscope::geometry

@@ -45,11 +45,9 @@ const Loaded& reader_of(const std::string& file, const Registry& registry) {
       known += (known.empty() ? "" : ", ") + read;
     }
   }
-  const bool solid = extension == "step" || extension == "stp" || extension == "iges" || extension == "igs";
-  throw UserError(fmt::format("{}: no plugin reads '.{}' files; {}. Read are: {}", file, extension,
-                              solid ? "install millscope-step (docs/importing_a_liner.md), or export the body as STL"
-                                    : "export the body from the CAD program as STEP or STL",
-                              known));
+  throw UserError(
+      fmt::format("{}: no plugin reads '.{}' files; read are: {}; STEP and IGES need millscope-step; export the body in one of these", file,
+                  extension, known));
 }
 
 std::vector<std::string> units_of(const Loaded& reader) { return choices_of(reader, "unit"); }

@@ -30,8 +30,8 @@ bool has_wall(const Surface& s, double z, double radius, double length) {
 [[noreturn]] void refuse_shape(const std::string& file, const std::string& unit, const Interior& box) {
   throw UserError(fmt::format(
       "--liner {}: no ring round an axis (its box is {:.4g} x {:.4g} x {:.4g} m); give the whole liner, not one segment of it (that takes "
-      "'repeat' in a case of your own: docs/importing_a_liner.md); 'millscope geometry report {} --unit {}' shows what is there",
-      file, box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2], file, unit));
+      "'repeat' in a case of your own: docs/importing_a_liner.md); 'millscope geometry report {}{}' shows what is there",
+      file, box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2], file, unit.empty() ? "" : " --unit " + unit));
 }
 
 }  // namespace

@@ -2,6 +2,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
+#include <opencascade/BRepBuilderAPI_Copy.hxx>
+#include <opencascade/BRepBuilderAPI_MakeEdge.hxx>
+#include <opencascade/BRepPrimAPI_MakeSphere.hxx>
+#include <opencascade/IGESControl_Writer.hxx>
 #include <opencascade/TopExp_Explorer.hxx>
 #include <random>
 #include <sstream>
@@ -183,6 +187,110 @@ TEST_CASE("A STEP file without a unit is refused, for nobody knows its size") {
   REQUIRE(at != std::string::npos);
   text.replace(at, std::string("GLOBAL_UNIT_ASSIGNED_CONTEXT((#").size() - 2, "GLOBAL_UNCERTAINTY_ASSIGNED_CONTEX");
   CHECK_THAT(refusal(write(scratch, "no_unit.step", text)), Contains("unit"));
+}
+
+TEST_CASE("A body or a face that is not understood is not left out in silence") {
+  const testing::Scratch scratch;
+  CadFile file;
+  file.add(BRepPrimAPI_MakeBox(100, 100, 100).Shape(), "seen");
+  file.add(BRepPrimAPI_MakeBox(gp_Pnt(200, 0, 0), 50, 50, 50).Shape(), "spoiled");
+  const std::string path = (scratch.path / "two.step").string();
+  file.write_step(path);
+  CHECK(slots(open(path)) == "seen|spoiled");
+  for (const char* keyword : {"MANIFOLD_SOLID_BREP", "ADVANCED_FACE", "PLANE", "CLOSED_SHELL"}) {
+    std::string text = text_of(path);
+    text.replace(text.rfind(std::string(" = ") + keyword) + 3, std::string(keyword).size(), std::string(std::string(keyword).size(), 'X'));
+    CHECK_THAT(refusal(write(scratch, "spoiled.step", text)), !Contains("accepted"));
+  }
+  file.write_several((scratch.path / "refers.step").string());
+  CHECK_THAT(refusal((scratch.path / "refers.step").string()), Contains("refers to other files"));
+}
+
+TEST_CASE("What is hidden or has no faces is told") {
+  const testing::Scratch scratch;
+  CadFile file;
+  file.add(BRepPrimAPI_MakeBox(100, 100, 100).Shape(), "seen");
+  file.hide(file.add(BRepPrimAPI_MakeBox(gp_Pnt(200, 0, 0), 50, 50, 50).Shape(), "hidden"));
+  file.add(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(500, 0, 0)).Shape(), "axis");
+  const std::string path = (scratch.path / "parts.step").string();
+  file.write_step(path);
+  const host::GeometryObject g = open(path);
+  CHECK(slots(g) == "hidden|seen");
+  CHECK_THAT(report(g), Contains("hidden in the drawing, used all the same: 1") && Contains("without faces, left out: 1"));
+}
+
+TEST_CASE("Assemblies in assemblies stand where they were put, and the colour of a use goes before its part's") {
+  const testing::Scratch scratch;
+  CadFile file;
+  const TDF_Label part = file.add(BRepPrimAPI_MakeBox(10, 20, 30).Shape(), "brick"), inner = file.assembly("inner"),
+                  outer = file.assembly("outer");
+  file.colour(part, 1, 0, 0);
+  file.use(inner, part, kPi / 2, 100);   // x 80 to 100, y 0 to 10
+  file.use(outer, inner, kPi / 2, 500);  // x 490 to 500, y 80 to 100
+  file.colour(file.use(outer, part, 0), 0, 1, 0);
+  const std::string path = (scratch.path / "nested.step").string();
+  file.write_step(path);
+  CHECK_THAT(report(open(path)), Contains("box: [0, 0, 0] to [0.5, 0.1, 0.03] m"));
+  CHECK(slots(open(path, "slots: colour")) == "colour_00ff00|colour_ff0000");
+  CHECK(measure(open(path)).volume == Approx(2 * 6e-6));
+}
+
+TEST_CASE("The chord holds on a sphere, and in the case's metres whatever the scale") {
+  const testing::Scratch scratch;
+  CadFile file;
+  file.add(BRepPrimAPI_MakeSphere(200).Shape(), "ball");
+  const std::string path = (scratch.path / "ball.step").string();
+  file.write_step(path);
+  for (const double scale : {1.0, 0.1, 10.0}) {
+    const host::GeometryObject g = open(path, "angle: 1, chord: 0.001, scale: " + std::to_string(scale));
+    Surface s{};
+    g.table().surface(g.self(), &s);
+    double farthest = 0;
+    for (std::uint64_t t = 0; t < s.triangle_count; ++t) {
+      double centre[3] = {0, 0, 0};
+      for (std::size_t k = 0; k < 9; ++k) centre[k % 3] += s.vertices[3 * std::size_t{s.triangles[3 * t + k / 3]} + k % 3] / 3;
+      farthest = std::max(farthest, 0.2 * scale - std::hypot(centre[0], centre[1], centre[2]));
+    }
+    CHECK(farthest < 0.001);
+    CHECK(farthest > 0.0001);  // and no finer than it need be
+  }
+}
+
+TEST_CASE("Faces that are parts of their own close the body, and sheets that lie near each other stay two") {
+  const testing::Scratch scratch;
+  IGESControl_Writer loose;
+  for (TopExp_Explorer at(tube(150, 155, 60), TopAbs_FACE); at.More(); at.Next()) loose.AddShape(BRepBuilderAPI_Copy(at.Current()).Shape());
+  loose.ComputeModel();
+  const std::string faces = (scratch.path / "faces.igs").string();
+  loose.Write(faces.c_str());
+  CHECK_THAT(report(open(faces)), Contains("surface: closed"));
+
+  CadFile file;
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(100, 100, 100).Shape();
+  const TopoDS_Shape sheet = TopExp_Explorer(box, TopAbs_FACE).Current();
+  gp_Trsf shift;
+  shift.SetTranslation(gp_Vec(2, 0, 0));
+  TopoDS_Compound two;
+  BRep_Builder builder;
+  builder.MakeCompound(two);
+  builder.Add(two, sheet);
+  builder.Add(two, sheet.Moved(TopLoc_Location(shift)));
+  file.add(two, "sheets");
+  const std::string sheets = (scratch.path / "sheets.step").string();
+  file.write_step(sheets);
+  CHECK(measure(open(sheets, "chord: 0.01")).area == Approx(2 * 0.01));
+}
+
+TEST_CASE("Every application protocol of STEP is read") {
+  const testing::Scratch scratch;
+  for (const int schema : {3, 4, 5}) {  // AP203, AP214, AP242
+    CadFile file;
+    file.add(BRepPrimAPI_MakeBox(100, 100, 100).Shape(), "box");
+    const std::string path = (scratch.path / (std::to_string(schema) + ".step")).string();
+    file.write_step(path, "MM", schema);
+    CHECK(slots(open(path)) == "box");
+    CHECK(measure(open(path)).volume == Approx(1e-3));
+  }
 }
 
 TEST_CASE("Damaged STEP files end in a line or in a body, never in a crash of the host") {

@@ -21,6 +21,7 @@
 #include <opencascade/XCAFDoc_ShapeTool.hxx>
 #include <opencascade/gp_Ax2.hxx>
 #include <opencascade/gp_Trsf.hxx>
+#include <opencascade/gp_Vec.hxx>
 #include <string>
 
 namespace geometry_test {
@@ -45,12 +46,14 @@ class CadFile {
     TDataStd_Name::Set(label, TCollection_ExtendedString(name, true));
     return label;
   }
-  /// Turned about z by `angle` (rad).
-  void use(const TDF_Label& assembly, const TDF_Label& part, double angle) {
-    gp_Trsf turn;
+  /// Turned about z by `angle` (rad), then shifted along x.
+  TDF_Label use(const TDF_Label& assembly, const TDF_Label& part, double angle, double x = 0) {
+    gp_Trsf turn, shift;
     turn.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), angle);
-    shapes_->AddComponent(assembly, part, TopLoc_Location(turn));
+    shift.SetTranslation(gp_Vec(x, 0, 0));
+    return shapes_->AddComponent(assembly, part, TopLoc_Location(shift * turn));
   }
+  void hide(const TDF_Label& part) { colours_->SetVisibility(part, false); }
   void colour(const TDF_Label& part, double red, double green, double blue) {
     colours_->SetColor(part, Quantity_Color(red, green, blue, Quantity_TOC_sRGB), XCAFDoc_ColorSurf);
   }
@@ -58,13 +61,21 @@ class CadFile {
     colours_->SetColor(shapes_->AddSubShape(part, face), Quantity_Color(red, green, blue, Quantity_TOC_sRGB), XCAFDoc_ColorSurf);
   }
 
-  /// `unit`: MM, M, INCH.
-  void write_step(const std::string& path, const char* unit = "MM") {
+  /// `unit`: MM, M, INCH; `schema`: 3, 4, 5 for AP203, AP214, AP242.
+  void write_step(const std::string& path, const char* unit = "MM", int schema = 4) {
     shapes_->UpdateAssemblies();
     STEPCAFControl_Writer().ChangeWriter().Model(true);  // only then there is a unit to set
     Interface_Static::SetCVal("write.step.unit", unit);
+    Interface_Static::SetIVal("write.step.schema", schema);
     STEPCAFControl_Writer writer;
     writer.Transfer(data_);
+    writer.Write(path.c_str());
+  }
+  /// Each part into a file of its own, beside one that refers to them.
+  void write_several(const std::string& path) {
+    shapes_->UpdateAssemblies();
+    STEPCAFControl_Writer writer;
+    writer.Transfer(data_, STEPControl_AsIs, "part_");
     writer.Write(path.c_str());
   }
   void write_iges(const std::string& path) {
