@@ -58,6 +58,6 @@ quietly report "$@" -o report.html --title "The mill that resists rolling"
 chapter "done"
 echo
 echo "Open:"
-echo "  $out/report.html            the whole story, in any browser, no network needed"
+echo "  $out/report.html            the answer, then the whole story, in any browser, no network needed"
 echo "  $out/diagnosis/diagnosis.md the verdict in words; diagnosis/corrected: a case with what was found"
 [ ! -e corrected-mill/vtk/beads.pvd ] || echo "  $out/corrected-mill/vtk/beads.pvd ParaView, then Apply and Play"

@@ -166,15 +166,21 @@ Calibration by_cma_es(Evaluator& evaluator) {
   return c;
 }
 
+std::string outside_interval(const std::string& name, const std::string& target, const base::Interval90& found) {
+  if (!found.known() || found.holds(found.value)) return "";
+  return fmt::format(
+      "{}: retuned to {} it is {:.3g}, outside its own interval ({:.3g} … {:.3g}): that moves it where the recordings as a whole do not "
+      "want it",
+      name, target, found.value, found.low, found.high);
+}
+
 std::string contradiction(const Study& study, std::size_t parameter, double best, const emulate::Marginal& marginal) {
   if (study.objective.kind == ObjectiveKind::likelihood) return "";  // both are from the same observables
   // Where the posterior piles up at an end of the range, the end itself lies outside equal tails and contradicts nothing.
   const double low = std::min(marginal.low90, marginal.mode), high = std::max(marginal.high90, marginal.mode);
   if (best >= low && best <= high) return "";
-  return fmt::format(
-      "{}: the value {:.4g} is outside the interval, which is from all observables: the objective {} and all observables together prefer "
-      "different values",
-      study.parameters[parameter].name, best, name_of(study.objective.kind));
+  return outside_interval(study.parameters[parameter].name, fmt::format("the few numbers of {}", name_of(study.objective.kind)),
+                          {best, marginal.low90, marginal.high90});
 }
 
 Calibration calibrate(Evaluator& evaluator) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/calibrate/evaluator.hpp"
 #include "studies/campaign/doubts.hpp"
 #include "studies/doe/doe.hpp"
@@ -64,6 +65,10 @@ std::optional<Inference> infer(const Evaluator& evaluator, std::vector<std::stri
 
 /// The method of the study, then `infer`.
 Calibration calibrate(Evaluator& evaluator);
+
+/// "friction: retuned to the power alone it is 0.2, outside its own interval (0.4 … 0.6): …": `found` has the value that was retuned and
+/// the interval from all observables; `target`: what it was retuned to. Empty where the value lies inside.
+std::string outside_interval(const std::string& name, const std::string& target, const base::Interval90& found);
 
 /// Says that a value is outside its interval because the objective prefers another one than all observables do; empty where nothing has to
 /// be said.

@@ -2,6 +2,8 @@
 
 #include <fmt/chrono.h>
 
+#include <algorithm>
+#include <array>
 #include <ctime>
 #include <stdexcept>
 #include <string_view>
@@ -45,9 +47,24 @@ std::string_view before(std::string_view page, std::string_view mark, std::strin
   return page.substr(at + mark.size());
 }
 
+/// Kinds of sections in the order of an answer, what it rests on, and how it looks.
+constexpr std::array kAnswerOrder{"diagnosis",  "challenge", "calibration", "validation", "comparison",
+                                  "crosscheck", "analysis",  "campaign",    "run"};
+
+std::size_t place_of(const nlohmann::ordered_json& section) {
+  const auto kind = section.value("kind", std::string());
+  return static_cast<std::size_t>(std::find(kAnswerOrder.begin(), kAnswerOrder.end(), kind) - kAnswerOrder.begin());
+}
+
+void answer_first(std::vector<nlohmann::ordered_json>& sections) {
+  if (std::none_of(sections.begin(), sections.end(), [](const auto& s) { return place_of(s) == 0; })) return;
+  std::stable_sort(sections.begin(), sections.end(), [](const auto& a, const auto& b) { return place_of(a) < place_of(b); });
+}
+
 }  // namespace
 
-nlohmann::ordered_json document_of(const std::string& title, const std::vector<nlohmann::ordered_json>& sections, bool live) {
+nlohmann::ordered_json document_of(const std::string& title, std::vector<nlohmann::ordered_json> sections, bool live) {
+  answer_first(sections);
   return {{"schema_version", 1},
           {"title", title},
           {"made_utc", fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(std::time(nullptr)))},

@@ -11,8 +11,9 @@
 
 namespace millscope::report {
 
-/// The document that page/DATA.md describes. `live`: served by `watch`, so that the page asks for it again and again.
-nlohmann::ordered_json document_of(const std::string& title, const std::vector<nlohmann::ordered_json>& sections, bool live = false);
+/// The document that page/DATA.md describes. With a diagnosis among the sections they stand in the order of its answer: diagnosis,
+/// calibration, validation, comparison, …, runs; else as given. `live`: served by `watch`, so that the page asks for it again and again.
+nlohmann::ordered_json document_of(const std::string& title, std::vector<nlohmann::ordered_json> sections, bool live = false);
 
 /// The page with the document in it.
 std::string page_of(const nlohmann::ordered_json& document);

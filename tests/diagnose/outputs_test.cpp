@@ -128,6 +128,44 @@ TEST_CASE("diagnosis.md tells the verdict, every candidate, the figures and the 
   CHECK(pictures == 4);
 }
 
+TEST_CASE("a friction that practice moves out of its own interval is told in one sentence, in numbers and on the page") {
+  const Scratch folder;
+  const nlohmann::json j = written(folder, with_rolling());
+  const nlohmann::json& models = j["held_out"][0]["models"];
+  const auto practice = std::find_if(models.begin(), models.end(), [](const auto& m) { return m["model"] == "retuned to power"; });
+  std::vector<std::string> expected;
+  for (const char* name : {"bead_friction", "wall_friction"}) {  // filling is no friction: practice leaves it as the case has it
+    const nlohmann::json& all = j["contact_parameters"]["retuned"][name];
+    const double value = (*practice)["parameters"][name], low = all["low90"], high = all["high90"];
+    if (value < low || value > high)
+      expected.push_back(
+          fmt::format("{}: retuned to the power alone it is {:.3g}, outside its own interval ({:.3g} … {:.3g}): that moves it "
+                      "where the recordings as a whole do not want it",
+                      name, value, low, high));
+  }
+  REQUIRE_FALSE(expected.empty());
+  CHECK(j["moved_by_practice"] == nlohmann::json(expected));
+  for (const std::string& sentence : expected) CHECK_THAT(base::text_of(folder / "out/diagnosis.md"), Contains(sentence + ".\n"));
+}
+
+TEST_CASE("each number of a held-out condition has its distance from each model") {
+  const Scratch folder;
+  const nlohmann::json j = written(folder, with_rolling());
+  const nlohmann::json& held = j["held_out"][0];
+  for (const auto& model : held["models"]) {
+    const std::string name = model["model"];
+    double sum = 0;
+    for (const auto& row : held["observables"]) {
+      const double z = row["z"][name], difference = row["recorded"].get<double>() - row[name].get<double>();
+      CHECK(z * difference >= 0);
+      sum += z * z;
+    }
+    const double misfit = model["misfit"];  // counts how the numbers hang together, which z does not
+    CHECK(sum / static_cast<double>(held["observables"].size()) > 0.1 * misfit);
+    CHECK(sum / static_cast<double>(held["observables"].size()) < 10 * misfit);
+  }
+}
+
 TEST_CASE("what the simulations give cause to doubt is told once, in numbers and on the page") {
   const Scratch folder;
   std::filesystem::create_directories(folder / "run");

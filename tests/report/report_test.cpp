@@ -87,6 +87,19 @@ void write_frames(const std::filesystem::path& file, std::size_t frames, std::si
 
 }  // namespace
 
+TEST_CASE("with a diagnosis the page begins with its answer, and the runs come last") {
+  const auto kinds = [](const std::vector<const char*>& given) {
+    std::vector<Json> sections;
+    for (const char* kind : given) sections.push_back({{"kind", kind}});
+    std::vector<std::string> out;
+    for (const Json& section : report::document_of("", sections).at("sections")) out.push_back(section.at("kind"));
+    return out;
+  };
+  CHECK(kinds({"run", "analysis", "comparison", "calibration", "validation", "calibration", "diagnosis"}) ==
+        std::vector<std::string>{"diagnosis", "calibration", "calibration", "validation", "comparison", "analysis", "run"});
+  CHECK(kinds({"run", "comparison", "calibration"}) == std::vector<std::string>{"run", "comparison", "calibration"});
+}
+
 TEST_CASE("base64 as in RFC 4648, section 10") {
   const auto coded = [](const std::string& text) {
     return report::base64({reinterpret_cast<const unsigned char*>(text.data()), text.size()});

@@ -38,7 +38,7 @@ class StaticPages(Pages):
         call(self.folder, "report", "out", "an", "-o", "run.html", "-q")
         call(self.folder, "report", *kinds, "-o", "studies.html", "-q")
         shown = [section["kind"] for page in ("run.html", "studies.html") for section in data_of(self.folder / page)["sections"]]
-        self.assertEqual(shown, ["run", "analysis", "comparison", "crosscheck", "campaign", "calibration", "calibration", "validation", "diagnosis", "challenge"])
+        self.assertEqual(shown, ["run", "analysis", "diagnosis", "challenge", "calibration", "calibration", "validation", "comparison", "crosscheck", "campaign"])
         known = re.search(r"const KINDS = \{ (.*?) \};", (PAGE / "src" / "main.js").read_text())
         self.assertEqual(set(shown), set(known.group(1).split(", ")), "a kind of section that the page knows is not looked at here")
         done = looked_at("check.mjs", self.folder / "run.html")
@@ -68,6 +68,57 @@ class StaticPages(Pages):
         self.assertRegex(lines[0], "^No parameters fit \\(misfit 130 for 35 numbers, p = 3 × 10⁻¹³\\)")
         self.assertRegex(lines[1], "^Bead friction 0.4113, weakly determined; .* The most probable set fits")
 
+    def answers(self, **changes):
+        """What stands on the page of a diagnosis with these changes, from above; given last, with a run before it."""
+        folder = self.folder / "changed"
+        shutil.copytree(FIXTURES / "diagnosis", folder, dirs_exist_ok=True)
+        diagnosis = json.loads((FIXTURES / "diagnosis" / "diagnosis.json").read_text())
+        (folder / "diagnosis.json").write_text(json.dumps(diagnosis | changes))
+        call(self.folder, "report", "out", str(FIXTURES / "retuned"), "changed", "-o", "answer.html", "-q", "--force")
+        return looked_at("answer.mjs", self.folder / "answer.html").stdout.splitlines(), diagnosis
+
+    def test_the_answer_comes_first_and_the_run_last(self):
+        lines, diagnosis = self.answers()
+        begin = [re.split("[:|]", line)[0] for line in lines]
+        self.assertEqual(begin[0], "The answer")
+        self.assertRegex(lines[1], r"^The simulation leaves out rolling resistance: rolling friction 0\.\d+ \(90 %: 0\.\d+ … 0\.\d+\); p = 0\.003\.$")
+        self.assertEqual(lines[2], "Next: Run the corrected case: millscope run changed/corrected/case.yaml -o corrected")
+        self.assertEqual(lines[3:5], ["Before and after, at speed55", "The corrected simulation predicts this recording better than every other model that was tried."])
+        held = diagnosis["held_out"][0]
+        rows = lines[5].split(" / ")
+        self.assertEqual([row.split("|")[0] for row in rows], ["table ", "recorded", "retuned to the power alone", "retuned to all numbers", "corrected"])
+        power = {row.split("|")[0]: float(row.split("|")[1].split()[0]) for row in rows[1:]}
+        self.assertAlmostEqual(power["recorded"], 1000 * held["recorded_power_W"], delta=0.06)
+        self.assertAlmostEqual(power["corrected"], 1000 * held["models"][0]["power_W"], delta=0.06)
+        self.assertRegex(lines[6], "^chart retuned to the power alone: misfit .* corrected: misfit ")
+        self.assertEqual(lines[7], "Friction, retuned and unmasked")
+        self.assertEqual(lines[9], diagnosis["moved_by_practice"][0].replace("bead_friction", "Bead friction") + ".")
+        self.assertEqual(begin[10:], ["chart Contact parameters", "table parameter", "contents", "section diagnosis", "section calibration", "section run"])
+
+    def test_every_verdict_has_its_sentence(self):
+        candidates = ["rolling_resistance", "air_drag", "lifter_wear"]
+        for changes, sentence in [
+            ({"verdict": "ambiguous", "named": candidates, "next_experiment": "Look at 'speed55'."},
+             "Something is left out (p = 0.003), but these recordings cannot tell which: rolling resistance, air drag or lifter wear."),
+            ({"verdict": "ambiguous"}, "Rolling resistance may be left out (p = 0.003), but the held-out recording does not confirm it."),
+            ({"verdict": "ambiguous", "named": candidates[:2], "named_together": True, "two_effects": [{"first": "rolling_resistance", "second": "air_drag", "p_second": 0.01, "p_first": 0.002}]},
+             "The simulation leaves out two things together: rolling resistance and air drag (p = 0.01 for the second beside the first)."),
+            ({"verdict": "outside_library", "named": []},
+             "Something is left out that is not among the candidates: rolling resistance helps most, but does not suffice (p < 0.001 for the retuned simulation)."),
+            ({"verdict": "no_mismatch", "named": [], "base": {"p_value": 0.4}}, "Nothing is left out that these recordings could show: once retuned, the simulation describes them (p = 0.4)."),
+            ({"verdict": "undetectable", "named": []}, "These recordings cannot tell: even at its strongest, no candidate could be seen in them."),
+        ]:
+            lines, diagnosis = self.answers(**changes)
+            self.assertEqual(lines[1], sentence)
+            if changes["verdict"] in ("no_mismatch", "undetectable"):  # the fixture's retuned base does not describe the held-out condition
+                self.assertRegex(lines[2], "^But something differs where it was not fitted: speed55 \\(p < 0.001\\).$")
+            if "next_experiment" in changes:
+                self.assertEqual(lines[2], "Next: Look at 'speed55'.")
+
+    def test_a_page_without_a_diagnosis_begins_with_its_contents(self):
+        call(self.folder, "report", "out", str(FIXTURES / "retuned"), "-o", "plain.html", "-q")
+        self.assertEqual(looked_at("answer.mjs", self.folder / "plain.html").stdout.splitlines(), ["contents", "section run", "section calibration"])
+
     def test_doubts_are_told_in_the_contents_and_below_the_first_sentence(self):
         doubt = {"name": "overlap", "of": "glass~steel (wall)", "value": 0.2, "limit": 0.05, "unit": "bead radii", "finding": "beads sink in by <20 %>",
                  "may_change": "power may be off", "remedy": "stiffer contacts", "said_by": 3, "simulations": 48}
@@ -77,11 +128,11 @@ class StaticPages(Pages):
             path.write_text(json.dumps(json.loads(path.read_text()) | {"doubts": [doubt]}))
         call(self.folder, "report", "out", "retuned-doubted", "diagnosis-doubted", str(FIXTURES / "surface"), "-o", "doubted.html", "-q")
         lines = looked_at("contents.mjs", self.folder / "doubted.html").stdout.splitlines()
-        self.assertEqual([line.endswith(" Doubts: 1.") for line in lines], [True, True, True, False], lines)
+        self.assertEqual([line.endswith(" Doubts: 1.") for line in lines], [True, True, False, True], lines)
         told = looked_at("doubts.mjs", self.folder / "doubted.html").stdout.splitlines()
         self.assertEqual(len(told), 3, told)
-        self.assertRegex(told[0], "^means are over 0.28 turns of the mill, under 2; .*Remedy: raise time.end_s by")
-        self.assertEqual(told[1:], ["3 of 48 simulations, the worst: beads sink in by <20 %>; power may be off. Remedy: stiffer contacts."] * 2)
+        self.assertRegex(told[2], "^means are over 0.28 turns of the mill, under 2; .*Remedy: raise time.end_s by")
+        self.assertEqual(told[:2], ["3 of 48 simulations, the worst: beads sink in by <20 %>; power may be off. Remedy: stiffer contacts."] * 2)
 
 
 class LivePage(Pages):

@@ -118,6 +118,10 @@ Json held_out(const Told& t) {
       for (const Score& s : h.scores) row[s.prediction.name] = s.prediction.value[i];
       names.push_back(std::move(row));
     }
+    for (const Score& s : h.scores) {
+      const VectorXd z = deviations(t, h, s);
+      for (std::size_t i = 0; i < names.size(); ++i) names[i]["z"][s.prediction.name] = z[i];
+    }
     out.push_back({{"condition", t.question.study.conditions[h.condition].name},
                    {"recorded_power_W", recorded.power.value},
                    {"simulations", h.simulations},
@@ -207,6 +211,7 @@ Json diagnosis_json(const Told& t) {
           {"two_effects", pairs},
           {"mismatch", mismatch},
           {"contact_parameters", contact},
+          {"moved_by_practice", moved_by_practice(t)},
           {"per_speed_friction", per_speed(t)},
           {"held_out", held_out(t)},
           {"missing_acceleration", missing(t)},

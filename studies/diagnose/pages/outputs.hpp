@@ -32,6 +32,11 @@ std::string observable_name(const Told& told, Index observable);
 /// "recording 0.30, retuned base 0.27 (z = 3.1 …)" of one row of the mismatch.
 std::string mismatch_sentence(const Told& told, const naming::Mismatch& m);
 
+/// Every number of a held-out condition less what a model says there, over its standard deviation; NaN where the model leaves it undefined.
+VectorXd deviations(const Told& told, const HeldOut& held, const Score& score);
+/// A sentence for each contact parameter that the practice moves out of the interval that the recordings as a whole give it.
+std::vector<std::string> moved_by_practice(const Told& told);
+
 /// All of the above into `folder`.
 void write_outputs(const Told& told, const std::filesystem::path& folder);
 

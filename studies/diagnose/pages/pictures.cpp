@@ -73,21 +73,17 @@ void drift(const Told& t, Drawer& drawer) {
 /// Observables of a held-out condition before and after.
 void held_out(const Told& t, Drawer& drawer) {
   for (const HeldOut& h : t.diagnosis.held_out) {
-    const calibrate::Observation& recorded = t.diagnosis.evidence.recorded[h.condition];
-    MatrixXd covariance = recorded.covariance;
-    calibrate::add_power_error(recorded, t.question.study.power_error, covariance);
     CurvePicture p;
     p.title = "Held out: " + t.question.study.conditions[h.condition].name;
     p.x_label = "observable", p.value_label = "difference over its standard deviation";
     p.zero_line = true, p.points = true;
     for (const Score& s : h.scores) {
-      if (s.prediction.name != "corrected" && s.prediction.name != "retuned to power" && s.prediction.name != "retuned to all observables")
-        continue;
+      if (s.prediction.name != "corrected" && s.prediction.name != kToPower && s.prediction.name != "retuned to all observables") continue;
       Curve c{s.prediction.name, {}, {}, {}, {}};
-      for (Index i = 0; i < recorded.value.size(); ++i) {
-        if (!std::isfinite(s.prediction.value[i])) continue;
-        c.x.push_back(static_cast<double>(i + 1));
-        c.value.push_back((recorded.value[i] - s.prediction.value[i]) / std::sqrt(covariance(i, i) + s.prediction.covariance(i, i)));
+      const VectorXd z = deviations(t, h, s);
+      for (Index i = 0; i < z.size(); ++i) {
+        if (!std::isfinite(z[i])) continue;
+        c.x.push_back(static_cast<double>(i + 1)), c.value.push_back(z[i]);
       }
       p.curves.push_back(std::move(c));
     }
@@ -112,6 +108,14 @@ void missing(const Told& t, Drawer& drawer) {
 }
 
 }  // namespace
+
+VectorXd deviations(const Told& t, const HeldOut& held, const Score& score) {
+  const calibrate::Observation& recorded = t.diagnosis.evidence.recorded[held.condition];
+  MatrixXd covariance = recorded.covariance;
+  calibrate::add_power_error(recorded, t.question.study.power_error, covariance);
+  return (recorded.value - score.prediction.value).array() /
+         (covariance.diagonal() + score.prediction.covariance.diagonal()).array().sqrt();
+}
 
 std::vector<fs::path> draw(const Told& told, const fs::path& folder) {
   fs::create_directories(folder);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "studies/calibrate/methods.hpp"
 #include "studies/diagnose/pages/outputs.hpp"
 
 namespace millscope::diagnose {
@@ -82,6 +83,7 @@ void parameters(const Told& t, std::string& out) {
     if (d.naming.best) add(out, " {} |", text(d.naming.judged[*d.naming.best].theta[i]));
     out += "\n";
   }
+  for (const std::string& sentence : moved_by_practice(t)) add(out, "\n{}.\n", sentence);
   out +=
       "\nFitted to each condition alone (intervals from the curvature at the optimum, too narrow where two parameters trade places):\n\n| "
       "condition | parameter | base | "
@@ -157,6 +159,22 @@ std::string observable_name(const Told& t, Index observable) {
     at += o.value.size();
   }
   return "";
+}
+
+std::vector<std::string> moved_by_practice(const Told& t) {
+  std::vector<std::string> out;
+  for (const HeldOut& h : t.diagnosis.held_out) {
+    const auto practice = std::find_if(h.scores.begin(), h.scores.end(), [](const Score& s) { return s.prediction.name == kToPower; });
+    if (practice == h.scores.end()) continue;
+    for (std::size_t i = 0; i < t.question.study.parameters.size(); ++i) {
+      const base::Interval90& all = t.diagnosis.naming.base_theta[i];
+      const std::string said = calibrate::outside_interval(t.diagnosis.problem.data.theta[i].name, "the power alone",
+                                                           {practice->prediction.theta[static_cast<Index>(i)], all.low, all.high});
+      if (!said.empty()) out.push_back(said);
+    }
+    break;  // it is retuned to a fitted condition: the same wherever it is tried
+  }
+  return out;
 }
 
 std::string mismatch_sentence(const Told& t, const naming::Mismatch& m) {

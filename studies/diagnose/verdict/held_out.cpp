@@ -17,8 +17,6 @@ namespace {
 
 constexpr double kFloor = 1e-6;  // of the recording's variance: what runs show without scatter (readings of the frame) is not singular
 
-const std::string kToPower = "retuned to power";
-
 /// A way of modelling that has parameters to simulate with.
 struct Way {
   std::string name, sentence;

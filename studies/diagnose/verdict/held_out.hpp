@@ -15,6 +15,9 @@
 
 namespace millscope::diagnose {
 
+/// The model of the practice.
+inline const std::string kToPower = "retuned to power";
+
 /// What one way of modelling says of a held-out condition.
 struct Prediction {
   std::string name;        ///< "corrected", "retuned to power", …

@@ -76,7 +76,7 @@ async function look(browser, path, data, width, complain) {
   watch(page, (asked) => asked === url || /^(data|blob):/.test(asked), complain);
   await page.goto(url);
   await page.waitForSelector("main > section, main > .missing");
-  const shown = await page.evaluate(() => ({ title: document.title, head: document.querySelector("h1")?.textContent, sections: [...document.querySelectorAll("main > section h2")].map((node) => node.textContent) }));
+  const shown = await page.evaluate(() => ({ title: document.title, head: document.querySelector("h1")?.textContent, sections: [...document.querySelectorAll("main > .part h2")].map((node) => node.textContent) }));
   if (shown.head !== data.title || shown.title !== data.title) complain(`the title is shown as "${shown.head}", it is "${data.title}"`);
   data.sections.forEach((section, index) => shown.sections[index] !== section.title && complain(`section ${index + 1} is headed "${shown.sections[index]}", not "${section.title}"`));
   (await page.evaluate(overflow)).forEach(complain);

@@ -17,7 +17,7 @@ import { validation } from "./sections/validation.js";
 const KINDS = { run, analysis, comparison, campaign, calibration, validation, diagnosis, challenge, crosscheck };
 
 const byId = (id) => document.getElementById(id);
-const shown = []; // what stands in the page: {text, element}
+const shown = []; // what stands in the page: {text, part, answer}
 
 function content(section, key) {
   const make = Object.hasOwn(KINDS, section.kind) ? KINDS[section.kind] : null;
@@ -32,17 +32,18 @@ function content(section, key) {
 
 function sectionElement(section, index) {
   const key = `s${index + 1}`;
-  const { kind, sentence, doubts, headline = [], blocks = [], broken } = content(section, key);
+  const { kind, answer, sentence, doubts, headline = [], blocks = [], broken } = content(section, key);
   const notes = section.notes?.length ? element("div", { class: "notes" }, element("h3", null, "Notes"), list(section.notes)) : null;
-  return element("section", { class: "part", id: key, "data-kind": section.kind, "data-sentence": [sentence, doubtsCount(doubts)].filter(Boolean).join(" ") },
+  const part = element("section", { class: "part", id: key, "data-kind": section.kind, "data-sentence": [sentence, doubtsCount(doubts)].filter(Boolean).join(" ") },
     element("header", null, element("p", { class: "kind" }, kind, section.source ? [" · ", element("code", null, section.source)] : null),
       element("h2", null, section.title)),
     broken ? element("p", { class: "missing broken", role: "alert" }, broken) : null,
-    sentence ? element("p", { class: "sentence" }, sentence) : null, doubtsElement(doubts), headline.some(Boolean) ? facts(headline) : null, blocks, notes);
+    sentence ? element("p", { class: "sentence" }, sentence) : null, answer ? null : doubtsElement(doubts), headline.some(Boolean) ? facts(headline) : null, blocks, notes);
+  return { part, answer };
 }
 
 function writeContents() {
-  const items = [...document.querySelectorAll("main > section")].map((section) => {
+  const items = [...document.querySelectorAll("main > .part")].map((section) => {
     const blocks = [...section.querySelectorAll(":scope > section.block")];
     const links = blocks.map((one) => element("li", null, element("a", { href: `#${one.id}` }, one.dataset.title)));
     return element("li", null, element("a", { href: `#${section.id}` }, section.querySelector("h2").textContent), " ",
@@ -61,6 +62,14 @@ function writeHead(page) {
   byId("made").textContent = page.live ? "Served by millscope watch." : "One file with all its data; it asks for nothing from any network.";
 }
 
+/** Answers come before all, the contents after them; the contents of a page without an answer stand above what is skipped to. */
+function placeAnswers(main, answers) {
+  const contents = byId("contents");
+  if (answers.length > 1) for (const one of answers) one.querySelector("h2").textContent = `The answer: ${one.dataset.title}`;
+  if (answers.length) main.prepend(...answers, contents);
+  else main.before(contents);
+}
+
 /** Writes what has changed; what has not stays as the reader left it. */
 function write(page) {
   writeHead(page);
@@ -70,11 +79,13 @@ function write(page) {
     const text = JSON.stringify(section);
     if (shown[index]?.text === text) return;
     const fresh = sectionElement(section, index);
-    if (shown[index]) shown[index].element.replaceWith(fresh);
-    else main.append(fresh);
-    shown[index] = { text: page.live ? text : "", element: fresh };
+    if (shown[index]) shown[index].part.replaceWith(fresh.part);
+    else main.append(fresh.part);
+    shown[index]?.answer?.remove();
+    shown[index] = { text: page.live ? text : "", ...fresh };
   });
-  for (const old of shown.splice(page.sections.length)) old.element.remove();
+  for (const old of shown.splice(page.sections.length)) [old.part, old.answer].forEach((one) => one?.remove());
+  placeAnswers(main, shown.map((one) => one.answer).filter(Boolean));
   if (page.sections.length === 0) main.replaceChildren(element("p", { class: "missing" }, "There is nothing in this report."));
   writeContents();
   if (focused && focused !== document.activeElement && focused.isConnected) focused.focus({ preventScroll: true });

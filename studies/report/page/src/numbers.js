@@ -102,8 +102,9 @@ export const named = (name, unit) => (unit ? `${name} (${unit})` : name);
 const SHORT = { pept: "PEPT", rms: "RMS" };
 /** "bead_friction" → "bead friction" */
 export const words = (name) => String(name).replace(/_+/g, " ").trim().replace(/\b(pept|rms)\b/g, (found) => SHORT[found]);
-/** A sentence of the program with the names in it as words: "pept_grid.velocity_y" → "PEPT grid: velocity y"; files and units stay. */
-export const readable = (text) => String(text ?? "").replace(/\b[a-z][a-z0-9]*_[a-z0-9_]*(\.[a-z][a-z0-9_]*)?(?![\w./])/g, (name) => words(name.replace(".", ": "))).replace(/\bNaN\b/g, "undefined");
+/** A sentence of the program with the names in it as words: "pept_grid.velocity_y" → "PEPT grid: velocity y"; files, places in a case and units stay. */
+export const readable = (text) => String(text ?? "").replace(/\b[a-z][a-z0-9]*_[a-z0-9_]*(\.[a-z][a-z0-9_]*)?(?![\w./])/g,
+  (name, member, at, whole) => (/[.~/]/.test(whole.charAt(at - 1)) ? name : words(name.replace(".", ": ")))).replace(/\bNaN\b/g, "undefined");
 /** "2026-11-22T08:36:11Z" → "2026-11-22 08:36 UTC" */
 export const moment = (text) => String(text ?? "").replace(/^(\d{4}-\d\d-\d\d)T(\d\d:\d\d)(:\d\d)?Z$/, "$1 $2 UTC");
 export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);

@@ -14,9 +14,11 @@ function parameters({ parameters: all = [], posterior }, key) {
   const share = (one, at) => (100 * (at - one.range[0])) / (one.range[1] - one.range[0]);
   const bar = (one) => ({ value: share(one, one.value), low: share(one, one.posterior?.low90), high: share(one, one.posterior?.high90),
     text: `${value(one, one.value)}${one.posterior ? ` (${span(one, one.posterior.low90, one.posterior.high90)})` : ""}` });
-  const apart = known.filter((one) => one.value < one.posterior.low90 || one.value > one.posterior.high90);
-  const why = apart.length ? ` ${capital(apart.map((one) => words(one.name)).join(", "))}: the set with the best objective lies outside the interval, which comes from the likelihood of all numbers.` : "";
-  return block(`${key}-parameters`, "Parameters", figure(`The calibrated set with 90 % intervals, as places in the range of the study: 0 % its lower end, 100 % its upper end.${why}`,
+  // Where the posterior piles up at an end of the range, the end itself contradicts nothing.
+  const apart = known.filter((one) => one.value < Math.min(one.posterior.low90, one.posterior.mode) || one.value > Math.max(one.posterior.high90, one.posterior.mode));
+  return block(`${key}-parameters`, "Parameters", apart.map((one) => paragraph(`${capital(words(one.name))} was retuned to ${value(one, one.value)}, outside its own interval (${span(one, one.posterior.low90, one.posterior.high90)}): `
+    + "that moves it where the recordings as a whole do not want it.")),
+  figure("The calibrated set with 90 % intervals, as places in the range of the study: 0 % its lower end, 100 % its upper end.",
     intervals(`${key}-parameters`, { label: all.map((one) => `${words(one.name)} ${bar(one).text}`).join(", "), rows: all.map((one) => titleOf(one.name)), groups: [{ name: "", values: all.map(bar) }],
       x: { name: "place in the range of the study", unit: "%", min: 0, max: 100 }, zone: [0, 100] })),
   table({ caption: "The calibrated set", rows: all, columns: [{ label: "parameter", value: (one) => titleOf(one.name) }, { label: "value", number: true, value: (one) => value(one, one.value) },

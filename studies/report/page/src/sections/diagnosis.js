@@ -1,10 +1,12 @@
-// A diagnosis, in the order in which it was found: where it differs, what was tried, what was found, whether it predicts.
+// A diagnosis: its answer, and how that was found: where it differs, what was tried, what was found, whether it predicts.
 import { block, disclosure, figure, list, note, paragraph, table } from "../dom.js";
-import { among, interval, isNumber, number, probability, pValue, readable, scale, signed, words } from "../numbers.js";
+import { isNumber, number, probability, pValue, readable, signed, words } from "../numbers.js";
 import { intervals } from "../plots/intervals.js";
-import { drift, frictionBlock } from "./diagnosis_friction.js";
+import { answer } from "./diagnosis_answer.js";
+import { drift } from "./diagnosis_friction.js";
 import { heldOut } from "./diagnosis_held_out.js";
 import { missingAcceleration } from "./diagnosis_acceleration.js";
+import { strength } from "./parameters.js";
 
 const VERDICTS = { no_mismatch: "nothing is missing", named: "named", ambiguous: "something is missing, more than one candidate remains",
   outside_library: "something is missing that is not among the candidates", undetectable: "these data cannot tell" };
@@ -40,13 +42,6 @@ function mismatch({ mismatch: rows = [], base }, key) {
     mismatchTable(first, `The ${first.length} farthest numbers`),
     rest.length ? disclosure(`${key}-rest`, `The other ${rest.length} numbers`, () => mismatchTable(rest, "The other numbers")) : null);
 }
-
-const strength = (row) => Object.entries(row.parameters ?? {}).map(([name, found]) => {
-  const by = scale(found.unit, [found.value, found.high90]);
-  const known = isNumber(found.low90) && isNumber(found.high90);
-  const unit = by.unit ? ` ${by.unit}` : "";
-  return `${words(name)} ${among(found.value, found.low90, found.high90, by.factor)}${known ? ` (${interval(found.low90, found.high90, by.factor)})` : ""}${unit}`;
-}).join("; ");
 
 const canMatter = (row) => (row.undetectable ? "no" : "yes");
 
@@ -88,24 +83,13 @@ function found(diagnosis, key) {
 }
 
 export function diagnosis(section, key) {
-  const found90 = section.diagnosis;
-  const best = (found90.hypotheses ?? []).find((row) => row.class === "best");
-  const smallest = (found90.hypotheses ?? []).reduce((least, row) => Math.min(least, row.p_value ?? 1), 1);
-  const held = found90.held_out?.[0]?.models ?? [];
-  const error = (name) => held.find((model) => model.model === name)?.power_percent;
-  const others = (found90.notes ?? []).filter((one) => !one.startsWith("not tested"));
+  const { diagnosis: told, turns } = section;
+  const others = (told.notes ?? []).filter((one) => !one.startsWith("not tested"));
   return {
-    kind: "Diagnosis", sentence: readable(found90.sentence), doubts: found90.doubts, headline: [
-      ["Verdict", VERDICTS[found90.verdict] ?? words(found90.verdict), found90.named?.length ? found90.named.map(words).join(", ") : null],
-      ["p of the best candidate", probability(best?.p_value ?? smallest), "for all candidates together"],
-      best && ["Strength", Object.values(best.parameters ?? {}).map((one) => among(one.value, one.low90, one.high90, scale(one.unit).factor)).join(", ") || "–",
-        Object.entries(best.parameters ?? {}).map(([name, one]) => `${words(name)}, 90 %: ${interval(one.low90, one.high90, scale(one.unit).factor)}`).join("; ")],
-      isNumber(error("corrected")) && ["Power predicted, corrected", `${signed(error("corrected"), 2)}\u00a0%`, `at ${found90.held_out[0].condition}, which was not fitted`],
-      isNumber(error("retuned to power")) && ["Power predicted, friction retuned", `${signed(error("retuned to power"), 2)}\u00a0%`, "the usual practice"],
-      ["Numbers compared", number(found90.base?.observables), `${number(found90.bank?.used)} parameter sets simulated`]],
-    blocks: [mismatch(found90, key), tried(found90, key), found(found90, key), frictionBlock(found90, key), drift(found90, key), ...heldOut(found90, key),
-      missingAcceleration(found90, key, section.turns),
-      block(`${key}-next`, "Next experiment", paragraph(found90.next_experiment || "Nothing more is needed for this verdict.")),
-      others.length || found90.bank?.failures?.length ? block(`${key}-notes`, "Notes of the diagnosis", list([...others, ...(found90.bank?.failures ?? [])])) : null],
+    kind: "Diagnosis", answer: answer(section, key), sentence: readable(told.sentence), doubts: told.doubts, headline: [
+      ["Verdict", VERDICTS[told.verdict] ?? words(told.verdict), told.named?.length ? told.named.map(words).join(", ") : null],
+      ["Numbers compared", number(told.base?.observables), `${number(told.bank?.used)} parameter sets simulated`]],
+    blocks: [mismatch(told, key), tried(told, key), found(told, key), drift(told, key), ...heldOut(told, key), missingAcceleration(told, key, turns),
+      others.length || told.bank?.failures?.length ? block(`${key}-notes`, "Notes of the diagnosis", list([...others, ...(told.bank?.failures ?? [])])) : null],
   };
 }

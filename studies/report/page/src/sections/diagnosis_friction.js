@@ -1,29 +1,41 @@
 // What friction is with and without the missing physics, over all recordings and for each speed alone.
 import { block, element, figure, note, paragraph, table } from "../dom.js";
-import { number } from "../numbers.js";
+import { capital, number, readable, words } from "../numbers.js";
 import { intervals } from "../plots/intervals.js";
 import { lines } from "../plots/lines.js";
 import { range, roundRange } from "../plots/axes.js";
+import { CORRECTED, TO_ALL, TO_POWER } from "./models.js";
 import { point, scaleOf, titleOf, told } from "./parameters.js";
 
-export function frictionBlock({ contact_parameters: parameters, hypotheses = [] }, key) {
+/** θ of the base that was retuned to the power alone: where it was tried on a held-out condition. */
+const practiceOf = (all = []) => all.flatMap((held) => held.models ?? []).find((model) => model.model === TO_POWER.model)?.parameters;
+
+/** The interval below the value: a table of several has to fit on a phone. */
+function stacked(name, found) {
+  const [value, interval] = told(name, found).split(" (");
+  return [value, interval ? element("small", null, interval.replace(")", "")) : null];
+}
+
+export function frictionBlock({ contact_parameters: parameters, hypotheses = [], held_out: held, moved_by_practice: moved = [] }, key) {
   const { retuned = {}, unmasked } = parameters ?? {};
   const names = Object.keys(retuned);
   if (names.length === 0) return null;
   const best = hypotheses.find((row) => row.class === "best");
+  const practice = practiceOf(held);
   const frictions = names.filter((name) => scaleOf(name).unit === "");
-  const groups = [{ name: "retuned, without a candidate", symbol: "square", values: frictions.map((name) => point(name, retuned[name])) }];
-  if (unmasked) groups.push({ name: `with ${best ? best.name.replace(/_/g, " ") : "the best candidate"}`, values: frictions.map((name) => point(name, unmasked[name])) });
+  const alone = (name) => ({ value: practice?.[name], low90: practice?.[name], high90: practice?.[name] });
+  const sides = [practice && { ...TO_POWER, of: alone }, { ...TO_ALL, of: (name) => retuned[name] },
+    unmasked && { ...CORRECTED, name: `unmasked, with ${best ? words(best.name) : "the best candidate"}`, of: (name) => unmasked[name] }].filter(Boolean);
   return block(`${key}-friction`, "Friction, retuned and unmasked",
-    paragraph(unmasked ? "Retuning friction can conceal missing physics; what friction is once that physics is there is called unmasked."
+    paragraph(unmasked ? "Retuning friction can conceal missing physics. What friction is once that physics is there is called unmasked."
       : best ? "The fit with the best candidate stands at an end of what was simulated, so what friction is beside it is not known: these are the retuned values."
         : "No candidate is significant, so there is no unmasked friction: these are the retuned values."),
-    frictions.length ? figure("Fitted to all conditions together, with 90 % intervals.", intervals(`${key}-friction`, {
-      label: `Contact parameters: ${frictions.map((name) => `${name} ${told(name, retuned[name])}`).join(", ")}`, rows: frictions.map(titleOf), groups,
-      x: { name: "value of the parameter" } })) : null,
+    moved.map((sentence) => paragraph(capital(readable(sentence)), ".")),
+    frictions.length ? figure("With 90 % intervals.", intervals(`${key}-friction`, {
+      label: `Contact parameters: ${frictions.map((name) => `${name} ${told(name, retuned[name])}`).join(", ")}`, rows: frictions.map(titleOf),
+      groups: sides.map(({ name, colour, of }) => ({ name, colour, values: frictions.map((one) => point(one, of(one))) })), x: { name: "value of the parameter" } })) : null,
     table({ caption: "Parameters with 90 % intervals", rows: names, columns: [{ label: "parameter", value: titleOf },
-      { label: "retuned", number: true, value: (name) => told(name, retuned[name]) },
-      ...(unmasked ? [{ label: "unmasked", number: true, value: (name) => told(name, unmasked[name]) }] : [])] }));
+      ...sides.map(({ name, of }) => ({ label: name, number: true, value: (one) => stacked(one, of(one)) }))] }));
 }
 
 const SPEED = 30 / Math.PI; // rad/s → rpm
