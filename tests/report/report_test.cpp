@@ -91,8 +91,9 @@ TEST_CASE("with a diagnosis the page begins with its answer, and the runs come l
   const auto kinds = [](const std::vector<const char*>& given) {
     std::vector<Json> sections;
     for (const char* kind : given) sections.push_back({{"kind", kind}});
+    const Json document = report::document_of("", sections);
     std::vector<std::string> out;
-    for (const Json& section : report::document_of("", sections).at("sections")) out.push_back(section.at("kind"));
+    for (const Json& section : document.at("sections")) out.push_back(section.at("kind"));
     return out;
   };
   CHECK(kinds({"run", "analysis", "comparison", "calibration", "validation", "calibration", "diagnosis"}) ==

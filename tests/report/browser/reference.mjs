@@ -70,6 +70,7 @@ async function gather(page) {
   const empty = await page.context().newPage();
   for (const element of await page.locator(".chart:has(svg), .view canvas").all()) {
     const flat = await element.evaluate((node) => node.matches(".chart"));
+    await (flat ? empty : page).bringToFront(); // a page behind another draws nothing
     found.push({ name: (await element.getAttribute("aria-label")) ?? "", cells: small(decode(flat ? await alone(empty, element) : await element.screenshot({ animations: "disabled" }))) });
   }
   return found;

@@ -49,7 +49,7 @@ function contradicted({ verdict, held_out: held = [], level }) {
 
 function next(found, source) {
   if (found.next_experiment) return readable(found.next_experiment);
-  if (found.verdict === "named") return ["Run the corrected case: ", element("code", null, `millscope run ${source}/corrected/case.yaml -o corrected`)];
+  if (found.verdict === "named") return ["Run the corrected case: ", element("code", null, `millscope run ${source}/corrected/case.yaml `, element("span", { class: "whole" }, "-o corrected"))];
   return "Use the retuned case. It may still lack what these data cannot show.";
 }
 

@@ -25,7 +25,7 @@ export function frictionBlock({ contact_parameters: parameters, hypotheses = [],
   const frictions = names.filter((name) => scaleOf(name).unit === "");
   const alone = (name) => ({ value: practice?.[name], low90: practice?.[name], high90: practice?.[name] });
   const sides = [practice && { ...TO_POWER, of: alone }, { ...TO_ALL, of: (name) => retuned[name] },
-    unmasked && { ...CORRECTED, name: `unmasked, with ${best ? words(best.name) : "the best candidate"}`, of: (name) => unmasked[name] }].filter(Boolean);
+    unmasked && { ...CORRECTED, short: "unmasked", name: `unmasked, with ${best ? words(best.name) : "the best candidate"}`, of: (name) => unmasked[name] }].filter(Boolean);
   return block(`${key}-friction`, "Friction, retuned and unmasked",
     paragraph(unmasked ? "Retuning friction can conceal missing physics. What friction is once that physics is there is called unmasked."
       : best ? "The fit with the best candidate stands at an end of what was simulated, so what friction is beside it is not known: these are the retuned values."
@@ -35,7 +35,7 @@ export function frictionBlock({ contact_parameters: parameters, hypotheses = [],
       label: `Contact parameters: ${frictions.map((name) => `${name} ${told(name, retuned[name])}`).join(", ")}`, rows: frictions.map(titleOf),
       groups: sides.map(({ name, colour, of }) => ({ name, colour, values: frictions.map((one) => point(one, of(one))) })), x: { name: "value of the parameter" } })) : null,
     table({ caption: "Parameters with 90 % intervals", rows: names, columns: [{ label: "parameter", value: titleOf },
-      ...sides.map(({ name, of }) => ({ label: name, number: true, value: (one) => stacked(one, of(one)) }))] }));
+      ...sides.map(({ name, short, of }) => ({ label: short ?? name, number: true, value: (one) => stacked(one, of(one)) }))] }));
 }
 
 const SPEED = 30 / Math.PI; // rad/s → rpm
