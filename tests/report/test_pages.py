@@ -93,12 +93,12 @@ class StaticPages(Pages):
         self.assertRegex(lines[6], "^chart retuned to the power alone: misfit .* corrected: misfit ")
         self.assertEqual(lines[7], "Friction, retuned and unmasked")
         self.assertEqual(lines[9], diagnosis["moved_by_practice"][0].replace("bead_friction", "Bead friction") + ".")
-        self.assertEqual(begin[10:], ["chart Contact parameters", "table parameter", "contents", "section diagnosis", "section calibration", "section run"])
+        self.assertEqual(begin[10:], ["chart Contact parameters", "table parameter", "contents", "section diagnosis", "section calibration", "Bead friction was retuned to 0.2213, outside its own interval (0.7923 … 0.7999)", "section run"])
 
     def test_every_verdict_has_its_sentence(self):
         candidates = ["rolling_resistance", "air_drag", "lifter_wear"]
         for changes, sentence in [
-            ({"verdict": "ambiguous", "named": candidates, "next_experiment": "Look at 'speed55'."},
+            ({"verdict": "ambiguous", "named": candidates, "next_experiment": "Look at air_drag and pairs.glass~hdpe.static_friction."},
              "Something is left out (p = 0.003), but these recordings cannot tell which: rolling resistance, air drag or lifter wear."),
             ({"verdict": "ambiguous"}, "Rolling resistance may be left out (p = 0.003), but the held-out recording does not confirm it."),
             ({"verdict": "ambiguous", "named": candidates[:2], "named_together": True, "two_effects": [{"first": "rolling_resistance", "second": "air_drag", "p_second": 0.01, "p_first": 0.002}]},
@@ -113,11 +113,12 @@ class StaticPages(Pages):
             if changes["verdict"] in ("no_mismatch", "undetectable"):  # the fixture's retuned base does not describe the held-out condition
                 self.assertRegex(lines[2], "^But something differs where it was not fitted: speed55 \\(p < 0.001\\).$")
             if "next_experiment" in changes:
-                self.assertEqual(lines[2], "Next: Look at 'speed55'.")
+                self.assertEqual(lines[2], "Next: Look at air drag and pairs.glass~hdpe.static_friction.")
 
     def test_a_page_without_a_diagnosis_begins_with_its_contents(self):
         call(self.folder, "report", "out", str(FIXTURES / "retuned"), "-o", "plain.html", "-q")
-        self.assertEqual(looked_at("answer.mjs", self.folder / "plain.html").stdout.splitlines(), ["contents", "section run", "section calibration"])
+        self.assertEqual(looked_at("answer.mjs", self.folder / "plain.html").stdout.splitlines(), ["contents", "section run", "section calibration",
+            "Bead friction was retuned to 0.2213, outside its own interval (0.7923 … 0.7999): that moves it where the recordings as a whole do not want it."])
 
     def test_doubts_are_told_in_the_contents_and_below_the_first_sentence(self):
         doubt = {"name": "overlap", "of": "glass~steel (wall)", "value": 0.2, "limit": 0.05, "unit": "bead radii", "finding": "beads sink in by <20 %>",
