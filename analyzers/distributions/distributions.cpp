@@ -43,12 +43,12 @@ enum Coordinate { kX, kY, kZ, kR, kRelativeSpeed, kCoordinates };
 
 class Distributions {
  public:
-  static constexpr std::uint64_t kNeeds = kHasVelocity;
+  static constexpr std::uint64_t kNeeds = 0;  // without velocities: where the beads are
 
   Distributions(const Parameters& p, const AnalyzerContext& context)
       : range_(axial_range(p, context)),
         charge_count_(context.charge_count),
-        shell_speed_(std::fabs(context.omega) * shell_radius(context)) {
+        shell_speed_((context.has & kHasVelocity) != 0 ? std::fabs(context.omega) * shell_radius(context) : 0) {
     const double shell = context.mill_radius;
     const bool ends = context.mill_high > context.mill_low;
     const Bins z = ends ? Bins(context.mill_low, context.mill_high, p.integer("bins_z")) : Bins();
@@ -78,15 +78,16 @@ class Distributions {
   }
 
   void accumulate(const FrameBlock& block, double* const* sums) const {
-    const double per_shell_speed = shell_speed_ > 0 ? 1 / shell_speed_ : 0;
+    const double per_shell_speed = shell_speed_ > 0 ? 1 / shell_speed_ : 0;  // 0: not known, or there are no velocities
     for (std::int64_t s = block.first[0]; s < block.first[block.frame_count]; ++s) {
       const double x = block.position[0][s], y = block.position[1][s], z = block.position[2][s], weight = block.weight[s];
       if (!range_.contains(z)) continue;
-      const double u = block.velocity[0][s], v = block.velocity[1][s], w = block.velocity[2][s];
       sums[kX][axes_[kX].bins.slot(x)] += weight;
       sums[kY][axes_[kY].bins.slot(y)] += weight;
       sums[kZ][axes_[kZ].bins.slot(z)] += weight;
       sums[kR][axes_[kR].bins.slot(std::sqrt(x * x + y * y))] += weight;
+      if (!(shell_speed_ > 0)) continue;
+      const double u = block.velocity[0][s], v = block.velocity[1][s], w = block.velocity[2][s];
       sums[kRelativeSpeed][axes_[kRelativeSpeed].bins.slot(std::sqrt(u * u + v * v + w * w) * per_shell_speed)] += weight;
     }
   }
@@ -145,7 +146,7 @@ class Distributions {
   }
 
   AxialRange range_;
-  double charge_count_, shell_speed_;
+  double charge_count_, shell_speed_;  ///< speed: 0 where none is compared with it
   std::array<Axis, kCoordinates> axes_{};
 };
 

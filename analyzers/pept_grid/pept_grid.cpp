@@ -40,12 +40,13 @@ enum Moment { kTime, kVelocity0, kVelocity1, kVelocity2, kSpeed, kTurning, kSign
 
 class PeptGrid {
  public:
-  static constexpr std::uint64_t kNeeds = kHasVelocity;
+  static constexpr std::uint64_t kNeeds = 0;  // without velocities: where the beads are
 
   PeptGrid(const Parameters& parameters, const AnalyzerContext& context)
       : range_(axial_range(parameters, context)),
         cells_(parameters, context, range_),
         largest_id_(context.largest_id),
+        has_velocity_((context.has & kHasVelocity) != 0),
         all_maps_(parameters.text("maps") == "all") {
     const double beads = context.charge_count * 4.0 / 3.0 * std::numbers::pi * std::pow(context.bead_radius, 3);
     bead_volume_ = beads > 0 ? beads : context.bead_density > 0 ? context.charge_mass / context.bead_density : 0;
@@ -75,11 +76,11 @@ class PeptGrid {
     add_field(
         results, "occupancy", "1", "Residence-time fraction of each cell; sums to one over the maps.",
         [=](const double* m) { return ratio(m[kTime], in_range); }, moments, kShare);
-    if (!all_maps_) return add_speed(results, moments);
+    if (!all_maps_) return has_velocity_ ? add_speed(results, moments) : void();
     add_field(
         results, "visits", "1", "Entries into the cell: independent visits.", [](const double* m) { return m[kVisits]; }, moments,
         kBookkeeping | kNotNegative);
-    add_velocities(results, moments);
+    if (has_velocity_) add_velocities(results, moments);
     add_porosity(results, moments, in_range, *sums[1]);
   }
 
@@ -121,6 +122,10 @@ class PeptGrid {
 
   template <bool polar>
   void add_motion(double* m, double weight, double x, double y, const FrameBlock& block, std::int64_t s) const {
+    if (!has_velocity_) {
+      m[kTime] += weight;
+      return;
+    }
     const double u = block.velocity[0][s], v = block.velocity[1][s], w = block.velocity[2][s];
     const double square = u * u + v * v + w * w;
     m[kTime] += weight;
@@ -229,7 +234,7 @@ class PeptGrid {
   Cells cells_;
   std::vector<double> volumes_ = cells_.volumes();  ///< m³; the same for every resample
   std::int64_t largest_id_;
-  bool all_maps_;
+  bool has_velocity_, all_maps_;
   double bead_volume_ = 0;
 };
 

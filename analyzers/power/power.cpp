@@ -38,7 +38,7 @@ enum Change { kTime, kWork, kLost, kTurned, kChanges };
 
 class Power {
  public:
-  static constexpr std::uint64_t kNeeds = kHasVelocity;
+  static constexpr std::uint64_t kNeeds = 0;  // without velocities: the centre of mass and what follows from it
 
   Power(const Parameters& p, const AnalyzerContext& context) : context_(context), range_(axial_range(p, context)) {
     const double shell = shell_radius(context);
@@ -89,12 +89,13 @@ class Power {
     whole[kAllOmega] += mass * omega;
     const std::optional<std::int64_t> column = x_.at(x), row = y_.at(y);
     if (!column || !row) return;
-    const double turning = (x * block.velocity[1][s] - y * block.velocity[0][s]) / std::max(x * x + y * y, 1e-14);
     double* m = moments + (*row * x_.count + *column) * kMoments;
     m[kMass] += mass;
+    m[kLever] += mass * x * omega;
+    if (block.velocity[0] == nullptr) return;
+    const double turning = (x * block.velocity[1][s] - y * block.velocity[0][s]) / std::max(x * x + y * y, 1e-14);
     m[kTurning] += mass * std::fabs(turning);
     m[kSignedTurning] += mass * turning;
-    m[kLever] += mass * x * omega;
   }
 
   static void add_change(const FrameBlock& block, std::int64_t f, double* changes) {
@@ -130,12 +131,16 @@ class Power {
       inside += m[kMass];
     }
     if (!(mass > 0)) sum = of_mean = is_signed = kNaN;
-    add_power(results, "bbosa", sum, "Bbosa's sum over cells with the mean of |omega| (Chagas 2015, Eq. 3.20): an estimator with a bias.");
-    add_power(results, "bbosa_of_mean", of_mean, "Bbosa's sum with the magnitude of the mean omega of each cell.");
-    add_power(results, "bbosa_signed", is_signed, "Bbosa's sum with the signed mean omega: the cascading layer counts against the rise.");
+    const bool has_velocity = (context_.has & kHasVelocity) != 0;
+    if (has_velocity) {
+      add_power(results, "bbosa", sum,
+                "Bbosa's sum over cells with the mean of |omega| (Chagas 2015, Eq. 3.20): an estimator with a bias.");
+      add_power(results, "bbosa_of_mean", of_mean, "Bbosa's sum with the magnitude of the mean omega of each cell.");
+      add_power(results, "bbosa_signed", is_signed, "Bbosa's sum with the signed mean omega: the cascading layer counts against the rise.");
+    }
     results.add("outside_fraction", "1", ratio(mass - inside, mass),
                 "Fraction of the charge's time outside the cells, which Bbosa's sums lack.", kShare);
-    add_map(results, "bbosa", bbosa, "Term of each cell in Bbosa's sum.");
+    if (has_velocity) add_map(results, "bbosa", bbosa, "Term of each cell in Bbosa's sum.");
     add_map(results, "gravity", lift, "Power that lifts the charge in each cell, M g <x Omega>.");
   }
 

@@ -4,6 +4,7 @@
 
 #include "kernel/base/nearest.hpp"
 #include "kernel/config/bead_file.hpp"
+#include "kernel/config/imported.hpp"
 #include "kernel/config/reader.hpp"
 #include "kernel/config/values.hpp"
 
@@ -27,6 +28,13 @@ void read_head(const Node& root, Case& c) {
   c.stiffness_factor = number_or(root, "stiffness_factor", "1", factor, c.stiffness_factor);
 }
 
+/// Laws and their coefficients.
+void read_physics(const Node& root, Case& c) {
+  c.contact = read_contact(root.at("contact", "the contact law: {law: {kind: hertz_mindlin}}"));
+  c.pairs =
+      read_pairs(root.at("pairs", "values per pair of materials: {glass~glass: {restitution: 0.8, …}}"), root.find("groups"), c.materials);
+}
+
 Case from_tree(const Node& root, const std::string& file) {
   root.expect({"schema_version", "name", "seed", "stiffness_factor", "materials", "groups", "beads", "fill", "contact", "pairs",
                "body_forces", "mill", "geometry", "domain", "time", "start", "output", "run"});
@@ -35,15 +43,15 @@ Case from_tree(const Node& root, const std::string& file) {
   c.root = root;
   check_version(root);
   read_head(root, c);
-  c.materials = read_materials(root.at("materials", "materials by name: {glass: {density, shear_modulus, poisson_ratio}}"));
+  if (const auto run = root.find("run")) c.run = read_run(*run);
+  c.materials =
+      read_materials(root.at("materials", "materials by name: {glass: {density, shear_modulus, poisson_ratio}}"), !is_imported(c));
   const Node fill = root.at("fill", "how much charge: {filling: 31.3 %}, {mass: 1 kg} or {count: 4000}");
   c.fill = read_fill(fill);
   const Node beads = root.at("beads", "bead classes by name: {glass5: {material: glass, diameter: 5 mm}}");
   c.beads = read_beads(beads, c.materials, read_shares_by_mass(fill));
   if (!c.fill.file.empty()) place_beads(c);
-  c.contact = read_contact(root.at("contact", "the contact law: {law: {kind: hertz_mindlin}}"));
-  c.pairs =
-      read_pairs(root.at("pairs", "values per pair of materials: {glass~glass: {restitution: 0.8, …}}"), root.find("groups"), c.materials);
+  if (!is_imported(c)) read_physics(root, c);
   c.body_forces = read_instances(root.at("body_forces", "{gravity: {kind: gravity}}, or {} for none"), "body force");
   if (const auto mill = root.find("mill")) c.mill = read_mill(*mill, c.largest_diameter());
   if (const auto geometry = root.find("geometry")) c.geometry = read_geometry(*geometry, c);
@@ -53,7 +61,6 @@ Case from_tree(const Node& root, const std::string& file) {
   c.time = read_time(root.at("time", "{end_s: 4}"));
   if (const auto start = root.find("start")) c.start = read_start(*start, c.time);
   c.output = read_output(root.find("output"), c.time);
-  if (const auto run = root.find("run")) c.run = read_run(*run);
   return c;
 }
 

@@ -1,7 +1,9 @@
 #include "kernel/config/existing_file.hpp"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -24,6 +26,20 @@ std::string existing_file(const Node& node, const std::string& remedy) {
   const std::string file = resolve_file(node), wrong = wrong_with(file);
   if (!wrong.empty()) node.fail(fmt::format("is '{}': {}; {}", node.text(), wrong, remedy));
   return file;
+}
+
+std::vector<std::string> matching_files(const Node& node) {
+  const fs::path path = resolve_file(node);
+  const std::string pattern = path.filename().string();
+  if (pattern.find_first_of("*?") == std::string::npos) return {path.string()};
+  std::vector<std::string> found;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path.parent_path(), error)) {
+    if (::fnmatch(pattern.c_str(), entry.path().filename().c_str(), FNM_PERIOD) == 0) found.push_back(entry.path().string());
+  }
+  std::sort(found.begin(), found.end());
+  if (found.empty()) node.fail(fmt::format("is '{}', and no file has such a name; correct it", node.text()));
+  return found;
 }
 
 }  // namespace millscope::config

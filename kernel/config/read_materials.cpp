@@ -27,16 +27,17 @@ double read_young(const Node& node, double poisson) {
   return read_number(node.at("young_modulus", "'young_modulus' or 'shear_modulus', e.g. 26 GPa"), "Pa", positive());
 }
 
-MaterialCase read_material(const Node& node, const std::string& name) {
+MaterialCase read_material(const Node& node, const std::string& name, bool elastic) {
   node.expect({"density", "young_modulus", "shear_modulus", "poisson_ratio", "citation"});
   MaterialCase m;
   m.name = name;
   m.where = node.where();
   m.density = read_number(node.at("density", "the solid's density, e.g. 2500 kg/m^3"), "kg/m^3", positive());
+  if (const auto citation = node.find("citation")) m.citation = citation->text();
+  if (!elastic) return m;
   const Range stable{-1, 0.5, true, true, "no isotropic solid is stable outside; look the value up again in its source"};
   m.poisson = read_number(node.at("poisson_ratio", "Poisson's ratio, e.g. 0.23"), "1", stable);
   m.young = read_young(node, m.poisson);
-  if (const auto citation = node.find("citation")) m.citation = citation->text();
   return m;
 }
 
@@ -78,12 +79,12 @@ double number_or(const Node& section, std::string_view key, std::string_view si_
   return node ? read_number(*node, si_unit, range) : fallback;
 }
 
-std::vector<MaterialCase> read_materials(const Node& section) {
+std::vector<MaterialCase> read_materials(const Node& section, bool elastic) {
   std::vector<MaterialCase> materials;
   for (const std::string& name : section.keys()) {
     const Node node = section.at(name);
     check_name(name, node.where(), "material");
-    materials.push_back(read_material(node, name));
+    materials.push_back(read_material(node, name, elastic));
   }
   if (materials.empty()) section.fail("names no material; add one");
   return materials;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernel/config/imported.hpp"
 #include "kernel/config/reader.hpp"
 
 namespace millscope::config {
@@ -88,7 +89,8 @@ GeometryCase read_one_geometry(const Node& node, const std::string& name, const 
   if (const auto slots = node.find("materials")) {
     for (const std::string& slot : slots->keys()) g.materials.emplace_back(slot, read_material_name(slots->at(slot), c.materials));
   }
-  if (g.material.empty() && g.materials.empty()) node.at("material", "the name of a material, or 'materials: {slot: name}'");
+  if (g.material.empty() && g.materials.empty() && !is_imported(c))
+    node.at("material", "the name of a material, or 'materials: {slot: name}'");
   if (const auto motion = node.find("motion")) g.motion = read_motion(*motion, c.mill);
   return g;
 }

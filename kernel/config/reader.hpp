@@ -16,7 +16,8 @@ std::string read_material_name(const Node& node, const std::vector<MaterialCase>
 
 double number_or(const Node& section, std::string_view key, std::string_view si_unit, const Range& range, double fallback);
 
-std::vector<MaterialCase> read_materials(const Node& section);
+/// `elastic`: each has moduli, without which nothing can be computed.
+std::vector<MaterialCase> read_materials(const Node& section, bool elastic);
 std::map<std::string, std::string> read_groups(const std::optional<Node>& section, const std::vector<MaterialCase>& materials);
 /// Adds the values that `like` and `times` of each pair stand for.
 void complete_pairs(const Node& section);

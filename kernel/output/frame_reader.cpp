@@ -75,6 +75,7 @@ void FrameReader::Impl::read_scalars() {
   }
   scalars.wall_angle = column("wall_angle", 1);
   scalars.angular_velocity = column("angular_velocity", 1);
+  if (hdf5::has(file, "mass_there")) scalars.mass_there = column("mass_there", 1);
   scalars.wall_work = named("wall_work", scalars.wall_names);
   scalars.dissipation = named("dissipation", scalars.dissipation_names);
   read_impacts();

@@ -25,6 +25,7 @@ struct FrameScalars {
   std::vector<double> time;              ///< s, increasing
   std::vector<double> wall_angle;        ///< rad, about z, since the start
   std::vector<double> angular_velocity;  ///< Ω, rad/s
+  std::vector<double> mass_there;        ///< kg of the beads that are there; empty: all beads are in every frame
   std::vector<std::string> wall_names;
   std::vector<double> wall_work;  ///< [n, walls] J since the start; empty where the file has none
   std::vector<std::string> dissipation_names;
@@ -51,7 +52,7 @@ class FrameReader {
   std::size_t frame_count() const;  ///< complete frames
 
   /// Frames first … first + count − 1 of one field into values [count, N, 3]: x0 y0 z0 x1 …; m, m/s or rad/s. May be called from
-  /// several threads; HDF5 takes them one after the other.
+  /// several threads; HDF5 takes them one after the other. NaN: not known (FrameView).
   void read(BeadField field, std::size_t first, std::size_t count, std::span<float> values) const;
 
  private:

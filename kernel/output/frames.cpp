@@ -51,6 +51,7 @@ void build(hid_t file, const BeadTable& table, const fs::path& path) {
   hdf5::make_column<double>(file, {"time", "s", {}}, path);
   hdf5::make_column<double>(file, {"wall_angle", "rad", {}}, path);
   hdf5::make_column<double>(file, {"angular_velocity", "rad/s", {}}, path);
+  if (table.beads_vary) hdf5::make_column<double>(file, {"mass_there", "kg", {}}, path);
   const auto make_named = [&](const char* name, const std::vector<std::string>& columns) {
     if (columns.empty()) return;
     hdf5::make_column<double>(file, {name, "J", {columns.size()}, 256}, path);
@@ -93,6 +94,7 @@ struct FrameWriter::Impl {
   std::vector<Column> beads;    // kBeadColumns
   std::vector<Column> ledger;   // wall_work, dissipation: 0 or 1 column each
   std::vector<Column> impacts;  // 0 or 1 column
+  std::vector<Column> masses;   // 0 or 1 column
   std::size_t bead_count = 0, wall_count = 0, dissipation_count = 0;
   double last_time = 0;
   std::vector<float> rounded;
@@ -129,6 +131,7 @@ bool FrameWriter::Impl::close() {
   beads.clear();
   ledger.clear();
   impacts.clear();
+  masses.clear();
   time = Column();
   return file.close();
 }
@@ -147,7 +150,9 @@ FrameWriter FrameWriter::create(const fs::path& path, const BeadTable& table) {
   }
   GrowingFile::create(path, [&](hid_t file) { build(file, table, path); });
   if (!table.impact_pairs.empty() && table.impact_edges.size() < 2) throw std::logic_error("FrameWriter: impacts need bins");
-  return FrameWriter(Impl::open(path, count, table.wall_names.size(), table.dissipation_names.size(), !table.impact_pairs.empty()));
+  FrameWriter writer(Impl::open(path, count, table.wall_names.size(), table.dissipation_names.size(), !table.impact_pairs.empty()));
+  if (table.beads_vary) writer.impl_->masses.push_back(writer.impl_->file.column("mass_there"));
+  return writer;
 }
 
 FrameWriter FrameWriter::resume(const fs::path& path, std::size_t bead_count, double time) {
@@ -192,6 +197,7 @@ void FrameWriter::append(const FrameView& frame) {
   f.append_beads(f.beads[2], frame.spin);
   f.scalars[0].append(&frame.wall_angle, 1);
   f.scalars[1].append(&frame.angular_velocity, 1);
+  if (!f.masses.empty()) f.masses.front().append(&frame.mass, 1);
   if (f.wall_count > 0) f.ledger.front().append(frame.wall_work.data(), 1);
   if (f.dissipation_count > 0) f.ledger.back().append(frame.dissipation.data(), 1);
   // A file of an earlier version, which is continued, may have no counts of impacts.

@@ -26,9 +26,11 @@ struct BeadTable {
   std::vector<std::string> dissipation_names;  ///< columns of FrameView::dissipation, e.g. "glass~liner.normal"
   std::vector<std::string> impact_pairs{};     ///< rows of FrameView::impacts; empty: not written
   std::vector<double> impact_edges{};          ///< J, [bins + 1]
+  bool beads_vary = false;                     ///< not all beads are there in every frame (only in frames that were imported)
 };
 
-/// One instant. Bead arrays are ordered as BeadTable::id; [N,3] is x0 y0 z0 x1 y1 z1 …
+/// One instant. Bead arrays are ordered as BeadTable::id; [N,3] is x0 y0 z0 x1 y1 z1 … NaN is what is not known, which happens in frames
+/// that were imported: of a bead that is not there its place, of frames without velocities or spins those.
 struct FrameView {
   double time = 0;                           ///< s
   double wall_angle = 0;                     ///< rad, about z, since the start
@@ -39,6 +41,7 @@ struct FrameView {
   std::span<const double> position;          ///< [N,3] m
   std::span<const double> velocity;          ///< [N,3] m/s
   std::span<const double> spin;              ///< [N,3] rad/s
+  double mass = 0;                           ///< kg of the beads that are there; written where `beads_vary`
 };
 
 /// Writes frames.h5 (docs/format.md). The number of beads is fixed by the table. Throws base::UserError when the disk is full or

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <thread>
 
+#include "kernel/config/imported.hpp"
 #include "kernel/config/values.hpp"
 #include "kernel/run/bodies.hpp"
 #include "kernel/run/pair_physics.hpp"
@@ -206,6 +207,7 @@ std::optional<int> Assembly::wall_body_of_mill() const {
 }
 
 Assembly assemble(config::Case c, const host::Registry& registry, const AssemblyOptions& options) {
+  config::refuse_imported(c);
   Assembly a;
   a.c = std::move(c);
   a.geometries = make_geometries(a.c, registry);

@@ -71,13 +71,18 @@ Soundness soundness_of(const Assembly& a, const Json& summary) {
 }
 
 Soundness soundness_of_means(const Assembly& a, const Json& summary) {
-  Soundness s;
+  Soundness s = soundness_of_summary(summary, a.mill_speed);
   s.stiffness_factor = a.c.stiffness_factor;
   s.stiffness_from_young = a.stiffness_from_young;
   if (summary.contains("contact")) s.contact_steps = summary["contact"]["steps_per_shortest_contact"].get<double>();
-  if (a.mill_speed != 0) s.turn = 2 * std::numbers::pi / std::abs(a.mill_speed);
   s.bead_radius = mean_radius_by_mass(a.c);
   s.gap = lifter_gap(a, s.bead_radius);
+  return s;
+}
+
+Soundness soundness_of_summary(const Json& summary, double speed) {
+  Soundness s;
+  if (speed != 0) s.turn = 2 * std::numbers::pi / std::abs(speed);
   if (!summary.contains("window_s")) return s;
   s.window = summary["window_s"][1].get<double>() - summary["window_s"][0].get<double>();
   s.steady = summary["steady"].get<bool>();

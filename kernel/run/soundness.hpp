@@ -12,4 +12,7 @@ Soundness soundness_of(const Assembly& a, const nlohmann::ordered_json& summary)
 /// The same of a run that another engine made: how deep its contacts were is not known.
 Soundness soundness_of_means(const Assembly& a, const nlohmann::ordered_json& summary);
 
+/// What follows from the means alone; `speed`: of the mill, rad/s.
+Soundness soundness_of_summary(const nlohmann::ordered_json& summary, double speed);
+
 }  // namespace millscope::run

@@ -55,23 +55,26 @@ Sample take_sample(const dem::System& system, const Assembly& a) {
 Json means_of(const Course& course) {
   Json j;
   j["window_s"] = {course.from, course.until};
-  const Mean pt = correlated_mean(course.torque), ke = correlated_mean(course.kinetic);
-  const Steadiness by_torque = steadiness(course.torque, kSteadyTolerance);
-  j["steady"] = by_torque.steady;
-  j["steadiness"] = {{"torque_power_drift_W", by_torque.drift}, {"torque_power_drift_standard_errors", by_torque.standard_errors}};
-  j["power_W"] = {{"torque", pt.value}, {"torque_sem", pt.standard_error}};
-  if (!course.centre.empty()) {
-    const Mean pc = correlated_mean(course.centre);
-    const Steadiness by_centre = steadiness(course.centre, kSteadyTolerance);
-    j["steady"] = by_torque.steady && by_centre.steady;
-    j["steadiness"].update({{"com_power_drift_W", by_centre.drift}, {"com_power_drift_standard_errors", by_centre.standard_errors}});
-    j["power_W"].update({{"com", pc.value}, {"com_sem", pc.standard_error}});
-  }
+  j["steady"] = true;
+  const auto power = [&j](const std::string& by, const std::vector<double>& values) {
+    if (values.empty()) return;
+    const Mean mean = correlated_mean(values);
+    const Steadiness steady = steadiness(values, kSteadyTolerance);
+    if (!steady.steady) j["steady"] = false;
+    j["steadiness"][by + "_power_drift_W"] = steady.drift;
+    j["steadiness"][by + "_power_drift_standard_errors"] = steady.standard_errors;
+    j["power_W"][by] = mean.value;
+    j["power_W"][by + "_sem"] = mean.standard_error;
+  };
+  power("torque", course.torque);
+  power("com", course.centre);
   for (const std::vector<double>& c : course.place) {
     const Mean m = c.empty() ? Mean{} : correlated_mean(c);
     j["com_m"].push_back(c.empty() ? Json() : Json(m.value));
     j["com_m_sem"].push_back(c.empty() ? Json() : Json(m.standard_error));
   }
+  if (course.kinetic.empty()) return j;
+  const Mean ke = correlated_mean(course.kinetic);
   j["kinetic_energy_J"] = ke.value;
   j["kinetic_energy_J_sem"] = ke.standard_error;
   return j;

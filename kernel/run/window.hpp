@@ -33,9 +33,9 @@ double power_of_centre(const Assembly& a, double mass, double time, const std::a
 /// The charge over an analysis window, evenly sampled; at least 9 values each.
 struct Course {
   double from = 0, until = 0;                  ///< s
-  std::vector<double> torque;                  ///< power by torque, W
+  std::vector<double> torque;                  ///< power by torque, W; empty: not known, and that by centre of mass is
   std::vector<double> centre;                  ///< power by centre of mass, W; empty: not known
-  std::vector<double> kinetic;                 ///< J
+  std::vector<double> kinetic;                 ///< J; empty: not known
   std::array<std::vector<double>, 3> place{};  ///< of the centre of mass, m; empty: not known
 };
 

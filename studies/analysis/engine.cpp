@@ -197,7 +197,8 @@ std::vector<std::uint8_t> followers(const std::vector<ResultBlock>& spans) {
 std::vector<std::string> notes_on(const ResultMeta& meta, const BlockRule& rule, double total) {
   std::vector<std::string> notes;
   const std::size_t blocks = meta.blocks.size();
-  if (blocks < 10) {
+  const bool one_frame = meta.context.start == meta.context.end;  // whose source says so
+  if (blocks < 10 && !one_frame) {
     const double least = std::max(rule.lengths.least, meta.block_duration);
     notes.push_back(fmt::format(
         "only {} block{} of at least three autocorrelation times in {:.3g} s: {}; about {:.3g} s would give 10 blocks", blocks,

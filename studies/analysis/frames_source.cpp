@@ -21,6 +21,8 @@ using output::BeadField;
 constexpr std::size_t kMostChunkBytes = 256U << 20U;  // of the arrays of one chunk
 constexpr std::size_t kSurveyedFrames = 400;
 
+constexpr double kOneFrame = 1;  // s that a frame alone stands for; shares and means do not feel it
+
 /// x0 y0 z0 x1 … → three arrays of doubles.
 void spread(const float* from, std::size_t count, double* x, double* y, double* z) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -28,6 +30,16 @@ void spread(const float* from, std::size_t count, double* x, double* y, double* 
     y[i] = static_cast<double>(from[3 * i + 1]);
     z[i] = static_cast<double>(from[3 * i + 2]);
   }
+}
+
+bool all_unknown(const std::vector<float>& values) {
+  return std::all_of(values.begin(), values.end(), [](float value) { return std::isnan(value); });
+}
+
+/// values[i] = values[there[i]]
+template <class T>
+void keep(const std::vector<std::size_t>& there, std::vector<T>& values) {
+  for (std::size_t i = 0; i < there.size(); ++i) values[i] = values[there[i]];
 }
 
 std::vector<const char*> texts(const std::vector<std::string>& names) {
@@ -44,7 +56,8 @@ struct FramesSource::Buffers : FrameSource::Scratch {
   std::array<std::array<std::vector<double>, 3>, 3> field;  ///< position, velocity, spin; x, y, z
   std::vector<double> weight, radius, mass;
   std::vector<std::int64_t> id, first;
-  std::size_t frames = 0;  ///< that there is room for
+  std::vector<std::size_t> there;  ///< the beads that are in one frame
+  std::size_t frames = 0;          ///< that there is room for
 };
 
 FramesSource::FramesSource(output::FrameReader reader, AnalyzerContext context, std::optional<double> from, std::optional<double> to)
@@ -60,7 +73,9 @@ FramesSource::FramesSource(output::FrameReader reader, AnalyzerContext context, 
   }
   channels_ = texts(s.dissipation_names);
   pairs_ = texts(s.impact_pairs);
-  context_.has = kHasVelocity | kHasSpin | kHasOmega | kHasPhase | kHasAllBeads;
+  context_.has = kHasOmega | kHasPhase | kHasAllBeads;
+  if (knows(BeadField::velocity)) context_.has |= kHasVelocity;
+  if (knows(BeadField::spin)) context_.has |= kHasSpin;
   if (!s.wall_work.empty()) context_.has |= kHasWallWork;
   if (!s.dissipation.empty()) context_.has |= kHasDissipation;
   if (!s.impacts.empty()) context_.has |= kHasImpacts;
@@ -84,13 +99,26 @@ void FramesSource::select(std::optional<double> from, std::optional<double> to) 
   const auto place = [&](double t) { return std::lower_bound(time.begin(), time.end(), t) - time.begin(); };
   begin_ = from ? place(*from - slack) : 0;
   end_ = to ? place(*to + slack) : time.size();
-  if (end_ >= begin_ + 2) return;
-  if (time.size() < 2) {
-    throw UserError(fmt::format("{}: holds {} frame{}, at least two are needed; run the case longer, or write frames more often",
-                                reader_.path().string(), time.size(), time.size() == 1 ? "" : "s"));
+  if (end_ > begin_) return;
+  if (time.empty()) {
+    throw UserError(fmt::format("{}: holds no frame; run the case longer, or write frames more often", reader_.path().string()));
   }
-  throw UserError(fmt::format("{}: fewer than two frames lie in the span asked for; its frames go from {:.6g} s to {:.6g} s",
-                              reader_.path().string(), time.front(), time.back()));
+  throw UserError(fmt::format("{}: no frame lies in the span asked for; its frames go from {:.6g} s to {:.6g} s", reader_.path().string(),
+                              time.front(), time.back()));
+}
+
+/// What is known of one frame is known of all.
+bool FramesSource::knows(BeadField field) const {
+  std::vector<float> values(3 * reader_.beads().size());
+  reader_.read(field, begin_, 1, values);
+  return !all_unknown(values);
+}
+
+std::vector<std::string> FramesSource::notes() const {
+  std::vector<std::string> notes;
+  if (end_ == begin_ + 1)
+    notes.push_back("there is one frame: the charge at one moment, without any error; what needs a change in time is undefined");
+  return notes;
 }
 
 /// A frame stands for the time to the middles between it and its neighbours; a pause of more than 1.5 usual intervals breaks the run.
@@ -98,7 +126,7 @@ void FramesSource::weigh() {
   const std::vector<double>& time = reader_.scalars().time;
   std::vector<double> steps;
   for (std::size_t f = begin_ + 1; f < end_; ++f) steps.push_back(time[f] - time[f - 1]);
-  const double usual = base::quantile(steps, 0.5);
+  const double usual = steps.empty() ? kOneFrame : base::quantile(steps, 0.5);
   share_.assign(time.size(), 0.0);
   piece_.assign(time.size(), 0);
   for (std::size_t f = begin_; f < end_; ++f) {
@@ -123,6 +151,12 @@ void FramesSource::know_beads() {
   }
   context_.charge_count = static_cast<double>(beads.size());
   context_.bead_density = context_.charge_mass / volume;
+  const std::vector<double>& there = reader_.scalars().mass_there;
+  if (there.empty()) return;
+  double mass = 0, share = 0;
+  for (std::size_t f = begin_; f < end_; ++f) mass += share_[f] * there[f], share += share_[f];
+  context_.charge_count *= mass / share / context_.charge_mass;
+  context_.charge_mass = mass / share;
 }
 
 void FramesSource::want(std::uint64_t fields) {
@@ -163,17 +197,46 @@ void FramesSource::lay_out(Buffers& b, std::size_t frames) const {
   b.mass.resize(frames * count);
   b.id.resize(frames * count);
   b.first.resize(frames + 1);
+  know_who(b, frames);
+  b.frames = frames;
+}
+
+/// Every bead in every frame.
+void FramesSource::know_who(Buffers& b, std::size_t frames) const {
+  const output::FrameBeads& beads = reader_.beads();
+  const std::size_t count = beads.size();
   for (std::size_t f = 0; f < frames; ++f) {
     b.first[f + 1] = static_cast<std::int64_t>((f + 1) * count);
     std::copy(beads.radius.begin(), beads.radius.end(), b.radius.begin() + static_cast<std::ptrdiff_t>(f * count));
     std::copy(beads.mass.begin(), beads.mass.end(), b.mass.begin() + static_cast<std::ptrdiff_t>(f * count));
     std::copy(beads.id.begin(), beads.id.end(), b.id.begin() + static_cast<std::ptrdiff_t>(f * count));
   }
-  b.frames = frames;
+}
+
+/// Leaves out the beads that are not there, whose places are NaN.
+void FramesSource::leave_out(Buffers& b, std::size_t frames) const {
+  const std::vector<double>& x = b.field[0][0];
+  b.there.clear();
+  for (std::size_t f = 0, i = 0; f < frames; ++f) {
+    for (const std::size_t end = (f + 1) * reader_.beads().size(); i < end; ++i) {
+      if (!std::isnan(x[i])) b.there.push_back(i);
+    }
+    b.first[f + 1] = static_cast<std::int64_t>(b.there.size());
+  }
+  for (auto& field : b.field) {
+    if (field[0].empty()) continue;
+    for (auto& axis : field) keep(b.there, axis);
+  }
+  keep(b.there, b.weight);
+  keep(b.there, b.radius);
+  keep(b.there, b.mass);
+  keep(b.there, b.id);
 }
 
 void FramesSource::fill(Buffers& b, std::size_t first, std::size_t last, bool goes_on) const {
   const std::size_t count = reader_.beads().size();
+  const bool vary = !reader_.scalars().mass_there.empty();
+  if (vary) know_who(b, last - first);
   for (std::size_t k = 0; k < b.field.size(); ++k) {
     if (b.field[k][0].empty()) continue;
     for (std::size_t f = first; f < last; ++f) {
@@ -187,6 +250,7 @@ void FramesSource::fill(Buffers& b, std::size_t first, std::size_t last, bool go
     const auto at = b.weight.begin() + static_cast<std::ptrdiff_t>((f - first) * count);
     std::fill_n(at, count, goes_on && f == first ? 0.0 : share_[f]);
   }
+  if (vary) leave_out(b, last - first);
 }
 
 const FrameBlock& FramesSource::load(std::size_t number, Scratch& scratch) const {
@@ -236,7 +300,7 @@ const FrameBlock& FramesSource::view(Buffers& b, std::size_t first, std::size_t 
   block.id = b.id.data();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     block.position[axis] = b.field[0][axis].data();
-    block.velocity[axis] = b.field[1][axis].data();
+    block.velocity[axis] = (context_.has & kHasVelocity) != 0 ? b.field[1][axis].data() : nullptr;
     block.spin[axis] = (context_.has & kHasSpin) != 0 ? b.field[2][axis].data() : nullptr;
   }
   block.radius = b.radius.data();

@@ -11,7 +11,7 @@ namespace millscope::analysis {
 class FramesSource : public FrameSource {
  public:
   /// Frames with from ≤ time ≤ to, s. `context`: `has`, `largest_id`, `omega`, `start`, `end` and what follows from the beads (mass, count,
-  /// mean radius and density) are set here. Throws base::UserError when fewer than two frames are left.
+  /// mean radius and density) are set here. Throws base::UserError when no frame is left.
   FramesSource(output::FrameReader reader, AnalyzerContext context, std::optional<double> from, std::optional<double> to);
 
   const AnalyzerContext& context() const override { return context_; }
@@ -24,6 +24,7 @@ class FramesSource : public FrameSource {
   void cut(double duration, std::size_t most) override;
   std::vector<BasicSeries> survey() const override;
   void want(std::uint64_t fields) override;
+  std::vector<std::string> notes() const override;
 
  private:
   struct Chunk {
@@ -35,7 +36,10 @@ class FramesSource : public FrameSource {
   void select(std::optional<double> from, std::optional<double> to);
   void weigh();
   void know_beads();
+  bool knows(output::BeadField field) const;
   void lay_out(Buffers& buffers, std::size_t frames) const;
+  void know_who(Buffers& buffers, std::size_t frames) const;
+  void leave_out(Buffers& buffers, std::size_t frames) const;
   void fill(Buffers& buffers, std::size_t first, std::size_t last, bool goes_on) const;
   const FrameBlock& view(Buffers& buffers, std::size_t first, std::size_t last) const;
 

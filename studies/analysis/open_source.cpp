@@ -7,6 +7,7 @@
 #include "kernel/base/hash.hpp"
 #include "kernel/config/units.hpp"
 #include "kernel/output/directory.hpp"
+#include "kernel/output/summary.hpp"
 #include "kernel/output/track_reader.hpp"
 #include "studies/analysis/frames_source.hpp"
 #include "studies/analysis/mill.hpp"
@@ -29,6 +30,13 @@ OpenedSource open_frames(const SourceRequest& request, MillOfCase mill) {
   return opened;
 }
 
+/// What an import has to say of its frames (docs/import.md).
+std::vector<std::string> notes_of_import(const fs::path& run) {
+  const nlohmann::ordered_json summary = output::read_json(run / "summary.json");
+  if (!summary.is_object() || !summary.contains("engine") || !summary["engine"].contains("notes")) return {};
+  return summary["engine"]["notes"].get<std::vector<std::string>>();
+}
+
 OpenedSource open_simulation(const SourceRequest& request, const host::Registry& registry) {
   const fs::path case_file = request.path / output::kResolvedCase;
   if (!fs::exists(case_file)) {
@@ -49,6 +57,7 @@ OpenedSource open_simulation(const SourceRequest& request, const host::Registry&
   if (request.tracers.empty() && follow)
     opened.meta.notes.push_back("there is no frames.h5: the beads of tracks.h5 are followed instead of looking at all");
   opened.meta.notes.insert(opened.meta.notes.end(), notes.begin(), notes.end());
+  for (std::string& note : notes_of_import(request.path)) opened.meta.notes.push_back(std::move(note));
   opened.meta.name = name;
   opened.meta.case_file = fs::absolute(case_file).lexically_normal().string();
   opened.meta.inputs.push_back({case_file.string(), file_hash(case_file)});

@@ -6,6 +6,7 @@
 
 #include "kernel/base/nearest.hpp"
 #include "kernel/base/program.hpp"
+#include "kernel/config/imported.hpp"
 #include "kernel/output/directory.hpp"
 #include "studies/engine/liggghts/obstacles.hpp"
 #include "studies/engine/liggghts/play.hpp"
@@ -20,6 +21,7 @@ std::vector<std::string> names() { return {"liggghts"}; }
 }  // namespace
 
 void require_known(const config::Case& c) {
+  config::refuse_imported(c);
   const std::vector<std::string> known = names();
   if (c.run.engine.empty() || std::find(known.begin(), known.end(), c.run.engine) != known.end()) return;
   c.root.at("run").at("engine").fail(

@@ -135,7 +135,9 @@ std::string source_line(const analysis::ResultMeta& meta) {
   for (const analysis::ResultBlock& block : meta.blocks) seconds += block.duration;
   if (meta.blocks.empty()) seconds = meta.context.end - meta.context.start;
   const char* what = meta.source == "recording" ? "recording" : meta.source == "tracks" ? "simulated beads" : "simulation";
-  return fmt::format("{}{} · {} s analysed", meta.name.empty() ? "" : meta.name + " · ", what, significant_text(seconds, 3));
+  const bool one_frame = meta.blocks.size() == 1 && meta.context.start == meta.context.end;
+  return fmt::format("{}{} · {}", meta.name.empty() ? "" : meta.name + " · ", what,
+                     one_frame ? "one frame" : significant_text(seconds, 3) + " s analysed");
 }
 
 MillOutline shell_of(const analysis::ResultSet& results) {

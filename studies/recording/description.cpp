@@ -1,12 +1,12 @@
 #include "studies/recording/description.hpp"
 
 #include <fmt/format.h>
-#include <fnmatch.h>
 
 #include <algorithm>
 #include <charconv>
 #include <stdexcept>
 
+#include "kernel/config/existing_file.hpp"
 #include "kernel/config/units.hpp"
 
 namespace millscope::recording {
@@ -15,22 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 using config::Node;
 
-/// One file, or with `*` or `?` in its name all that match, by name.
 void add_files(const Node& node, std::vector<RecordingFile>& files) {
-  const fs::path path = config::resolve_file(node);
-  const std::string pattern = path.filename().string();
-  std::vector<fs::path> found;
-  if (pattern.find_first_of("*?") == std::string::npos) {
-    found.push_back(path);
-  } else {
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(path.parent_path(), error)) {
-      if (::fnmatch(pattern.c_str(), entry.path().filename().c_str(), FNM_PERIOD) == 0) found.push_back(entry.path());
-    }
-    std::sort(found.begin(), found.end());
-    if (found.empty()) node.fail(fmt::format("is '{}', and no file has such a name; correct it", node.text()));
-  }
-  for (const fs::path& one : found) {
+  for (const fs::path one : config::matching_files(node)) {
     const bool twice = std::any_of(files.begin(), files.end(), [&](const RecordingFile& file) { return file.path == one; });
     if (twice) node.fail(fmt::format("names '{}' a second time; each run counts once", one.filename().string()));
     files.push_back({one, node.where()});

@@ -50,12 +50,33 @@ std::vector<float> gathered(const output::FrameReader& reader, const Choice& cho
   return chosen;
 }
 
+/// 0 where frames were imported that say no velocities.
 std::vector<double> speeds_of(const std::vector<float>& velocity) {
   std::vector<double> speed(velocity.size() / 3);
   for (std::size_t i = 0; i < speed.size(); ++i) {
-    speed[i] = std::hypot(double{velocity[3 * i]}, double{velocity[3 * i + 1]}, double{velocity[3 * i + 2]});
+    const double size = std::hypot(double{velocity[3 * i]}, double{velocity[3 * i + 1]}, double{velocity[3 * i + 2]});
+    speed[i] = std::isnan(size) ? 0 : size;
   }
   return speed;
+}
+
+/// Of the chosen beads those that are in every chosen frame: in frames that were imported others may come and go, at NaN.
+std::vector<char> always_there(const std::vector<float>& position, std::size_t beads) {
+  std::vector<char> there(beads, 1);
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    if (std::isnan(position[i])) there[i / 3 % beads] = 0;
+  }
+  return there;
+}
+
+/// values of `width` numbers for each bead, bead after bead, frame after frame: those of the others leave.
+template <class T>
+std::vector<T> kept(const std::vector<T>& values, const std::vector<char>& there, std::size_t width) {
+  std::vector<T> left;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (there[i / width % there.size()] != 0) left.push_back(values[i]);
+  }
+  return left;
 }
 
 double high_of(std::vector<double> speed) { return std::max(base::quantile_below(speed, kHighSpeedQuantile), 1e-9); }
@@ -70,8 +91,12 @@ T scaled(double value, double most) {
 Json movie_of(const output::FrameReader& reader, std::uint64_t bytes) {
   if (reader.frame_count() == 0 || reader.beads().size() == 0) return nullptr;
   const Choice choice = choose(reader.frame_count(), reader.beads().size(), bytes);
-  const std::vector<float> position = gathered(reader, choice, output::BeadField::position);
-  const std::vector<double> speed = speeds_of(gathered(reader, choice, output::BeadField::velocity));
+  const std::vector<float> gathered_places = gathered(reader, choice, output::BeadField::position);
+  const std::vector<char> there = always_there(gathered_places, choice.beads);
+  const auto shown = static_cast<std::size_t>(std::count(there.begin(), there.end(), 1));
+  if (shown == 0) return nullptr;
+  const std::vector<float> position = kept(gathered_places, there, 3);
+  const std::vector<double> speed = kept(speeds_of(gathered(reader, choice, output::BeadField::velocity)), there, 1);
   std::array<double, 3> low{}, high{};
   for (std::size_t k = 0; k < 3; ++k) {
     low[k] = high[k] = double{position[k]};
@@ -90,14 +115,15 @@ Json movie_of(const output::FrameReader& reader, std::uint64_t bytes) {
   std::transform(speed.begin(), speed.end(), shades.begin(), [&](double v) { return scaled<std::uint8_t>(v / fastest, kMostSpeed); });
   std::vector<float> radius;
   for (std::size_t b = 0; b < reader.beads().size(); b += choice.stride) radius.push_back(static_cast<float>(reader.beads().radius[b]));
+  radius = kept(radius, there, 1);
   Json times = Json::array(), angles = Json::array();
   for (const std::size_t frame : choice.frames) {
     times.push_back(reader.scalars().time[frame]);
     angles.push_back(reader.scalars().wall_angle[frame]);
   }
   return {{"frames", choice.frames.size()},
-          {"beads", choice.beads},
-          {"beads_left_out", reader.beads().size() - choice.beads},
+          {"beads", shown},
+          {"beads_left_out", reader.beads().size() - shown},
           {"time_s", times},
           {"wall_angle_rad", angles},
           {"low_m", low},
