@@ -23,7 +23,7 @@ constexpr Command kCommands[] = {
     {"resume", "continue a run from its newest checkpoint", resume},
     {"check", "check a case and predict its cost", check},
     {"export", "a case for another engine", export_case},
-    {"import", "what another engine made of it", import_case},
+    {"import", "what another engine made, as a run", import_case},
     {"crosscheck", "whether another engine says the same", crosscheck_engines},
     {"calibrate", "contact parameters from recordings", calibrate_study},
     {"validate", "whether what was calibrated holds elsewhere", validate},

@@ -24,9 +24,23 @@ std::filesystem::path case_of(const std::filesystem::path& run) {
                               run.string(), run.string()));
 }
 
+/// Why an imported run followed none; "" of a run that was not imported.
+std::string why_not_imported(const std::filesystem::path& run) {
+  const nlohmann::ordered_json summary = output::read_json(run / "summary.json");
+  if (!summary.is_object() || !summary.contains("engine") || !summary["engine"].contains("tracks_need_interval_s")) return "";
+  const auto& engine = summary["engine"];
+  const double needed = engine["tracks_need_interval_s"].get<double>(), interval = engine["interval_s"].get<double>();
+  const std::string frames = interval > 0 ? fmt::format("its frames are {:.3g} ms apart", 1e3 * interval) : "it has one frame";
+  return fmt::format(
+      "{}, and the camera needs frames at most {:.3g} ms apart, with the numbers and velocities of the beads: let your program write these",
+      frames, 1e3 * needed);
+}
+
 std::filesystem::path tracks_of(const std::filesystem::path& run) {
   const std::filesystem::path file = run / "tracks.h5";
   if (std::filesystem::exists(file)) return file;
+  if (const std::string why = why_not_imported(run); !why.empty())
+    throw UserError(fmt::format("{}: {}", case_of(run).parent_path().string(), why));
   throw UserError(fmt::format("{}: the run followed no bead (it has no tracks.h5); run the case again with --set output.tracks.beads=10",
                               case_of(run).parent_path().string()));
 }

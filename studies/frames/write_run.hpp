@@ -1,0 +1,43 @@
+// The files of a run from frames that were gathered: frames.h5, tracks.h5, series.csv; and what goes into the summary.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "kernel/run/window.hpp"
+#include "studies/frames/gather.hpp"
+#include "studies/frames/turning.hpp"
+
+namespace millscope::frames {
+
+/// Where velocities come from.
+enum class Velocities { files, differences, none };
+
+/// Between two frames a bead is taken to move on the cubic that has the places and velocities of both. What that is off by in an impact
+/// grows with their distance; up to here a virtual camera's noise covers it (studies/calibrate/bead_paths.hpp).
+inline constexpr double kCameraInterval = 0.005;  // s
+
+struct Written {
+  Velocities velocities = Velocities::none;
+  double interval = 0;     ///< s, the usual one; 0: there is one frame
+  double mass = 0;         ///< kg, mean of the charge
+  double count = 0;        ///< beads, mean
+  std::size_t tracks = 0;  ///< beads that are followed in tracks.h5
+  run::Course course;      ///< from `analyze_from` on
+};
+
+struct WriteRequest {
+  const MillFile& mill;
+  Gather& gathered;
+  Turning turning;
+  double analyze_from = 0;  ///< s
+  std::filesystem::path folder;
+};
+
+Written write_run(const WriteRequest& request);
+
+/// What the import says of velocities and of the camera, a sentence each.
+std::vector<std::string> notes_of(const Written& written, const Gather& gathered);
+
+}  // namespace millscope::frames
