@@ -123,6 +123,7 @@ Case parse_case(const std::string& text, const std::string& file, const std::vec
 }
 
 void finish(const Case& c, std::span<const Descriptor* const> descriptors) {
+  refuse_imported(c);
   if (!descriptors.empty()) check_plugins(c, descriptors);
   c.root.finish();
 }

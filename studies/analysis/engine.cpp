@@ -197,7 +197,7 @@ std::vector<std::uint8_t> followers(const std::vector<ResultBlock>& spans) {
 std::vector<std::string> notes_on(const ResultMeta& meta, const BlockRule& rule, double total) {
   std::vector<std::string> notes;
   const std::size_t blocks = meta.blocks.size();
-  const bool one_frame = meta.context.start == meta.context.end;  // whose source says so
+  const bool one_frame = blocks == 1 && meta.context.start == meta.context.end;  // whose source says so
   if (blocks < 10 && !one_frame) {
     const double least = std::max(rule.lengths.least, meta.block_duration);
     notes.push_back(fmt::format(

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "kernel/base/text.hpp"
+#include "kernel/config/imported.hpp"
 #include "kernel/config/values.hpp"
 #include "kernel/config/writer.hpp"
 #include "kernel/output/archive.hpp"
@@ -151,6 +152,7 @@ host::RegistryOptions registry_options(const Options& options) {
 }  // namespace
 
 std::string content_of(const config::Case& c, const host::Registry& registry) {
+  if (config::is_imported(c)) return base::text_of(c.file);  // the mill of a recording; nothing is left to its defaults
   return essence(c, registry, files_of(c, registry)) + text_of(plugins_of(c, registry));
 }
 

@@ -364,7 +364,7 @@ TEST_CASE("analyzers that were read once are created without their document, by 
   }();
   std::vector<analysis::AskedAnalyzer> asked;
   {
-    const config::Node settings = config::parse_document("analyzers:\n  fine: {kind: pept_grid, cells_x: 30}\n  power: {}\n", "a.yaml");
+    const config::Node settings = config::parse_document("analyzers:\n  fine: {kind: slip}\n  power: {}\n", "a.yaml");
     asked = analysis::read_analyzers(settings, true, {}, testing::registry());
   }
   REQUIRE(asked.size() == 2);

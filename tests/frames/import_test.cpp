@@ -317,6 +317,7 @@ TEST_CASE("an imported case holds no physics to run") {
   const config::Case c = config::read_case((scratch / "out/case.resolved.yaml").string());
   CHECK(c.fill.count == 60);
   CHECK(c.contact.law.kind.empty());
+  CHECK_THAT(refusal([&] { config::finish(c, testing::registry().descriptors()); }), Contains("'run.engine' is 'imported'"));
   CHECK_THAT(refusal([&] { run::assemble(c, testing::registry()); }),
              Contains("case.resolved.yaml:4") && Contains("another program moved these beads"));
 }
