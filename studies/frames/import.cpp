@@ -56,6 +56,17 @@ double window_start(const MillFile& mill, Spool& spool) {
   return *mill.analyze_from;
 }
 
+/// What there is to doubt of means over these frames. They can be made better by other frames alone.
+std::vector<run::Doubt> doubts_of(const Json& summary, double omega) {
+  std::vector<run::Doubt> doubts = run::doubts_of(run::soundness_of_summary(summary, omega));
+  for (run::Doubt& doubt : doubts) {
+    if (doubt.name == "short_window") doubt.remedy = "import frames of a longer time";
+    if (doubt.name == "not_steady")
+      doubt.remedy = "leave the start out ('time: {analyze_from: …}' in mill.yaml), or import frames of a later time";
+  }
+  return doubts;
+}
+
 const char* text_of(Velocities velocities) {
   return velocities == Velocities::files ? "files" : velocities == Velocities::differences ? "differences" : "none";
 }
@@ -69,7 +80,7 @@ Json summary_of(const MillFile& mill, const Gather& gathered, const Written& wri
   j["simulated_s"] = written.course.until;
   j["mill_speed_rad_per_s"] = turning.omega;
   if (written.course.centre.size() >= kFewestFrames) j.update(run::means_of(written.course));
-  j["doubts"] = run::doubts_of(run::soundness_of_summary(j, turning.omega));
+  j["doubts"] = doubts_of(j, turning.omega);
   j["engine"] = {{"name", config::kImported},
                  {"version", format_of(mill.files.front())},
                  {"files", mill.files.size()},

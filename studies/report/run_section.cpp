@@ -78,6 +78,9 @@ Json run_section(const fs::path& folder, const host::Registry& registry, const S
   Json section = begun("run", c.name, folder);
   section["state"] = text(state);
   section["summary"] = summary;
+  if (summary.is_object() && summary.contains("engine") && summary["engine"].contains("notes")) {
+    for (const Json& note : summary["engine"]["notes"]) section["notes"].push_back(note);
+  }
   section["case"] = base::text_of(folder / output::kResolvedCase);
   section["series"] = series_json(folder);
   section["progress"] = nullptr;

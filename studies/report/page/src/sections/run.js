@@ -22,7 +22,7 @@ function movieBlock(section, key) {
     trouble.textContent = `The beads cannot be drawn: ${error.message}`;
     trouble.hidden = false;
   });
-  const left = movie.beads_left_out > 0 ? ` ${number(movie.beads_left_out)} more beads are left out, to keep this page small.` : "";
+  const left = movie.beads_left_out > 0 ? ` ${number(movie.beads_left_out)} more beads are left out, to keep this page small${section.summary?.engine?.name === "imported" ? " or because they are not in every frame" : ""}.` : "";
   return block(id, "The mill turning", figure(`${number(movie.beads)} beads at ${movie.frames} instants, without perspective.${left} `
     + "x to the right, y up, z towards you. Drag or use the arrow keys to turn; the cut leaves out what lies nearer to you along the axis.",
     mill.element), trouble);
@@ -34,7 +34,7 @@ function headline({ summary, series, mill, progress, state }) {
   const sense = speed > 0 ? "counter-clockwise" : "clockwise";
   const last = (name) => (series?.[name]?.length ? series[name][series[name].length - 1] : null);
   return [
-    power && ["Power, by the torque", withError(power.torque, power.torque_sem, "W"), "mean ± standard error"],
+    isNumber(power?.torque) && ["Power, by the torque", withError(power.torque, power.torque_sem, "W"), "mean ± standard error"],
     power && ["Power, by the charge's place", withError(power.com, power.com_sem, "W"), "weight × lever arm × speed"],
     power && isNumber(power.dissipation) && ["Power, by the losses", withError(power.dissipation, power.dissipation_sem, "W"), null],
     !summary && ["Power now, by the charge's place", quantity(last("power_com_W"), "W"), "one instant, no mean yet"],
@@ -49,13 +49,14 @@ function headline({ summary, series, mill, progress, state }) {
 }
 
 function sentence({ summary, state, progress }) {
-  if (summary?.power_W && isNumber(summary.power_W.torque)) {
+  const engine = summary?.engine ? ` Another engine moved the beads: ${summary.engine.name === "imported" ? summary.engine.version : summary.engine.name}.` : "";
+  const by = ["torque", "com"].find((name) => isNumber(summary?.power_W?.[name]));
+  if (by) {
     const steady = summary.steady === false ? " The mill is not steady: do not trust the mean." : "";
-    const engine = summary.engine ? ` Another engine moved the beads: ${summary.engine.name}.` : "";
-    return `The mill draws ${withError(summary.power_W.torque, summary.power_W.torque_sem, "W")}.${steady}${engine}`;
+    return `The mill draws ${withError(summary.power_W[by], summary.power_W[`${by}_sem`], "W")}${by === "com" ? ", by the charge's place" : ""}.${steady}${engine}`;
   }
   if (state === "running") return progress ? `The run has come to ${number(progress.time_s, 3)} s of ${number(progress.end_s, 3)} s.` : "The run goes on.";
-  return state === "stopped" ? "The run was stopped before its end: there are no means." : "The run is finished.";
+  return state === "stopped" ? "The run was stopped before its end: there are no means." : `The run is finished.${engine}`;
 }
 
 function provenance(summary, key) {
@@ -66,8 +67,8 @@ function provenance(summary, key) {
     facts([["millscope", from.commit ? `${from.version}, commit ${from.commit}` : from.version, from.compiler], ["Made", moment(from.date_utc), null], ["Machine", from.host, `${from.processor ?? ""}, ${number(from.cores)} cores`],
       summary.engine && ["Engine", summary.engine.version, isNumber(summary.engine.ranks) ? `${number(summary.engine.ranks)} processes` : null],
       summary.state_hash && ["State hash", element("code", null, summary.state_hash), "equal where two runs are equal to the bit"], seed && ["Seed", seed[1], null],
-      ["Time step", quantity(summary.dt_s, "s"), `${percent(summary.dt_rayleigh_fraction)} of the Rayleigh time`],
-      ["Stiffness", `× ${number(summary.stiffness_factor)}`, "of the real materials"],
+      isNumber(summary.dt_s) && ["Time step", quantity(summary.dt_s, "s"), `${percent(summary.dt_rayleigh_fraction)} of the Rayleigh time`],
+      isNumber(summary.stiffness_factor) && ["Stiffness", `× ${number(summary.stiffness_factor)}`, "of the real materials"],
       isNumber(summary.wall_s) && ["Computed in", `${number(summary.wall_s, 3)} s`,
         isNumber(summary.particle_steps_per_s) ? `${number(summary.particle_steps_per_s / 1e6, 3)} million bead steps per second` : null]]),
     element("p", null, "Command: ", element("code", null, (from.command_line ?? []).join(" "))),
