@@ -30,11 +30,12 @@ OpenedSource open_frames(const SourceRequest& request, MillOfCase mill) {
   return opened;
 }
 
-/// What an import has to say of its frames (docs/import.md).
-std::vector<std::string> notes_of_import(const fs::path& run) {
+/// What an import has to say of its frames (docs/import.md): notes, and whether a camera can see them.
+void know_import(const fs::path& run, OpenedSource& opened) {
   const nlohmann::ordered_json summary = output::read_json(run / "summary.json");
-  if (!summary.is_object() || !summary.contains("engine") || !summary["engine"].contains("notes")) return {};
-  return summary["engine"]["notes"].get<std::vector<std::string>>();
+  if (!summary.is_object() || !summary.contains("engine") || !summary["engine"].contains("notes")) return;
+  for (const auto& note : summary["engine"]["notes"]) opened.meta.notes.push_back(note.get<std::string>());
+  if (!fs::exists(run / "tracks.h5")) opened.meta.source = kCoarseFrames;
 }
 
 OpenedSource open_simulation(const SourceRequest& request, const host::Registry& registry) {
@@ -57,7 +58,7 @@ OpenedSource open_simulation(const SourceRequest& request, const host::Registry&
   if (request.tracers.empty() && follow)
     opened.meta.notes.push_back("there is no frames.h5: the beads of tracks.h5 are followed instead of looking at all");
   opened.meta.notes.insert(opened.meta.notes.end(), notes.begin(), notes.end());
-  for (std::string& note : notes_of_import(request.path)) opened.meta.notes.push_back(std::move(note));
+  know_import(request.path, opened);
   opened.meta.name = name;
   opened.meta.case_file = fs::absolute(case_file).lexically_normal().string();
   opened.meta.inputs.push_back({case_file.string(), file_hash(case_file)});

@@ -83,8 +83,15 @@ struct BlockLengths {
   bool operator==(const BlockLengths&) const = default;
 };
 
+/// Frames are near enough in time for a virtual camera up to here, s: on the cubic with the places and velocities of two of them an impact
+/// puts a bead some 0.1 mm aside, where a camera leaves 0.5 mm (studies/calibrate/bead_paths.hpp).
+inline constexpr double kCameraInterval = 0.005;
+
+/// Source of results: imported frames that are farther apart.
+inline constexpr const char* kCoarseFrames = "coarse frames";
+
 struct ResultMeta {
-  std::string source;       ///< "simulation", "tracks" or "recording"
+  std::string source;       ///< "simulation", "tracks", "recording", or kCoarseFrames
   std::string description;  ///< file, beads, seconds
   std::string name;         ///< of the case or recording
   std::string case_file;    ///< case with the mill's geometry (to draw the shell); empty: unknown

@@ -12,10 +12,11 @@
 #include "kernel/output/track_reader.hpp"
 #include "millscope/observation.hpp"
 #include "studies/analysis/mill.hpp"
+#include "studies/analysis/results.hpp"
 
 namespace millscope::calibrate {
 
-inline constexpr double kFrameStep = 0.005;  ///< s, between the frames that a calibration asks for
+inline constexpr double kFrameStep = analysis::kCameraInterval;  ///< s, between the frames that a calibration asks for
 
 /// Where a recorded bead was along the axis, and the rig's middle, m.
 struct AxialPlace {

@@ -37,6 +37,24 @@ void require_known(const std::vector<std::string>& list, const char* option, con
   }
 }
 
+/// One side a recording, the other frames that cannot pass through its camera.
+bool lacks_camera(const analysis::ResultMeta& a, const analysis::ResultMeta& b) {
+  return (a.source == "recording" && b.source == analysis::kCoarseFrames) ||
+         (b.source == "recording" && a.source == analysis::kCoarseFrames);
+}
+
+/// What noise and losses of a camera change least: where beads are, and their mean velocities (docs/analyzers.md, pept_grid).
+bool stands_without_camera(const analysis::ResultArray& array) {
+  return array.name == "occupancy" || array.name == "angular_velocity" || array.name.starts_with("velocity_");
+}
+
+std::string camera_remedy() {
+  return fmt::format(
+      "let your program write frames of numbered beads with velocities every {:.3g} ms, and lay the recording's camera over them "
+      "('millscope pept synthesize --like')",
+      1e3 * analysis::kCameraInterval);
+}
+
 std::string shape_text(const analysis::ResultArray& array) {
   return array.shape.empty() ? "one number" : fmt::format("{} values", fmt::join(array.shape, " × "));
 }
@@ -88,6 +106,7 @@ void require_comparable(const analysis::ResultSet& a, const analysis::ResultSet&
 }
 
 const char* kind_text(const std::string& source) {
+  if (source == analysis::kCoarseFrames) return "imported frames, far apart in time";
   return source == "recording" ? "a recording" : source == "tracks" ? "followed beads of a simulation" : "all beads of a simulation";
 }
 
@@ -114,12 +133,17 @@ std::vector<ResultPair> pair_results(const analysis::ResultSet& a, const analysi
   require_known(options.only, "only", a, b);
   require_known(options.without, "without", a, b);
   std::vector<ResultPair> pairs;
+  const bool blind = lacks_camera(a.meta, b.meta);
   const auto find = [](const analysis::ResultSet& results, const analysis::ResultArray& like) -> std::size_t {
     const auto same = [&](const analysis::ResultArray& x) { return x.analyzer == like.analyzer && x.name == like.name; };
     return std::find_if(results.arrays.begin(), results.arrays.end(), same) - results.arrays.begin();
   };
   for (std::size_t i = 0; i < a.arrays.size(); ++i) {
     if (!is_chosen(options, a.arrays[i])) continue;
+    if (blind && !stands_without_camera(a.arrays[i])) {
+      alone.push_back(full_name(a.arrays[i]) + ": needs the recording's camera, for which the frames are too far apart");
+      continue;
+    }
     const std::size_t j = find(b, a.arrays[i]);
     if (j == b.arrays.size()) {
       alone.push_back(full_name(a.arrays[i]) + ": only in A");
@@ -131,6 +155,7 @@ std::vector<ResultPair> pair_results(const analysis::ResultSet& a, const analysi
   for (const analysis::ResultArray& array : b.arrays) {
     if (is_chosen(options, array) && find(a, array) == a.arrays.size()) alone.push_back(full_name(array) + ": only in B");
   }
+  if (pairs.empty() && blind) throw UserError("what was asked for needs the recording's camera: " + camera_remedy());
   if (pairs.empty()) throw UserError("the two results have nothing in common that was asked for; analyse both with the same analyzers");
   return pairs;
 }
@@ -143,7 +168,11 @@ std::vector<std::string> condition_notes(const analysis::ResultSet& a, const ana
   note_number(notes, "the mill's radius", 1e3 * of_a.mill_radius, 1e3 * of_b.mill_radius, "mm");
   note_number(notes, "the mass of the charge", of_a.charge_mass, of_b.charge_mass, "kg");
   note_number(notes, "the mean bead radius", 1e3 * of_a.bead_radius, 1e3 * of_b.bead_radius, "mm");
-  if (a.meta.source != b.meta.source) {
+  if (lacks_camera(a.meta, b.meta)) {
+    notes.push_back(
+        "the frames are too far apart for the recording's camera: maps of occupancy and velocity alone are compared; for the rest " +
+        camera_remedy());
+  } else if (a.meta.source != b.meta.source) {
     notes.push_back(
         fmt::format("A is {}, B is {}: a camera blurs and loses beads; put the simulation through it ('millscope pept synthesize') for a "
                     "fair comparison",

@@ -13,6 +13,7 @@
 #include "kernel/output/summary.hpp"
 #include "kernel/run/soundness.hpp"
 #include "studies/analysis/mill.hpp"
+#include "studies/analysis/results.hpp"
 #include "studies/frames/case_text.hpp"
 #include "studies/frames/write_run.hpp"
 
@@ -86,7 +87,7 @@ Json summary_of(const MillFile& mill, const Gather& gathered, const Written& wri
                  {"files", mill.files.size()},
                  {"interval_s", written.interval},
                  {"velocities", text_of(written.velocities)}};
-  j["engine"]["tracks_need_interval_s"] = kCameraInterval;
+  j["engine"]["tracks_need_interval_s"] = analysis::kCameraInterval;
   if (const auto found = gathered.walls().turning()) j["engine"]["shell_turns_rad_per_s"] = *found;
   return j;
 }

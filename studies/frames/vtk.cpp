@@ -142,10 +142,13 @@ bool looks_reversed(const char* bytes, std::size_t count, NumberType type, bool 
   return share(reversed) < 0.9 && share(!reversed) > 0.99;
 }
 
-void take_field(VtkPicture& picture, const VtkArray& array) {
-  std::string name = array.name;
+bool is_time_field(std::string name) {
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (array.values.size() == 1 && (name == "timevalue" || name == "time")) picture.time = array.values[0];
+  return name == "timevalue" || name == "time";
+}
+
+void take_field(VtkPicture& picture, const VtkArray& array) {
+  if (array.values.size() == 1 && is_time_field(array.name)) picture.time = array.values[0];
 }
 
 void to_frame(const VtkPicture& picture, const std::filesystem::path& file, const ReadOptions& options, Frame& frame) {

@@ -37,7 +37,9 @@ struct VtkPicture {
   std::optional<double> time;    ///< of the field data, s
 };
 
-/// Adds an array of the field data: TimeValue (VTK, ParaView), TIME, time.
+/// TimeValue (VTK, ParaView), TIME, time.
+bool is_time_field(std::string name);
+/// Adds an array of the field data.
 void take_field(VtkPicture& picture, const VtkArray& array);
 
 /// Throws base::UserError: no point, arrays of other lengths.

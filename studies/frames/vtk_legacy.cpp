@@ -61,7 +61,7 @@ class Legacy : public FrameStream {
     if (upper(word("DATASET")) != "DATASET") in_.fail("DATASET is expected here; the file is damaged");
     const std::string kind = upper(word("the kind of the data"));
     if (kind != "POLYDATA" && kind != "UNSTRUCTURED_GRID")
-      in_.fail(fmt::format("holds {}; beads are the points of POLYDATA or UNSTRUCTURED_GRID: write them as such", kind));
+      in_.fail(fmt::format("holds {}; beads are the points of POLYDATA or UNSTRUCTURED_GRID: name such files alone in 'files'", kind));
   }
 
   std::string word(const char* what) {

@@ -111,7 +111,7 @@ class Xml : public FrameStream {
                        kind.starts_with('P') ? "; save the parts of all processes as one file" : ""));
     VtkPicture picture;
     for (const pugi::xml_node array : data.child("FieldData").children("DataArray")) {
-      if (value_of(array, "type") != "String") take_field(picture, read_array(array, 1, 1));
+      if (is_time_field(value_of(array, "Name"))) take_field(picture, read_array(array, array.attribute("NumberOfTuples").as_ullong(1), 1));
     }
     for (const pugi::xml_node piece : data.children("Piece")) add_piece(piece, picture);
     to_frame(picture, file_, options_, frame);

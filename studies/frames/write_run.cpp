@@ -10,6 +10,7 @@
 #include "kernel/output/frames.hpp"
 #include "kernel/output/series.hpp"
 #include "kernel/output/tracks.hpp"
+#include "studies/analysis/results.hpp"
 
 namespace millscope::frames {
 namespace {
@@ -102,7 +103,8 @@ class Writer {
   /// The beads that are in every frame, where frames are near enough.
   void open_tracks() {
     const std::size_t frames = r_.gathered.spool().size();
-    if (w_.velocities == Velocities::none || frames < 4 || w_.interval > kSlack * kCameraInterval || !r_.gathered.has_ids()) return;
+    if (w_.velocities == Velocities::none || frames < 4 || w_.interval > kSlack * analysis::kCameraInterval || !r_.gathered.has_ids())
+      return;
     std::vector<std::size_t> always;
     for (std::size_t b = 0; b < census_.beads().size(); ++b) {
       if (census_.beads()[b].frames == frames) always.push_back(b);
@@ -254,6 +256,10 @@ std::vector<std::string> notes_of(const Written& w, const Gather& gathered) {
     notes.push_back(fmt::format(
         "the files hold no velocities, {}: maps of velocity and all that needs them is left out; let the program write velocities", why));
   }
+  if (w.tracks == 0)
+    notes.push_back(
+        fmt::format("no virtual camera can be laid over these frames ({}): it needs numbered beads with velocities every {:.3g} ms",
+                    w.interval > 0 ? fmt::format("{:.3g} ms apart", 1e3 * w.interval) : "there is one", 1e3 * analysis::kCameraInterval));
   return notes;
 }
 

@@ -14,10 +14,6 @@ namespace millscope::frames {
 /// Where velocities come from.
 enum class Velocities { files, differences, none };
 
-/// Between two frames a bead is taken to move on the cubic that has the places and velocities of both. What that is off by in an impact
-/// grows with their distance; up to here a virtual camera's noise covers it (studies/calibrate/bead_paths.hpp).
-inline constexpr double kCameraInterval = 0.005;  // s
-
 struct Written {
   Velocities velocities = Velocities::none;
   double interval = 0;     ///< s, the usual one; 0: there is one frame

@@ -166,7 +166,25 @@ TEST_CASE("other grids and units are refused, with the remedy") {
   CHECK(refusal([&] { compare::compare(a, b, {}); }).find("distributions.x_percent: the grids differ") == 0);
   b.meta.source = "recording";  // whose mill was found a hundredth larger: its size is what differs, not a setting
   b.meta.context.mill_radius = 1.01 * a.meta.context.mill_radius;
-  CHECK(refusal([&] { compare::compare(a, b, {}); }).find("state it for both, 'condition: {mill_diameter: 0.3030 m}'") != std::string::npos);
+  CHECK(refusal([&] { compare::compare(a, b, {}); }).find("state it for both, 'condition: {mill_diameter: 0.3030 m}'") !=
+        std::string::npos);
+}
+
+TEST_CASE("frames too far apart for the recording's camera are compared where no camera is needed") {
+  const analysis::ResultSet a = make_results({.seed = 1});
+  analysis::ResultSet b = make_results({.seed = 2});
+  b.meta.source = analysis::kCoarseFrames;
+  const compare::Comparison c = compare::compare(a, b, {});
+  REQUIRE_FALSE(c.observables.empty());
+  for (const compare::ComparedObservable& o : c.observables) CHECK(o.name.starts_with("pept_grid.velocity_x"));
+  CHECK(mentions(c.not_judged, "power.power_gravity: needs the recording's camera"));
+  CHECK(mentions(c.notes, "every 5 ms"));
+  CHECK(refusal([&] { compare::compare(b, a, {.only = {"power"}}); }).find("needs the recording's camera: let your program write frames") !=
+        std::string::npos);
+  // Against another simulation nothing is missing.
+  analysis::ResultSet simulated = a;
+  simulated.meta.source = "simulation";
+  CHECK_FALSE(mentions(compare::compare(simulated, b, {}).not_judged, "needs the recording's camera"));
 }
 
 TEST_CASE("what is not there cannot be chosen") {

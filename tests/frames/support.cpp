@@ -232,7 +232,8 @@ std::string xml_vtk(const Charge& c, Coding coding, bool packed, bool grid, bool
       big ? "BigEndian" : "LittleEndian", wide ? "UInt64" : "UInt32", packed ? " compressor=\"vtkZLibDataCompressor\"" : "", kind);
   if (!time.empty())
     text += fmt::format(
-        "<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray></FieldData>\n",
+        "<FieldData><DataArray type=\"Int32\" Name=\"other\" NumberOfTuples=\"3\" format=\"ascii\">1 2 3</DataArray><DataArray "
+        "type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray></FieldData>\n",
         time);
   text += fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfCells=\"0\">\n<PointData>\n", c.size());
   text += longs("id", doubles(c.id)) + floats("Velocity", 3, flat(c.velocity)) + floats("omega", 3, flat(c.spin)) +

@@ -66,7 +66,7 @@ export function analysis(section, key) {
   const curves = results.filter((result) => !isMap(result) && isCurve(result));
   const { context = {} } = meta;
   return {
-    kind: meta.source === "simulation" ? "Analysis of a simulation" : "Analysis of a recording", sentence: meta.description,
+    kind: ["simulation", "coarse frames"].includes(meta.source) ? "Analysis of a simulation" : "Analysis of a recording", sentence: meta.description,
     headline: [fact("Power, by the charge's place", "power", "power_gravity"), fact("Shoulder", "charge_features", "departure_shoulder"), fact("Toe of the bulk", "charge_features", "bulk_toe"),
       fact("Centre of circulation", "charge_features", "centre_of_circulation_radius"), fact("Free surface", "charge_features", "free_surface_angle"),
       isNumber(context.omega) && ["Speed", quantity(Math.abs(context.omega), "rad/s"), context.omega > 0 ? "counter-clockwise" : "clockwise"],
