@@ -1,4 +1,4 @@
-// From what the user names to a source of blocks: a directory of `millscope run`, a recording.yaml or a bare file of locations.
+// From what the user names to a source of blocks: a directory of `millscope run` or `import`, a recording.yaml or a bare file of locations.
 #pragma once
 
 #include <filesystem>
