@@ -110,7 +110,9 @@ AnalyzerInstance create(const AskedAnalyzer& asked, const AnalyzerContext& conte
   if (lacking != 0) {
     const std::string remedy = fmt::format("analyzer '{}' needs {}, which {} lacks; leave it out{}", asked.name, field_names(lacking),
                                            context.is_recording != 0 ? "a recording" : "this output",
-                                           (lacking & kHasImpacts) != 0 ? ", or run the case again with this version" : "");
+                                           (lacking & kHasImpacts) != 0 && (context.has & kHasWallWork) != 0
+                                               ? ", or run the case again with this version"  // other engines tell neither
+                                               : "");
     if (asked.where.file.empty()) throw UserError(remedy);
     throw UserError(asked.where, remedy);
   }

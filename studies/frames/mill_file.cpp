@@ -172,6 +172,10 @@ std::optional<double> ByType::value(long long type) const {
 MillFile read_mill_file(const std::filesystem::path& file) {
   MillFile mill;
   mill.file = file.string();
+  if (file.extension() != ".yaml" && file.extension() != ".yml")
+    throw base::UserError(
+        fmt::format("{}: is no .yaml; write one that names this file and says its mill: 'files: {}', axis, gravity, mill (docs/import.md)",
+                    mill.file, file.filename().string()));
   const Node root = mill.root = config::load_document(mill.file);
   root.expect({"schema_version", "name", "files", "length_unit", "velocity_unit", "axis", "gravity", "mill", "beads", "time"});
   if (const auto version = root.find("schema_version")) {

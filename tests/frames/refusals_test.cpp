@@ -153,6 +153,8 @@ TEST_CASE("a mill that is not the one of the frames") {
 
 TEST_CASE("mill.yaml is read strictly") {
   const Scratch scratch;
+  CHECK_THAT(refusal([&] { frames::import_frames(scratch / "beads.vtk.gz", scratch / "out", testing::registry(), {}); }),
+             Contains("'files: beads.vtk.gz', axis, gravity, mill"));
   const std::string whole = dump(charge(), 1), beads = "beads: {density: 2500}\n";
   CHECK_THAT(not_imported(scratch, whole, beads + "colour: red\n"), Contains("mill.yaml:6") && Contains("colour"));
   CHECK_THAT(not_imported(scratch, whole, beads + "length_unit: kg\n"), Contains("no unit like m"));
