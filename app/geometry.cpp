@@ -40,7 +40,7 @@ std::vector<Named> load(const Options& options, const host::Registry& registry) 
   std::vector<Named> all;
   const bool asks = !host::units_of(host::reader_of(file, registry)).empty();
   const std::string unit = options.has("unit") ? options.text("unit") : asks ? "mm" : "";
-  all.push_back({file, host::open_geometry({file, unit, false}, registry, "command line")});
+  all.push_back({file, host::open_geometry({file, unit, "--unit", false}, registry)});
   return all;
 }
 

@@ -39,7 +39,7 @@ step "run" millscope run mill/case.yaml -o first
 step "analyze" millscope analyze first -o first-maps
 step "report" "millscope report first first-maps -o first.html && test \$(stat -c %s first.html) -gt 100000"
 step "install millscope-step" "apt-get install -y --no-install-recommends ./millscope-step_*.deb"
-step "new from STEP" millscope new stepped --liner liner.step --yes
+step "new from STEP" millscope new stepped --liner liner.step --bead-size "\"10 mm\"" --yes
 step "run from STEP" millscope run stepped/case.yaml -o second
 step "install python3-millscope" "apt-get install -y --no-install-recommends ./python3-millscope_*.deb"
 step "read from Python" "python3 -c 'import millscope; print(millscope.open_run(\"first\").power)'"

@@ -52,19 +52,19 @@ const Loaded& reader_of(const std::string& file, const Registry& registry) {
 
 std::vector<std::string> units_of(const Loaded& reader) { return choices_of(reader, "unit"); }
 
-GeometryObject open_geometry(const GeometryFile& what, const Registry& registry, const std::string& where) {
+GeometryObject open_geometry(const GeometryFile& what, const Registry& registry) {
   const Loaded& reader = reader_of(what.file, registry);
   const std::vector<std::string> units = units_of(reader);
   if (units.empty() && !what.unit.empty())
-    throw UserError(fmt::format("{}: '{}' says its unit itself; leave the unit '{}' out", where, what.file, what.unit));
+    throw UserError(fmt::format("{} {}: {} says its unit itself; leave {} out", what.unit_option, what.unit, what.file, what.unit_option));
   if (!units.empty() && std::find(units.begin(), units.end(), what.unit) == units.end())
-    throw UserError(fmt::format("{}: the unit '{}' is not known; {}", where, what.unit, base::suggestion(what.unit, units)));
+    throw UserError(fmt::format("{} '{}' is not known; {}", what.unit_option, what.unit, base::suggestion(what.unit, units)));
   nlohmann::json values = {{"file", what.file}};
   if (!units.empty()) values["unit"] = what.unit;
   if (what.turned) values.update({{"axis", "auto"}, {"centre", true}});
   // JSON's quoting is also YAML's.
-  const config::Node node = config::parse_document(values.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), where);
-  return GeometryObject::create(reader, config::resolve(*reader.descriptor, node, Scope::instance).view(), {where, 0});
+  const config::Node node = config::parse_document(values.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), what.file);
+  return GeometryObject::create(reader, config::resolve(*reader.descriptor, node, Scope::instance).view(), {"", 0});
 }
 
 }  // namespace millscope::host

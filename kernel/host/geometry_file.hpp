@@ -15,11 +15,12 @@ const Loaded& reader_of(const std::string& file, const Registry& registry);
 std::vector<std::string> units_of(const Loaded& reader);
 
 struct GeometryFile {
-  std::string file, unit;  ///< unit "": not given
-  bool turned = false;     ///< its axis is found and brought to z through the origin
+  std::string file, unit;   ///< unit "": not given
+  std::string unit_option;  ///< what the user gives the unit by, for messages: "--unit"
+  bool turned = false;      ///< its axis is found and brought to z through the origin
 };
 
-/// Throws UserError at `where`, also for a unit where the file says its own.
-GeometryObject open_geometry(const GeometryFile& what, const Registry& registry, const std::string& where);
+/// Throws UserError, also for a unit where the file says its own.
+GeometryObject open_geometry(const GeometryFile& what, const Registry& registry);
 
 }  // namespace millscope::host

@@ -41,13 +41,13 @@ Liner look_at_liner(const std::string& file, const std::string& unit, const host
   liner.file = file;
   liner.unit = unit;
   liner.kind = host::reader_of(file, registry).name();
-  host::GeometryObject mesh = host::open_geometry({file, unit, false}, registry, "--liner");
+  host::GeometryObject mesh = host::open_geometry({file, unit, "--liner-unit", false}, registry);
   Interior in{};
   mesh.table().interior(mesh.self(), &in);
   if (in.is_cylinder == 0) {
     const Interior box = in;
     try {
-      mesh = host::open_geometry({file, unit, true}, registry, "--liner");
+      mesh = host::open_geometry({file, unit, "--liner-unit", true}, registry);
       mesh.table().interior(mesh.self(), &in);
     } catch (const UserError&) {  // it could be read a moment ago: no axis is found
     }

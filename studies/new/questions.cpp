@@ -74,16 +74,9 @@ void ask_for_liner(const Answer& answer, Mill& m, const host::Registry& registry
   answer({"liner", "file with your liner (STEP, STL, OBJ, PLY, 3MF, …), empty for lifters of a simple shape", ""},
          [&](const std::string& text) { file = text; });
   if (file.empty()) return;
-  const std::vector<std::string> units = host::units_of(host::reader_of(file, registry));
-  if (units.empty()) {  // the file says it
-    m.liner = look_at_liner(file, "", registry);
-    return;
-  }
-  answer({"liner-unit", "unit in which it was drawn", "mm"}, [&](const std::string& unit) {
-    if (std::find(units.begin(), units.end(), unit) == units.end())
-      throw UserError(fmt::format("--liner-unit '{}' is not known; {}", unit, base::suggestion(unit, units)));
-    m.liner = look_at_liner(file, unit, registry);
-  });
+  const auto look = [&](const std::string& unit) { m.liner = look_at_liner(file, unit, registry); };
+  if (host::units_of(host::reader_of(file, registry)).empty()) return look("");  // the file says it
+  answer({"liner-unit", "unit in which it was drawn", "mm"}, look);
 }
 
 void ask_for_size(const Answer& answer, Mill& m) {
