@@ -37,15 +37,16 @@ class FrameArray:
         return self.shape[0]
 
     def __getitem__(self, index: Any) -> numpy.ndarray:
-        first, *others = index if isinstance(index, tuple) else (index,)
+        """What numpy would give of the whole array; only the frames between the first and the last that are asked for are read."""
+        given = index if isinstance(index, tuple) else (index,)
+        first, *others = given if given and given[0] is not None and given[0] is not Ellipsis else (slice(None), *given)
+        chosen = numpy.arange(self.shape[0])[first]  # frames from the end count from the last complete one
+        low, high = (numpy.min(chosen), numpy.max(chosen) + 1) if numpy.size(chosen) else (0, 0)
         with self._frames.open() as file:
-            chosen = numpy.arange(self.shape[0])[first]  # frames from the end count from the last complete one
-            rows = slice(None) if numpy.ndim(chosen) else 0
-            if numpy.size(chosen) == 0:
-                return numpy.empty((0, *self.shape[1:]))[(rows, *others)]
-            low, high = numpy.min(chosen), numpy.max(chosen)
-            block = file[self._name][low:high + 1]
-            return block[(chosen - low, *others)]
+            block = file[self._name][low:high]
+        if len(others) == len(given):  # it began with '...' or a new axis: all frames
+            return block[index]
+        return block[(slice(None, None, first.step) if isinstance(first, slice) else chosen - low, *others)]
 
     def __array__(self, dtype: Any = None) -> numpy.ndarray:
         return numpy.asarray(self[:], dtype)
@@ -179,7 +180,9 @@ class Run:
 
     @property
     def power(self) -> pandas.DataFrame:
-        """Three rows, torque, com and dissipation: power_W and its standard error sem_W. In a steady mill they are equal.
+        """Rows torque, com and dissipation: power_W and its standard error sem_W. In a steady mill they are equal.
+
+        Of beads that another program moved only the rows that it tells.
 
         Error where the window was too short for means.
         """

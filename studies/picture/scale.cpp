@@ -103,7 +103,8 @@ std::string significant_text(double value, int digits) {
 Ticks even_ticks(double low, double high, int most) {
   Ticks ticks;
   const double span = high - low;
-  if (!(span > 0)) return ticks;
+  // A map that is constant but for rounding has no ticks; nor could multiples of so small a step be told apart.
+  if (!(span > 1e-12 * std::max(std::abs(low), std::abs(high))) || !std::isfinite(span)) return ticks;
   double step = std::pow(10, std::floor(std::log10(span)) - 2);
   for (int round = 0; span / step > most; ++round) step *= round % 3 == 1 ? 2.5 : 2;  // 1, 2, 5, 10
   for (double n = std::ceil(low / step - 1e-9); n * step <= high + 1e-9 * step; n += 1) {

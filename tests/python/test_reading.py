@@ -40,7 +40,9 @@ class Reading(FolderTest):
         self.assertEqual((len(frames), frames.position_m.shape), (len(time), position.shape))
         self.assertEqual((frames.position_m.unit, frames.velocity_m_per_s.unit, frames.spin_rad_per_s.unit), ("m", "m/s", "rad/s"))
         numpy.testing.assert_array_equal(frames.time_s, time)
-        for index in (-1, 0, slice(2, 5), slice(None, None, -7), [1, 3], (-1, 5), (slice(1, 4), slice(None), 0), (3, slice(None), slice(0, 2)), slice(4, 4)):
+        for index in (-1, 0, slice(2, 5), slice(None, None, -7), [1, 3], (-1, 5), (slice(1, 4), slice(None), 0), (3, slice(None), slice(0, 2)), slice(4, 4),
+                      (..., 0), ..., (slice(0, 3), [1, 2, 3]), (slice(0, 5), numpy.arange(position.shape[1]) == 4), ([0, 2], [1, 5]), (3, [1, 5]),
+                      (slice(8, 2, -2), ..., 1), (numpy.arange(len(time)) % 3 == 0, ..., 0), (None, 2), (slice(2, 4), None, 3)):
             numpy.testing.assert_array_equal(frames.position_m[index], position[index], str(index))
         numpy.testing.assert_array_equal(numpy.asarray(frames.velocity_m_per_s), velocity)
         with self.assertRaises(IndexError):
