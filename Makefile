@@ -74,7 +74,9 @@ packages:
 packages-test:
 	@tools/install_packages.sh test
 
-# The command, the plugins and what the command says of itself (share/), no tests; a build directory that has tests keeps them.
+# The command, the plugins and what the command says of itself (share/), no tests; a build directory that has tests keeps them. It is configured
+# each time: a library that was installed since then is found.
 binary: packages
-	@test -f $(BUILD)/build.ninja || cmake --preset release -DMILLSCOPE_TESTS=OFF $(CMAKE_OPTIONS)
+	@if test -f $(BUILD)/build.ninja; then cmake --preset release $(CMAKE_OPTIONS) >/dev/null; \
+	else cmake --preset release -DMILLSCOPE_TESTS=OFF $(CMAKE_OPTIONS); fi
 	cmake --build --preset release -j $(JOBS) --target millscope millscope_share plugins/all geometry/all

@@ -40,7 +40,7 @@ void add_new_options(Options& options) {
   value("lifter-angle", "ANGLE", "between face and base (default: \"60 deg\")");
   value("bead-material", "NAME", "of the library, or a YAML file with one (default: glass)");
   value("liner-material", "NAME", "of the library, or a YAML file with one (default: hdpe)");
-  value("seconds", "TIME", "how long to simulate (default: four turns)");
+  value("seconds", "TIME", "how long to simulate (default: four turns and a half)");
   if (table_being_written() != nullptr) {  // the library is looked up only where its names are wanted
     options.choices("bead-material", new_mill::library_materials());
     options.choices("liner-material", new_mill::library_materials());

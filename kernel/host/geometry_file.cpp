@@ -46,8 +46,9 @@ const Loaded& reader_of(const std::string& file, const Registry& registry) {
     }
   }
   throw UserError(
-      fmt::format("{}: no plugin reads '.{}' files; read are: {}; STEP and IGES need millscope-step; export the body in one of these", file,
-                  extension, known));
+      fmt::format("{}: no plugin reads '.{}' files; read are: {}; STEP and IGES need OpenCASCADE (docs/importing_a_liner.md); export the "
+                  "body in one of these",
+                  file, extension, known));
 }
 
 std::vector<std::string> units_of(const Loaded& reader) { return choices_of(reader, "unit"); }

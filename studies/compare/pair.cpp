@@ -89,6 +89,21 @@ void require_same_axis(const analysis::ResultArray& array, const analysis::Resul
                                 range_text(*b), remedy));
 }
 
+/// Times up to what was analysed, of which one side has more: no setting makes them alike. "" where there are none such.
+std::string longer_in_one(const analysis::ResultSet& a, const analysis::ResultSet& b, const ResultPair& pair) {
+  const analysis::ResultArray &of_a = a.arrays[pair.a], &of_b = b.arrays[pair.b];
+  if (of_a.shape.size() != of_b.shape.size()) return {};
+  for (std::size_t d = 0; d < of_a.shape.size(); ++d) {
+    const analysis::ResultArray *x = a.axis(of_a, d), *y = b.axis(of_b, d);
+    if (x == nullptr || y == nullptr || x->unit != "s" || y->unit != "s") continue;
+    const double last_x = x->value.back(), last_y = y->value.back();
+    if (std::abs(last_x - last_y) > kSameGrid * std::max(last_x, last_y))
+      return fmt::format("its times end with what was analysed, at {} s in A and {} s in B", picture::significant_text(last_x, 4),
+                         picture::significant_text(last_y, 4));
+  }
+  return {};
+}
+
 void require_comparable(const analysis::ResultSet& a, const analysis::ResultSet& b, const ResultPair& pair) {
   const analysis::ResultArray &of_a = a.arrays[pair.a], &of_b = b.arrays[pair.b];
   if (of_a.unit != of_b.unit) {
@@ -147,6 +162,11 @@ std::vector<ResultPair> pair_results(const analysis::ResultSet& a, const analysi
     const std::size_t j = find(b, a.arrays[i]);
     if (j == b.arrays.size()) {
       alone.push_back(full_name(a.arrays[i]) + ": only in A");
+      continue;
+    }
+    const std::string longer = longer_in_one(a, b, {i, j});
+    if (!longer.empty()) {
+      alone.push_back(full_name(a.arrays[i]) + ": " + longer);
       continue;
     }
     pairs.push_back({i, j});

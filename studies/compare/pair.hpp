@@ -15,7 +15,8 @@ struct ResultPair {
 /// Whether a pair says how much data there are, or how sure something is: it differs between any two results of unequal length.
 bool is_bookkeeping(const analysis::ResultSet& a, const analysis::ResultSet& b, const ResultPair& pair);
 
-/// Pairs results of the same analyzer and name. `alone` receives those that only one has. Throws base::UserError for other units, shapes
+/// Pairs results of the same analyzer and name. `alone` receives those that only one has, and those over times that one
+/// has more of. Throws base::UserError for other units, shapes
 /// or axes, with the remedy; not for bookkeeping.
 std::vector<ResultPair> pair_results(const analysis::ResultSet& a, const analysis::ResultSet& b, const CompareOptions& options,
                                      std::vector<std::string>& alone);

@@ -41,7 +41,7 @@ double round_up(double x) {
 
 double critical_speed(double diameter, double bead) { return 42.3 / std::sqrt(diameter - bead) * 2 * std::numbers::pi / 60; }
 
-double usual_seconds(double omega) { return 0.5 * std::ceil(2 * 4 * 2 * std::numbers::pi / omega); }
+double usual_seconds(double omega) { return 0.5 * std::ceil(2 * 4.5 * 2 * std::numbers::pi / omega); }
 
 Choices choose(const Mill& m) {
   Choices c;
@@ -56,7 +56,7 @@ Choices choose(const Mill& m) {
   }
   // Beads are put on a loose lattice: the topmost falls through half of the mill at most, and the bed comes to rest.
   c.settle = std::max(0.3, 0.05 * std::ceil(1.2 * std::sqrt(2 * m.diameter.si / kGravity) / 0.05 - 1e-9));
-  c.analyze_from = std::round(0.6 * m.seconds.si * 1000) / 1000;
+  c.analyze_from = std::round(0.55 * m.seconds.si * 1000) / 1000;  // of 4.5 turns the last two, which a run does not doubt
   const double turn = 2 * std::numbers::pi / m.omega, beads = static_cast<double>(c.beads);
   c.series_every = std::min(round_up(turn / 200), m.seconds.si);
   c.frames_every = round_up(std::max(turn / 200, (m.seconds.si - c.analyze_from) * beads * kFrameBytes / kMostBytes));

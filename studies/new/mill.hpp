@@ -67,7 +67,7 @@ inline constexpr double kPorosity = 0.37;
 
 /// 42.3/√(D − d) rpm, in rad/s.
 double critical_speed(double diameter, double bead);
-/// Seconds for four turns, rounded up to half a second.
+/// Seconds for four turns and a half, rounded up to half a second.
 double usual_seconds(double omega);
 Choices choose(const Mill& mill);
 /// What will go wrong, or be of little use: a sentence each.

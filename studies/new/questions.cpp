@@ -71,11 +71,17 @@ void hold_to_liner(const char* option, const Value& given, double of_mesh, const
 
 void ask_for_liner(const Answer& answer, Mill& m, const host::Registry& registry) {
   std::string file;
+  bool asks_unit = false;
   answer({"liner", "file with your liner (STEP, STL, OBJ, PLY, 3MF, …), empty for lifters of a simple shape", ""},
-         [&](const std::string& text) { file = text; });
+         [&](const std::string& text) {
+           if (!text.empty() && !std::filesystem::exists(text))
+             throw UserError(fmt::format("--liner {}: there is no such file; give the path of one", text));
+           asks_unit = !text.empty() && !host::units_of(host::reader_of(text, registry)).empty();
+           file = text;
+         });
   if (file.empty()) return;
   const auto look = [&](const std::string& unit) { m.liner = look_at_liner(file, unit, registry); };
-  if (host::units_of(host::reader_of(file, registry)).empty()) return look("");  // the file says it
+  if (!asks_unit) return look("");  // the file says it
   answer({"liner-unit", "unit in which it was drawn", "mm"}, look);
 }
 
@@ -169,9 +175,9 @@ Mill ask_for_mill(const Answer& answer, const host::Registry& registry) {
   ask_for_operation(answer, m);
   if (!m.liner) ask_for_lifters(answer, m);
   ask_for_materials(answer, m);
-  m.seconds =
-      ask_value(answer, {"seconds", "how long to simulate (about four turns are usual)", fmt::format("{:.6g} s", usual_seconds(m.omega))},
-                "s", above_zero(1e6));
+  m.seconds = ask_value(
+      answer, {"seconds", "how long to simulate (about four turns and a half are usual)", fmt::format("{:.6g} s", usual_seconds(m.omega))},
+      "s", above_zero(1e6));
   return m;
 }
 

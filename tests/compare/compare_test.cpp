@@ -152,6 +152,16 @@ TEST_CASE("a cell that one side never visited is not judged") {
   }
 }
 
+TEST_CASE("what is told over times that one side has more of is passed over and listed") {
+  analysis::ResultSet a = make_results({.seed = 1}), b = make_results({.seed = 2});
+  array_named(a, "distributions.x_edges").unit = array_named(b, "distributions.x_edges").unit = "s";
+  CHECK(find(compare::compare(a, b, {}), "distributions.x_percent") != nullptr);  // times that end alike are a grid like any other
+  for (double& edge : array_named(b, "distributions.x_edges").value) edge *= 1.5;
+  const compare::Comparison c = compare::compare(a, b, {});
+  CHECK(find(c, "distributions.x_percent") == nullptr);
+  CHECK(mentions(c.not_judged, "distributions.x_percent: its times end with what was analysed"));
+}
+
 TEST_CASE("other grids and units are refused, with the remedy") {
   const analysis::ResultSet a = make_results({.seed = 1});
   const std::string grids = refusal([&] { compare::compare(a, make_results({.seed = 2, .cells = 10}), {.only = {"pept_grid"}}); });
