@@ -30,7 +30,9 @@ std::string why_not_imported(const std::filesystem::path& run) {
   if (!summary.is_object() || !summary.contains("engine") || !summary["engine"].contains("tracks_need_interval_s")) return "";
   const auto& engine = summary["engine"];
   const double needed = engine["tracks_need_interval_s"].get<double>(), interval = engine["interval_s"].get<double>();
-  const std::string frames = interval > 0 ? fmt::format("its frames are {:.3g} ms apart", 1e3 * interval) : "it has one frame";
+  const std::string frames = engine.contains("tracks_absent") ? engine["tracks_absent"].get<std::string>()
+                             : interval > 0                   ? fmt::format("its frames are {:.3g} ms apart", 1e3 * interval)
+                                                              : "it has one frame";
   return fmt::format(
       "{}, and the camera needs frames at most {:.3g} ms apart, with the numbers and velocities of the beads: let your program write these",
       frames, 1e3 * needed);

@@ -18,9 +18,9 @@ struct Name {
 };
 
 constexpr Name kScalars[] = {
-    {"id", kId},       {"number", kId},       {"globalid", kId},   {"globalpointids", kId},   {"pointid", kId},         {"type", kType},
-    {"typeid", kType}, {"material", kType},   {"radius", kRadius}, {"sphereradius", kRadius}, {"r", kRadius},           {"rad", kRadius},
-    {"mass", kMass},   {"density", kDensity}, {"rho", kDensity},   {"time", kTime},           {"simulationtime", kTime}};
+    {"id", kId},           {"number", kId},     {"globalid", kId},         {"globalpointids", kId},  {"type", kType},  {"typeid", kType},
+    {"material", kType},   {"radius", kRadius}, {"sphereradius", kRadius}, {"r", kRadius},           {"rad", kRadius}, {"mass", kMass},
+    {"density", kDensity}, {"rho", kDensity},   {"time", kTime},           {"simulationtime", kTime}};
 constexpr Name kDiameters[] = {{"diameter", kRadius}, {"d", kRadius}, {"diam", kRadius}};
 constexpr Name kVectors[] = {{"", kX},
                              {"position", kX},
@@ -78,6 +78,7 @@ const char* si_unit(Quantity q) {
 /// Of a column that names no unit.
 double usual_factor(Quantity q, const ReadOptions& options) {
   if (q >= kVelocityX && q <= kVelocityZ) return options.speed;
+  if (q >= kSpinX && q <= kSpinZ) return options.spin;
   return q == kRadius || (q >= kX && q <= kZ) ? options.length : 1;
 }
 
@@ -117,17 +118,17 @@ Column column_of(std::string_view name, const ReadOptions& options) {
   // Of dumps (LAMMPS, `dump custom`): coordinates unwrapped (u), scaled by the box (s), both.
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string letter(1, "xyz"[axis]);
-    if (text == letter + "u") return {component(kX, axis), options.length, false};
-    if (text == letter + "s" || text == letter + "su") return {component(kX, axis), 1, true};
+    if (text == letter + "u") return {component(kX, axis), options.length, false, false};
+    if (text == letter + "s" || text == letter + "su") return {component(kX, axis), 1, false, true};
   }
   for (const Name& known : kScalars) {
     if (text != known.text) continue;
     const bool needs_si = known.quantity == kMass || known.quantity == kDensity;
     if (needs_si && !unit_in(name) && !is_si(options)) return {};
-    return {known.quantity, factor_of(name, known.quantity, options), false};
+    return {known.quantity, factor_of(name, known.quantity, options), unit_in(name).has_value(), false};
   }
   for (const Name& known : kDiameters) {
-    if (text == known.text) return {known.quantity, 0.5 * factor_of(name, known.quantity, options), false};
+    if (text == known.text) return {known.quantity, 0.5 * factor_of(name, known.quantity, options), unit_in(name).has_value(), false};
   }
   const std::optional<std::size_t> coordinate = coordinate_at_end(text);
   if (!coordinate) return {};
@@ -135,7 +136,7 @@ Column column_of(std::string_view name, const ReadOptions& options) {
     if (text.substr(0, text.size() - 1) != known.text) continue;
     if (text.size() == 1 && std::isdigit(static_cast<unsigned char>(text[0])) != 0) return {};
     const Quantity q = component(known.quantity, *coordinate);
-    return {q, factor_of(name, q, options), false};
+    return {q, factor_of(name, q, options), unit_in(name).has_value(), false};
   }
   return {};
 }
@@ -144,7 +145,8 @@ Column vector_column_of(std::string_view name, const ReadOptions& options) {
   const std::string text = plain(name);
   for (const Name& known : kVectors) {
     // Places are the points of the picture.
-    if (text == known.text && known.quantity != kX) return {known.quantity, factor_of(name, known.quantity, options), false};
+    if (text == known.text && known.quantity != kX)
+      return {known.quantity, factor_of(name, known.quantity, options), unit_in(name).has_value(), false};
   }
   return {};
 }

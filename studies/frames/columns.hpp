@@ -14,7 +14,8 @@ namespace millscope::frames {
 struct Column {
   std::optional<Quantity> quantity;  ///< nothing: passed over
   double to_si = 1;
-  bool scaled = false;  ///< a coordinate of 0 … 1 over the box (`xs` of a dump)
+  bool has_unit = false;  ///< of its own
+  bool scaled = false;    ///< a coordinate of 0 … 1 over the box (`xs` of a dump)
 };
 
 /// "Particle Position X (mm)", "vx", "omegaz", "Q02 : Particle ID:", "Points:0". A unit in brackets goes before `options`. Throws

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "kernel/base/text.hpp"
 #include "studies/frames/columns.hpp"
 
 namespace millscope::frames {
@@ -38,6 +39,7 @@ class Dump : public FrameStream {
   bool next(Frame& frame) override {
     frame.file = in_.file();
     frame.time.reset(), frame.step.reset();
+    frame.time_of_picture = frame.spin_without_unit = false;
     count_.reset(), box_.reset(), tilted_ = false;
     std::string_view line;
     bool any = false;
@@ -80,6 +82,9 @@ class Dump : public FrameStream {
   void read_item(const std::string& item, Frame& frame) {
     std::string_view line;
     if (item.starts_with(" TIMESTEP")) {
+      if (frame.step)
+        in_.fail(
+            fmt::format("a second TIMESTEP stands here, and the atoms of step {} do not: that frame is cut short; delete it", *frame.step));
       frame.step = std::llround(one_number("the time step"));
     } else if (item.starts_with(" TIME")) {
       frame.time = one_number("the time");
@@ -92,12 +97,21 @@ class Dump : public FrameStream {
       read_box(item);
     } else if (item.starts_with(" UNITS")) {
       if (!in_.line(line)) in_.fail("the frame is cut short; delete it");
+      require_units(base::trimmed(line));
     } else if (item.starts_with(" ENTRIES") || item.starts_with(" NUMBER OF ENTRIES")) {
       in_.fail(
           "holds entries of 'dump local' (contacts), no beads; give the dump of the atoms: dump custom … id type x y z vx vy vz radius");
     } else {
       in_.fail(fmt::format("'ITEM:{}' is not known here; known are TIMESTEP, TIME, UNITS, NUMBER OF ATOMS, BOX BOUNDS, ATOMS", item));
     }
+  }
+
+  /// "units" of LAMMPS: those of all numbers in the file.
+  void require_units(const std::string& units) {
+    const bool cgs = std::fabs(options_.length - 0.01) < 1e-12 && std::fabs(options_.speed - 0.01) < 1e-12;
+    if (units == "si" || (units == "cgs" && cgs)) return;
+    if (units == "cgs") in_.fail("the units are cgs; add 'length_unit: cm' to mill.yaml, and state 'beads: {density: …}'");
+    in_.fail(fmt::format("the units are '{}', which are none of a mill; run the program in si, or scale the file to si", units));
   }
 
   void read_box(const std::string& item) {

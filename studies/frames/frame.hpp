@@ -9,9 +9,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace millscope::frames {
@@ -41,6 +44,8 @@ struct Frame {
   std::filesystem::path file;
   std::size_t first_line = 0;                          ///< where the first bead stands; 0: not one bead a line
   std::optional<double> time;                          ///< s, where the file says it
+  bool time_of_picture = false;                        ///< `time` is of VTK, where it may be no more than the number of the picture
+  bool spin_without_unit = false;                      ///< a table, which might have named it
   std::optional<std::int64_t> step;                    ///< time step of that program, from the file or its name
   std::size_t count = 0;                               ///< beads
   std::array<std::vector<double>, kQuantities> value;  ///< [count], SI; empty: the file does not say it
@@ -51,9 +56,24 @@ struct Frame {
   std::string place(std::size_t bead) const;
 };
 
+/// Types that are words: each has one number in all files, from 1 on as they come.
+class TypeWords {
+ public:
+  int number(std::string_view word);
+  /// "" of a number that is no word's.
+  std::string word(long long number) const;
+  const std::vector<std::string>& words() const { return words_; }
+
+ private:
+  std::vector<std::string> words_;
+  std::map<std::string, int, std::less<>> numbers_;
+};
+
 struct ReadOptions {
   double length = 1;  ///< m for each unit of length, in files that do not name units themselves
   double speed = 1;   ///< m/s for each unit of speed, likewise
+  double spin = 1;    ///< rad/s for each unit of spin, likewise
+  std::shared_ptr<TypeWords> types = std::make_shared<TypeWords>();
 };
 
 class FrameStream {

@@ -17,7 +17,7 @@ using base::UserError;
 using base::Vector3;
 
 constexpr double kLargestId = 4294967295.0;  // of frames.h5
-constexpr double kSameRadius = 1e-3;
+constexpr double kSameRadius = 1e-3, kSameMass = 3 * kSameRadius;
 
 constexpr const char* kNames[] = {"number", "type",   "x",      "y",      "z",    "velocity x", "velocity y", "velocity z",
                                   "spin x", "spin y", "spin z", "radius", "mass", "density",    "time"};
@@ -54,25 +54,27 @@ void append(std::vector<double>& to, const Vector3& v) { to.insert(to.end(), v.b
 }  // namespace
 
 void Gather::read() {
-  const auto stream = read_frames(mill_.files, {.length = mill_.length_unit, .speed = mill_.velocity_unit});
+  const auto stream = read_frames(
+      mill_.files, {.length = mill_.length_unit, .speed = mill_.velocity_unit, .spin = mill_.spin_unit.value_or(1), .types = types_});
   Frame frame;
   Beads beads;
   while (stream->next(frame)) {
     for (const std::string& name : frame.passed_over) {
       if (std::find(passed_over_.begin(), passed_over_.end(), name) == passed_over_.end()) passed_over_.push_back(name);
     }
-    take_time(frame, beads);
-    ++read_;
     if (frame.count == 0) {
-      ++empty_;
+      ++read_, ++empty_;
       continue;
     }
+    take_time(frame, beads);
+    ++read_;
+    spin_without_unit_ = spin_without_unit_ || frame.spin_without_unit;
     require_finite(frame);
     take_ids(frame, beads);
     take_kinds(frame);
     take_motion(frame, beads);
     walls_.look(beads, radius_, frame.place(0));
-    if (!has_velocity() && has_ids()) watch_stride(beads);
+    if (has_velocity() || has_ids()) motion_.look(beads, radius_, walls_);
     least_ = spool_.size() == 0 ? beads.size() : std::min(least_, beads.size());
     most_ = std::max(most_, beads.size());
     spool_.add(beads);
@@ -89,17 +91,18 @@ void Gather::read() {
         fmt::format("{}: frames hold {} to {} beads that have no numbers, so that none can be followed; write the id of the beads, or name "
                     "frames of equal number",
                     mill_.file, least_, most_));
-  if (!strides_.empty()) stride_ = base::quantile(strides_, 0.5);
+  motion_.judge(has_ids());
   census_.sort();
 }
 
 void Gather::take_time(Frame& frame, Beads& beads) {
   const bool stated = mill_.time_step || mill_.interval;
-  if (frame.time && stated) {
+  if (frame.time && stated && !frame.time_of_picture) {
     throw UserError(fmt::format("{}: the file says the time itself ({:.6g} s); leave 'step' and 'interval' out of 'time' in {}",
                                 frame.place(0), *frame.time, mill_.file));
   }
-  if (frame.time) {
+  time_overruled_ = time_overruled_ || (frame.time && stated);
+  if (frame.time && !stated) {
     beads.time = *frame.time;
   } else if (mill_.interval) {
     beads.time = static_cast<double>(read_) * *mill_.interval;
@@ -180,7 +183,7 @@ double Gather::radius_of(const Frame& frame, std::size_t i, long long type) cons
     if (!(radius > 0)) throw UserError(fmt::format("{}: the radius is {}; a bead has one above 0", frame.place(i), radius));
     return radius;
   }
-  if (const auto diameter = mill_.diameter_of_beads.value(type)) return 0.5 * *diameter;
+  if (const auto diameter = mill_.diameter_of_beads.value(type, types_->word(type))) return 0.5 * *diameter;
   throw UserError(fmt::format("{}: no column says how large the beads are; write the radius, or add 'beads: {{diameter: 5 mm}}' to {}",
                               frame.place(i), mill_.file));
 }
@@ -191,7 +194,7 @@ double Gather::density_of(const Frame& frame, std::size_t i, long long type, dou
     mill_.density.node->fail(fmt::format("is stated, but {} says the {} of each bead; leave one of them out", frame.file.string(),
                                          frame.has(kDensity) ? "density" : "mass"));
   if (!said) {
-    if (const auto density = mill_.density.value(type)) return *density;
+    if (const auto density = mill_.density.value(type, types_->word(type))) return *density;
     throw UserError(fmt::format(
         "{}: no column says how heavy the beads are; write their mass or density, or add 'beads: {{density: 2500 kg/m^3}}' to {}",
         frame.place(i), mill_.file));
@@ -214,34 +217,25 @@ void Gather::take_kinds(const Frame& frame) {
       kind.type = type;
       kind.radius = radius;
       kind.density = density_of(frame, i, type, radius);
-    } else if (std::fabs(radius - kind.radius) > kSameRadius * kind.radius) {
-      if (!has_ids())
-        throw UserError(
-            fmt::format("{}: the radius is {:.6g} m, and that of the bead in this place in the first frame {:.6g} m: the order of the "
-                        "beads changes, and they have no numbers; write their id",
-                        frame.place(i), radius, kind.radius));
-      ++changed_;
-      kind.radius = radius;
+    } else {
+      watch_change(frame, i, kind, radius);
     }
   }
 }
 
-void Gather::watch_stride(const Beads& beads) {
-  if (before_.size() > 0) {
-    std::unordered_map<std::uint32_t, std::size_t> at;
-    for (std::size_t i = 0; i < before_.size(); ++i) at.emplace(before_.id[i], i);
-    std::vector<double> ways;
-    for (std::size_t i = 0; i < beads.size(); ++i) {
-      const auto found = at.find(beads.id[i]);
-      if (found == at.end()) continue;
-      double way[3];
-      for (std::size_t k = 0; k < 3; ++k) way[k] = beads.position[3 * i + k] - before_.position[3 * found->second + k];
-      if (mill_.periodic) way[2] -= mill_.length * std::round(way[2] / mill_.length);
-      ways.push_back(std::hypot(way[0], way[1], way[2]));
-    }
-    if (!ways.empty()) strides_.push_back(base::quantile(ways, 0.99));
-  }
-  before_ = beads;
+void Gather::watch_change(const Frame& frame, std::size_t i, BeadKind& kind, double radius) {
+  const BeadKind before = kind;
+  kind.radius = radius;
+  if (frame.has(kMass) || frame.has(kDensity)) kind.density = density_of(frame, i, kind.type, radius);
+  const bool radius_changes = std::fabs(radius - before.radius) > kSameRadius * before.radius;
+  const bool mass_changes = std::fabs(kind.mass() - before.mass()) > kSameMass * before.mass();
+  if (radius_changes && !has_ids())
+    throw UserError(
+        fmt::format("{}: the radius is {:.6g} m, and that of the bead in this place in the frame before {:.6g} m: the order of the beads "
+                    "changes, and they have no numbers; write their id",
+                    frame.place(i), radius, before.radius));
+  changed_ += radius_changes ? 1 : 0, changed_mass_ += mass_changes ? 1 : 0;
+  if (!radius_changes && !mass_changes) kind = before;
 }
 
 std::vector<std::string> Gather::notes() const {
@@ -256,10 +250,17 @@ std::vector<std::string> Gather::notes() const {
         "the beads have no numbers: their order is taken to be the same in every frame, and what follows a bead (visits, circulation, "
         "ergodicity) rests on that");
   if (changed_ > 0) notes.push_back(fmt::format("the radius of a bead changes {} times; the last one counts, for all frames", changed_));
+  if (changed_mass_ > 0)
+    notes.push_back(fmt::format("the mass of a bead changes {} times; the last one counts, for all frames", changed_mass_));
   if (walls_.outside() > 0)
     notes.push_back(fmt::format(
         "up to {} beads in a frame have their centres outside the mill that is stated; they are kept, and maps tell them as outside",
         walls_.outside()));
+  if (time_overruled_) notes.emplace_back("the files say times (TimeValue of VTK, or a .pvd); 'time' of mill.yaml goes before them");
+  if (spin_without_unit_ && !mill_.spin_unit)
+    notes.emplace_back("the table names no unit of the spin: it is taken for rad/s; state 'spin_unit' where it is deg/s or rpm");
+  for (std::size_t t = 0; t < types_->words().size(); ++t)
+    notes.push_back(fmt::format("type '{}' is type_{} in the run", types_->words()[t], t + 1));
   if (time_unknown_) notes.emplace_back("the file says no time: it is taken for 0");
   if (!passed_over_.empty()) notes.push_back(fmt::format("passed over: {}", fmt::join(passed_over_, ", ")));
   return notes;

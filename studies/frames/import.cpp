@@ -88,6 +88,7 @@ Json summary_of(const MillFile& mill, const Gather& gathered, const Written& wri
                  {"interval_s", written.interval},
                  {"velocities", text_of(written.velocities)}};
   j["engine"]["tracks_need_interval_s"] = analysis::kCameraInterval;
+  if (!written.no_tracks.empty()) j["engine"]["tracks_absent"] = written.no_tracks;
   if (const auto found = gathered.walls().turning()) j["engine"]["shell_turns_rad_per_s"] = *found;
   return j;
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "kernel/base/error.hpp"
@@ -102,7 +101,7 @@ void read_mill(const Node& section, MillFile& mill) {
   }
 }
 
-/// One number, or `{1: …, 2: …}` by type.
+/// One number, or `{1: …, steel: …}` by type.
 ByType read_by_type(const Node& section, std::string_view key, std::string_view unit, const config::Range& range) {
   ByType values;
   values.node = section.find(key);
@@ -112,11 +111,7 @@ ByType read_by_type(const Node& section, std::string_view key, std::string_view 
     return values;
   }
   for (const std::string& name : values.node->keys()) {
-    long long type = 0;
-    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), type);
-    if (error != std::errc() || end != name.data() + name.size())
-      values.node->fail(fmt::format("has the key '{}'; types are numbers, as the files have them", name));
-    values.of[type] = read_number(values.node->at(name), unit, range);
+    values.of[name] = read_number(values.node->at(name), unit, range);
   }
   return values;
 }
@@ -151,7 +146,8 @@ double read_unit(const Node& node, const char* si) {
     if (unit.dimension == config::parse_unit(si).dimension) return unit.to_si(1);
   } catch (const std::exception&) {
   }
-  node.fail(fmt::format("is '{}', which is no unit like {}; write e.g. {} or m{}", node.text(), si, si, si));
+  node.fail(fmt::format("is '{}', which is no unit like {}; write e.g. {}", node.text(), si,
+                        std::string_view(si) == "rad/s" ? "rad/s, deg/s or rpm" : fmt::format("{} or m{}", si, si)));
 }
 
 }  // namespace
@@ -162,10 +158,12 @@ Vector3 Placement::place(const Vector3& v) const {
   return ours;
 }
 
-std::optional<double> ByType::value(long long type) const {
+std::optional<double> ByType::value(long long type, const std::string& word) const {
   if (of.empty()) return all;
-  const auto found = of.find(type);
-  if (found == of.end()) node->fail(fmt::format("says nothing of type {}, which the files hold; add it", type));
+  auto found = of.find(word);
+  if (found == of.end()) found = of.find(std::to_string(type));
+  if (found == of.end())
+    node->fail(fmt::format("says nothing of type {}, which the files hold; add it", word.empty() ? std::to_string(type) : word));
   return found->second;
 }
 
@@ -177,7 +175,7 @@ MillFile read_mill_file(const std::filesystem::path& file) {
         fmt::format("{}: is no .yaml; write one that names this file and says its mill: 'files: {}', axis, gravity, mill (docs/import.md)",
                     mill.file, file.filename().string()));
   const Node root = mill.root = config::load_document(mill.file);
-  root.expect({"schema_version", "name", "files", "length_unit", "velocity_unit", "axis", "gravity", "mill", "beads", "time"});
+  root.expect({"schema_version", "name", "files", "length_unit", "velocity_unit", "spin_unit", "axis", "gravity", "mill", "beads", "time"});
   if (const auto version = root.find("schema_version")) {
     if (config::read_integer(*version, config::between(1, 1e9)) != 1) version->fail("is not 1; this millscope reads version 1");
   }
@@ -186,6 +184,7 @@ MillFile read_mill_file(const std::filesystem::path& file) {
   read_files(root.at("files", "the files of frames, e.g. post/dump_*.txt, or a list"), mill);
   if (const auto unit = root.find("length_unit")) mill.length_unit = mill.velocity_unit = read_unit(*unit, "m");
   if (const auto unit = root.find("velocity_unit")) mill.velocity_unit = read_unit(*unit, "m/s");
+  if (const auto unit = root.find("spin_unit")) mill.spin_unit = read_unit(*unit, "rad/s");
   read_axes(root, mill);
   read_mill(root.at("mill", "the mill of the frames: {diameter: 300 mm, ends: [0 mm, 200 mm], speed: 40 rpm}"), mill);
   if (const auto beads = root.find("beads")) read_beads(*beads, mill);

@@ -26,9 +26,9 @@ struct Placement {
 /// A value for all beads, or one for each type.
 struct ByType {
   std::optional<double> all;
-  std::map<long long, double> of;
-  /// Throws base::UserError, at the key, for a type that it does not name.
-  std::optional<double> value(long long type) const;
+  std::map<std::string, double> of;
+  /// `word`: of the type in the files; "": they number it. Throws base::UserError, at the key, for a type that it does not name.
+  std::optional<double> value(long long type, const std::string& word) const;
   std::optional<config::Node> node;
 };
 
@@ -37,6 +37,7 @@ struct MillFile {
   std::vector<std::filesystem::path> files;
   double length_unit = 1;           ///< m
   double velocity_unit = 1;         ///< m/s
+  std::optional<double> spin_unit;  ///< rad/s
   std::optional<double> time_step;  ///< s for each step of the program
   std::optional<double> interval;   ///< s between frames
   std::optional<double> analyze_from;

@@ -1,13 +1,11 @@
 // One file or many, of whatever format, as one stream of frames.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-#include <cmath>
 #include <pugixml.hpp>
 
 #include "kernel/base/error.hpp"
 #include "studies/frames/dump.hpp"
+#include "studies/frames/file_names.hpp"
 #include "studies/frames/table.hpp"
 #include "studies/frames/vtk.hpp"
 
@@ -43,33 +41,13 @@ struct Part {
   std::optional<double> time;
 };
 
-/// The last number of a name without its ending: drum_1804000.vtk.gz → 1804000, dump.500 → 500, at_0.05.csv → 0.05, run2.500.txt → 500.
-std::optional<double> number_in_name(const fs::path& file) {
-  constexpr std::string_view kDigits = "0123456789";
-  fs::path plain = file.filename();
-  if (plain.extension() == ".gz") plain = plain.stem();
-  if (plain.extension().string().find_first_not_of(".0123456789") != std::string::npos) plain = plain.stem();
-  const std::string name = plain.string();
-  const std::size_t end = name.find_last_of(kDigits);
-  if (end == std::string::npos) return std::nullopt;
-  const auto start_of = [&](std::size_t last) {
-    const std::size_t before = name.find_last_not_of(kDigits, last);
-    return before == std::string::npos ? 0 : before + 1;
-  };
-  std::size_t begin = start_of(end);
-  // With a decimal point only where the digits before it are a number of their own.
-  if (begin >= 2 && name[begin - 1] == '.' && kDigits.find(name[begin - 2]) != std::string_view::npos) {
-    const std::size_t whole = start_of(begin - 2);
-    if (whole == 0 || std::isalnum(static_cast<unsigned char>(name[whole - 1])) == 0) begin = whole;
-  }
-  double number = 0;
-  return parse_number(std::string_view(name).substr(begin, end + 1 - begin), number) ? std::optional(number) : std::nullopt;
-}
-
-std::optional<std::int64_t> step_in_name(const fs::path& file) {
-  const std::optional<double> number = number_in_name(file);
-  if (!number || *number != std::floor(*number) || *number > 9e15) return std::nullopt;
-  return static_cast<std::int64_t>(*number);
+/// A part of a .pvd, which lies in its folder or below.
+fs::path listed(const fs::path& collection, const fs::path& name) {
+  const fs::path plain = name.lexically_normal();
+  if (name.is_absolute() || (!plain.empty() && *plain.begin() == ".."))
+    throw UserError(fmt::format("{}: lists '{}', which is not in its folder; put the files there, or name them in 'files'",
+                                collection.string(), name.string()));
+  return collection.parent_path() / name;
 }
 
 std::vector<Part> parts_of(const fs::path& collection) {
@@ -82,7 +60,7 @@ std::vector<Part> parts_of(const fs::path& collection) {
   std::vector<Part> parts;
   for (const pugi::xml_node set : document.child("VTKFile").child("Collection").children("DataSet")) {
     const std::string file = set.attribute("file").value(), time = set.attribute("timestep").value();
-    Part part{collection.parent_path() / file, std::nullopt};
+    Part part{listed(collection, file), std::nullopt};
     double value = 0;
     if (parse_number(time, value)) part.time = value;
     if (!parts.empty() && part.time && parts.back().time == part.time)
@@ -96,13 +74,15 @@ std::vector<Part> parts_of(const fs::path& collection) {
 
 class Series : public FrameStream {
  public:
-  Series(std::vector<Part> parts, const ReadOptions& options) : parts_(std::move(parts)), options_(options) {}
+  /// `collection`: that lists the parts; empty: mill.yaml does.
+  Series(std::vector<Part> parts, const ReadOptions& options, fs::path collection = {})
+      : parts_(std::move(parts)), options_(options), collection_(std::move(collection)) {}
 
   bool next(Frame& frame) override {
     for (; at_ < parts_.size(); ++at_, open_.reset()) {
-      if (!open_) open_ = open_frames(parts_[at_].file, options_);
+      if (!open_) open_ = open_part(parts_[at_].file);
       if (!open_->next(frame)) continue;
-      if (parts_[at_].time) frame.time = parts_[at_].time;
+      if (parts_[at_].time) frame.time = parts_[at_].time, frame.time_of_picture = true;
       if (!frame.step) frame.step = step_in_name(parts_[at_].file);
       return true;
     }
@@ -110,13 +90,32 @@ class Series : public FrameStream {
   }
 
  private:
+  std::unique_ptr<FrameStream> open_part(const fs::path& file) const {
+    if (!collection_.empty() && format_by_bytes(file) == Format::collection)
+      throw UserError(fmt::format("{}: lists '{}', which is a list itself; list the files of the beads", collection_.string(),
+                                  file.filename().string()));
+    return open_frames(file, options_);
+  }
+
   std::vector<Part> parts_;
   ReadOptions options_;
+  fs::path collection_;
   std::size_t at_ = 0;
   std::unique_ptr<FrameStream> open_;
 };
 
 }  // namespace
+
+int TypeWords::number(std::string_view word) {
+  const auto found = numbers_.find(word);
+  if (found != numbers_.end()) return found->second;
+  words_.emplace_back(word);
+  return numbers_.emplace(word, static_cast<int>(words_.size())).first->second;
+}
+
+std::string TypeWords::word(long long number) const {
+  return number >= 1 && number <= static_cast<long long>(words_.size()) ? words_[static_cast<std::size_t>(number) - 1] : "";
+}
 
 std::string Frame::place(std::size_t bead) const {
   return first_line > 0 ? fmt::format("{}:{}", file.string(), first_line + bead) : fmt::format("{}: point {}", file.string(), bead);
@@ -147,7 +146,7 @@ std::unique_ptr<FrameStream> open_frames(const fs::path& file, const ReadOptions
     case Format::xml_vtk:
       return open_xml_vtk(file, options);
     case Format::collection:
-      return std::make_unique<Series>(parts_of(file), options);
+      return std::make_unique<Series>(parts_of(file), options, file);
     case Format::table:
       break;
   }
@@ -156,11 +155,7 @@ std::unique_ptr<FrameStream> open_frames(const fs::path& file, const ReadOptions
 
 std::unique_ptr<FrameStream> read_frames(const std::vector<fs::path>& files, const ReadOptions& options) {
   std::vector<Part> parts;
-  for (const fs::path& file : files) parts.push_back({file, std::nullopt});
-  // dump.9 stands before dump.10; files without numbers stay as they were named.
-  const bool numbered = std::all_of(files.begin(), files.end(), [](const fs::path& file) { return number_in_name(file).has_value(); });
-  const auto earlier = [](const Part& a, const Part& b) { return *number_in_name(a.file) < *number_in_name(b.file); };
-  if (numbered) std::stable_sort(parts.begin(), parts.end(), earlier);
+  for (const fs::path& file : in_order(files)) parts.push_back({file, std::nullopt});
   return std::make_unique<Series>(std::move(parts), options);
 }
 

@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <map>
 #include <stdexcept>
 
 #include "kernel/base/text.hpp"
@@ -32,10 +31,11 @@ class Table : public FrameStream {
   bool next(Frame& frame) override {
     frame.file = in_.file();
     frame.step.reset(), frame.time.reset(), frame.first_line = 0;
+    frame.time_of_picture = frame.spin_without_unit = false;
     for (std::vector<double>& values : frame.value) values.clear();
     frame.count = 0;
     frame.passed_over.clear();
-    if (in_rows_) return read_rows(frame);
+    if (in_rows_) return read_rows(frame, false);
     if (time_ || find_block()) {
       frame.time = time_;
       time_.reset();
@@ -76,6 +76,7 @@ class Table : public FrameStream {
       cells_.push_back(cell);
       at = end + 1;
     }
+    written_ = cells_.size();
     while (!cells_.empty() && cells_.back().empty()) cells_.pop_back();  // a comma at the end of the line
   }
 
@@ -97,7 +98,7 @@ class Table : public FrameStream {
     double number = 0;
     if (number_in(cell, number)) return number;
     if (quantity != kType || cell.empty()) in_.fail(fmt::format("'{}' is no number; correct it, or export it again", cell.substr(0, 60)));
-    return types_.emplace(cell, static_cast<int>(types_.size()) + 1).first->second;
+    return options_.types->number(cell);
   }
 
   bool is_number(std::string_view cell) const {
@@ -105,18 +106,37 @@ class Table : public FrameStream {
     return number_in(cell, ignored);
   }
 
-  /// "TIME:,0.5", "Time: 0.5 s", "TIME,0.5".
-  bool is_time(double& value) const {
-    if (cells_.empty() || cells_.size() > 3 || cells_[0].size() < 4) return false;
-    std::string head(cells_[0].substr(0, 4));
-    std::transform(head.begin(), head.end(), head.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (head != "time") return false;
-    if (cells_.size() > 1) return number_in(cells_[1], value);
-    const std::size_t colon = cells_[0].find_first_of(":=");
-    if (colon == std::string_view::npos) return false;
-    std::string_view tail = cells_[0].substr(colon + 1);
-    if (const std::size_t unit = tail.find_last_of('s'); unit != std::string_view::npos) tail = tail.substr(0, unit);
-    return number_in(tail, value);
+  /// "TIME:,0.5", "Time: 0.5 s", "Simulation Time (ms),500". s.
+  bool is_time(double& value) {
+    if (cells_.empty() || cells_.size() > 3 || !first_cell_is_text()) return false;
+    std::string name(cells_[0]), number, unit;
+    if (cells_.size() == 1) {
+      const std::size_t colon = name.find_first_of(":=");
+      if (colon == std::string::npos) return false;
+      number = base::trimmed(name.substr(colon + 1));
+      name.resize(colon);
+    } else {
+      number = cells_[1];
+      if (cells_.size() == 3) unit = cells_[2];
+    }
+    if (const std::size_t letter = number.find_last_not_of("abcdefghijklmnopqrstuvwxyz"); unit.empty() && letter + 1 < number.size()) {
+      unit = number.substr(letter + 1);
+      number.resize(letter + 1);
+    }
+    if (!unit.empty()) name = name.substr(0, name.find_first_of("(:=")) + fmt::format("({})", unit);
+    if (!number_in(number, value)) return false;
+    try {
+      const Column column = column_of(name, options_);
+      value *= column.to_si;
+      return column.quantity == kTime;
+    } catch (const std::invalid_argument& e) {
+      if (cells_[0].size() < 4 || !known_as_time(name)) return false;
+      in_.fail(e.what());
+    }
+  }
+
+  bool known_as_time(const std::string& name) const {
+    return column_of(name.substr(0, name.find_first_of("([{")), options_).quantity == kTime;
   }
 
   // -------- blocks
@@ -161,32 +181,38 @@ class Table : public FrameStream {
 
   /// What stands under one time.
   bool read_block(Frame& frame) {
+    bool headed = columns_.has_value();  // so that no numbers are no beads
     while (line()) {
       double time = 0;
       if (cells_.empty()) continue;
       if (is_time(time)) {
-        if (frame.count > 0) {
+        if (frame.time && (frame.count > 0 || headed)) {
           time_ = time;
-          return seen_any_ = true;
+          return end_block(frame);
         }
         if (frame.time) in_.fail(fmt::format("no bead stands under the time {} s; export the queries of the particles", *frame.time));
         frame.time = time;
       } else if (is_query()) {
         read_query(frame);
+        headed = true;
       } else if (is_head()) {
         begin_rows();
-        return read_rows(frame);
+        return read_rows(frame, true);
       } else if (columns_ && is_number(cells_[0])) {  // under each time the same columns, named once
         again_ = in_rows_ = true;
-        return read_rows(frame);
+        return read_rows(frame, false);
       } else if (is_number(cells_[0]) || (cells_[0].empty() && cells_.size() > 1)) {
         in_.fail("numbers stand here without a head that says what they are; export with the texts, the queries' names");
       }
     }
-    if (frame.count == 0 && frame.time)
+    if (frame.count == 0 && frame.time && !headed)
       in_.fail(fmt::format("no bead stands under the time {} s; export the queries of the particles", *frame.time));
+    return (frame.count > 0 || frame.time) && end_block(frame);
+  }
+
+  bool end_block(const Frame& frame) {
     if (frame.count > 0) require_places(frame);
-    return frame.count > 0 && (seen_any_ = true);
+    return seen_any_ = true;
   }
 
   void require_places(const Frame& frame) {
@@ -214,6 +240,7 @@ class Table : public FrameStream {
       }
     }
     if (!column.quantity) return frame.passed_over.push_back(title);
+    note_unit(column, frame);
     if (frame.has(*column.quantity))
       in_.fail(fmt::format("'{}' holds a quantity that another query of this time holds; export one of them", title));
     if (frame.count > 0 && values.size() != frame.count)
@@ -241,13 +268,22 @@ class Table : public FrameStream {
     in_rows_ = true;
   }
 
-  /// Up to another time, another head or the end.
-  bool read_rows(Frame& frame) {
+  void note_unit(const Column& column, Frame& frame) const {
+    if (column.quantity >= kSpinX && column.quantity <= kSpinZ && !column.has_unit) frame.spin_without_unit = true;
+  }
+
+  /// Up to another time, another head or the end. `begun`: the head stands just before, so that no row is no bead.
+  bool read_rows(Frame& frame, bool begun) {
     columns_->begin(frame);
+    for (std::size_t i = 0; i < columns_->size(); ++i) note_unit((*columns_)[i], frame);
     while (line()) {
       double time = 0;
       if (cells_.empty()) continue;
       if (is_time(time)) {
+        if (frame.count == 0 && begun && !frame.time) {  // a head before the first time
+          frame.time = time;
+          continue;
+        }
         in_rows_ = false, time_ = time;
         break;
       }
@@ -263,7 +299,7 @@ class Table : public FrameStream {
       read_row(frame);
     }
     if (frame.has(kTime)) frame.time = frame.value[kTime].front();
-    if (frame.count == 0) return in_rows_ = false, false;
+    if (frame.count == 0 && !begun) return in_rows_ = false, false;
     return seen_any_ = true;
   }
 
@@ -278,6 +314,7 @@ class Table : public FrameStream {
 
   void read_row(Frame& frame) {
     const std::size_t shift = cells_.size() == columns_->size() + 1 && cells_[0].empty() ? 1 : 0;
+    while (cells_.size() < written_ && cells_.size() - shift < columns_->size()) cells_.emplace_back();  // blank, but there
     if (cells_.size() - shift != columns_->size())
       in_.fail(fmt::format("holds {} cells, its head {}: the line is cut short or damaged; export it again", cells_.size() - shift,
                            columns_->size()));
@@ -292,11 +329,11 @@ class Table : public FrameStream {
   ReadOptions options_;
   std::string text_;
   std::vector<std::string_view> cells_;  ///< of text_
+  std::size_t written_ = 0;              ///< cells of the line, with the blank ones at its end
   char separator_ = 0;
   bool again_ = false;          ///< the line was looked at and belongs to what comes next
   std::optional<double> time_;  ///< under which the next block stands
   std::optional<Columns> columns_;
-  std::map<std::string, int> types_;  ///< that have names: numbered as they come
   bool in_rows_ = false, seen_any_ = false;
 };
 

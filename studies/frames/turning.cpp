@@ -53,8 +53,9 @@ void check_speed(const MillFile& mill, double speed, double found, std::vector<s
 Turning turning_of(const MillFile& mill, const Gather& gathered, std::vector<std::string>& notes) {
   const std::optional<double> found = gathered.walls().turning(), stated = stated_speed(mill, gathered.census());
   if (stated && *stated == 0) return {0, mill.start};
-  const std::string why =
-      gathered.has_velocity() ? "too few beads ride along the shell, or not the same way" : "the files hold no velocities";
+  const std::string why = gathered.has_velocity() || gathered.walls().riding() > 0
+                              ? "too few beads ride along the shell, or not the same way"
+                              : "the files hold no velocities";
   if (!found) {
     if (!stated || !mill.sense)
       throw UserError(fmt::format("{}: the {} of the mill is not stated and not to be found ({}); add '{}' to 'mill'", mill.file,

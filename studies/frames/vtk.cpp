@@ -142,6 +142,11 @@ bool looks_reversed(const char* bytes, std::size_t count, NumberType type, bool 
   return share(reversed) < 0.9 && share(!reversed) > 0.99;
 }
 
+void VtkPicture::pass_over_cells(const std::string& name) {
+  const std::string text = fmt::format("{} (of cells)", name);
+  if (std::find(passed_over.begin(), passed_over.end(), text) == passed_over.end()) passed_over.push_back(text);
+}
+
 bool is_time_field(std::string name) {
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return name == "timevalue" || name == "time";
@@ -156,8 +161,10 @@ void to_frame(const VtkPicture& picture, const std::filesystem::path& file, cons
   frame.first_line = 0;
   frame.step.reset();
   frame.time = picture.time;
+  frame.time_of_picture = picture.time.has_value();
+  frame.spin_without_unit = false;
   frame.count = picture.points.size() / 3;
-  frame.passed_over.clear();
+  frame.passed_over = picture.passed_over;
   for (std::vector<double>& values : frame.value) values.clear();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     frame.value[kX + axis].resize(frame.count);

@@ -32,9 +32,13 @@ struct VtkArray {
 
 /// The points of one file, as it holds them.
 struct VtkPicture {
-  std::vector<double> points;    ///< [count, 3]
-  std::vector<VtkArray> arrays;  ///< of the points
-  std::optional<double> time;    ///< of the field data, s
+  std::vector<double> points;            ///< [count, 3]
+  std::vector<VtkArray> arrays;          ///< of the points
+  std::vector<std::string> passed_over;  ///< arrays of the cells
+  std::optional<double> time;            ///< of the field data, s
+
+  /// Beads are points: arrays of the cells are named, no more.
+  void pass_over_cells(const std::string& name);
 };
 
 /// TimeValue (VTK, ParaView), TIME, time.

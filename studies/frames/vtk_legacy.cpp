@@ -32,6 +32,8 @@ std::string decoded(const std::string& name) {
   return out;
 }
 
+constexpr std::size_t kMostNumbers = 10'000'000'000;  // of an array
+
 class Legacy : public FrameStream {
  public:
   Legacy(const std::filesystem::path& file, const ReadOptions& options) : in_(file), options_(options) {}
@@ -130,6 +132,8 @@ class Legacy : public FrameStream {
       std::string name = word("the name of an array");
       while (upper(name) == "METADATA") pass_metadata(), name = word("the name of an array");
       const std::size_t components = count("number of components"), tuples = count("number of values");
+      if (components > 0 && tuples > kMostNumbers / components)
+        in_.fail(fmt::format("array '{}' has {} times {} numbers; the file is damaged", decoded(name), components, tuples));
       const std::string type = word("the type of an array");
       keep(decoded(name), components, values(components * tuples, type, false));
     }
@@ -163,6 +167,7 @@ class Legacy : public FrameStream {
   void keep(const std::string& name, std::size_t components, std::vector<double> numbers) {
     VtkArray array{name, components, std::move(numbers)};
     if (owner_ == Owner::points) picture_.arrays.push_back(std::move(array));
+    if (owner_ == Owner::cells) picture_.pass_over_cells(name);
     if (owner_ == Owner::whole) take_field(picture_, array);
   }
 

@@ -21,6 +21,8 @@ using base::UserError;
 
 constexpr std::size_t kMostBytes = std::size_t{64} << 30U;  // of one array: more is a damaged length
 
+constexpr std::size_t kMostUnpacked = 1100;  // bytes of one: zlib packs at most 1032 into it
+
 std::string value_of(const pugi::xml_node& node, const char* name) { return node.attribute(name).value(); }
 
 int digit_of(char c) {
@@ -158,6 +160,7 @@ class Xml : public FrameStream {
     if (!places) fail(fmt::format("a piece of {} points says no places; the file is damaged", points));
     const VtkArray array = read_array(places, points, 3);
     picture.points.insert(picture.points.end(), array.values.begin(), array.values.end());
+    for (const pugi::xml_node node : piece.child("CellData").children("DataArray")) picture.pass_over_cells(value_of(node, "Name"));
     std::size_t which = 0;
     const bool first = picture.points.size() == array.values.size();
     for (const pugi::xml_node node : piece.child("PointData").children("DataArray")) {
@@ -180,6 +183,8 @@ class Xml : public FrameStream {
     if (components == 3 && array.components != 3) fail(node, fmt::format("has {} components; places have 3", array.components));
     const NumberType type = number_type_of(value_of(node, "type"));
     if (type.bytes == 0) fail(node, fmt::format("is of the type '{}', which cannot be read here; write numbers", value_of(node, "type")));
+    if (array.components > kMostBytes / type.bytes || tuples > kMostBytes / type.bytes / array.components)
+      fail(node, fmt::format("has {} values of {} components, more than any file holds; it is damaged", tuples, array.components));
     const std::size_t count = tuples * array.components;
     const std::string format = value_of(node, "format");
     if (format == "ascii") {
@@ -223,7 +228,12 @@ class Xml : public FrameStream {
   }
 
   std::uint64_t length_in(const std::string& header, std::size_t which) const {
-    return static_cast<std::uint64_t>(numbers_from(header.data() + which * header_.bytes, 1, header_, reversed_)[0]);
+    std::uint64_t length = 0;
+    for (std::size_t i = 0; i < header_.bytes; ++i) {
+      const std::size_t from_high = (reversed_ == (std::endian::native == std::endian::big)) ? header_.bytes - 1 - i : i;
+      length = length << 8U | static_cast<unsigned char>(header[which * header_.bytes + from_high]);
+    }
+    return length;
   }
 
   /// Unpacked: a length, then the bytes. Packed: number of blocks, their size, size of the last, packed sizes; then the blocks.
@@ -244,8 +254,13 @@ class Xml : public FrameStream {
     }
     need(header, 3 * header_.bytes);
     const std::uint64_t blocks = length_in(header, 0), whole = length_in(header, 1), last = length_in(header, 2);
+    // Whole blocks are no more than all of it, so that nothing below goes beyond 64 bits.
+    if (blocks > size || last > whole || (blocks > 1 && whole > size / (blocks - 1)))
+      fail(node, fmt::format("says that it holds {} blocks of {} bytes, the last of {}, where {} bytes are expected; the byte order or "
+                             "header_type of the file is wrong, or it is damaged",
+                             blocks, whole, last, size));
     const std::uint64_t said = blocks == 0 ? 0 : last == 0 ? blocks * whole : (blocks - 1) * whole + last;
-    if (said != size || blocks > kMostBytes / 1024)
+    if (said != size)
       fail(node,
            fmt::format("says that it holds {} bytes, {} are expected; the byte order or header_type of the file is wrong, or it is damaged",
                        said, size));
@@ -258,6 +273,8 @@ class Xml : public FrameStream {
 
   void unpack(const pugi::xml_node& node, Bytes& bytes, std::uint64_t packed, std::uint64_t size, std::string& out) const {
     std::string block;
+    if (size / kMostUnpacked > packed)
+      fail(node, fmt::format("says that {} bytes are packed into {}, which zlib cannot; the file is damaged", size, packed));
     if (packed > kMostBytes || !bytes.fill(block, packed))
       fail(node, fmt::format("ends after {} of {} bytes of a packed block; the file is cut short or damaged: copy it again", block.size(),
                              packed));

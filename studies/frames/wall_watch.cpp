@@ -51,10 +51,7 @@ void WallWatch::look(const Beads& beads, const std::vector<double>& radius, cons
     beyond_ends += !mill_.periodic && (z < 0 || z > mill_.length) ? 1 : 0;
     low = std::min(low, z), high = std::max(high, z - mill_.length), farthest = std::max(farthest, r);
     if (r <= shell) farthest_ = std::max(farthest_, r + radius[i]);
-    if (beads.velocity.empty() || r > shell || r + (1 + kTouch) * radius[i] < shell || turning_.size() >= kMostKept ||
-        beads.time < mill_.start)
-      continue;
-    turning_.push_back((x * beads.velocity[3 * i + 1] - y * beads.velocity[3 * i]) / (r * r));
+    if (!beads.velocity.empty()) ride(beads.time, {x, y, z}, {beads.velocity[3 * i], beads.velocity[3 * i + 1], 0}, radius[i]);
   }
   seen_ += beads.size();
   outside_ = std::max({outside_, beyond_shell, beyond_ends});
@@ -72,6 +69,12 @@ void WallWatch::look(const Beads& beads, const std::vector<double>& radius, cons
                     "say 'periodic: true' for a slice",
                     place, beyond_ends, beads.size(), std::max(-low, high), mill_.file));
   }
+}
+
+void WallWatch::ride(double time, const base::Vector3& place, const base::Vector3& velocity, double radius) {
+  const double shell = 0.5 * mill_.diameter, r = std::hypot(place[0], place[1]);
+  if (r > shell || r + (1 + kTouch) * radius < shell || turning_.size() >= kMostKept || time < mill_.start) return;
+  turning_.push_back((place[0] * velocity[1] - place[1] * velocity[0]) / (r * r));
 }
 
 void WallWatch::judge() const {

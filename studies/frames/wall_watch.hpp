@@ -16,6 +16,8 @@ class WallWatch {
 
   /// `radius`: of each bead. Throws base::UserError where more beads are outside the mill than can be; `place`: of the frame.
   void look(const Beads& beads, const std::vector<double>& radius, const std::string& place);
+  /// A bead where it is and how it moves: counts for `turning` where it is at the shell, and the mill turns at that time.
+  void ride(double time, const base::Vector3& place, const base::Vector3& velocity, double radius);
   /// After the last frame. Throws base::UserError where the mill is too large for its beads, or the charge hangs above its axis.
   void judge() const;
 

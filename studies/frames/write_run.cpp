@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/base/error.hpp"
 #include "kernel/base/statistics.hpp"
 #include "kernel/output/frames.hpp"
 #include "kernel/output/series.hpp"
@@ -16,9 +17,10 @@ namespace millscope::frames {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kTracked = 48;   // beads, evenly over their numbers
-constexpr double kTrackStep = 0.0005;  // s, at most: what a camera takes
-constexpr double kSlack = 1.05;        // of an interval, for uneven dumps
+constexpr std::size_t kTracked = 48;       // beads, evenly over their numbers
+constexpr double kTrackStep = 0.0005;      // s, at most: what a camera takes
+constexpr std::size_t kFewestTracked = 4;  // frames
+constexpr double kSlack = 1.05;            // of an interval, for uneven dumps
 
 /// One frame with a place for every bead of the census, in its order; NaN where one is not there.
 struct Dense {
@@ -27,10 +29,10 @@ struct Dense {
   std::vector<char> there;
 };
 
-double usual_interval(const Spool& spool) {
+std::vector<double> intervals(const Spool& spool) {
   std::vector<double> steps;
   for (std::size_t f = 1; f < spool.size(); ++f) steps.push_back(spool.time(f) - spool.time(f - 1));
-  return steps.empty() ? 0 : base::quantile(steps, 0.5);
+  return steps;
 }
 
 double mean_radius(const Census& census) {
@@ -74,7 +76,9 @@ class Writer {
  private:
   void choose_velocities() {
     Gather& g = r_.gathered;
-    w_.interval = usual_interval(g.spool());
+    std::vector<double> steps = intervals(g.spool());
+    w_.interval = steps.empty() ? 0 : base::quantile(steps, 0.5);
+    w_.longest = steps.empty() ? 0 : *std::max_element(steps.begin(), steps.end());
     if (g.has_velocity()) w_.velocities = Velocities::files;
     const bool near = g.stride() > 0 && g.stride() < mean_radius(census_);
     if (!g.has_velocity() && near) w_.velocities = Velocities::differences;
@@ -100,15 +104,26 @@ class Writer {
     frames_ = output::FrameWriter::create(r_.folder / "frames.h5", table);
   }
 
+  /// Why no bead can be followed; "" where some can.
+  std::string why_none(std::size_t always) const {
+    const double most = kSlack * analysis::kCameraInterval;
+    const std::size_t frames = r_.gathered.spool().size();
+    if (frames == 1) return "it has one frame";
+    if (w_.interval > most) return fmt::format("its frames are {:.3g} ms apart", 1e3 * w_.interval);
+    if (w_.longest > most) return fmt::format("its frames pause for {:.3g} ms, where a bead's way is not known", 1e3 * w_.longest);
+    if (!r_.gathered.has_ids()) return "its beads have no numbers";
+    if (w_.velocities == Velocities::none) return "it has no velocities";
+    if (frames < kFewestTracked) return fmt::format("it has {} frames, and a track needs {}", frames, kFewestTracked);
+    return always == 0 ? "no bead is in all of its frames" : "";
+  }
+
   /// The beads that are in every frame, where frames are near enough.
   void open_tracks() {
-    const std::size_t frames = r_.gathered.spool().size();
-    if (w_.velocities == Velocities::none || frames < 4 || w_.interval > kSlack * analysis::kCameraInterval || !r_.gathered.has_ids())
-      return;
     std::vector<std::size_t> always;
     for (std::size_t b = 0; b < census_.beads().size(); ++b) {
-      if (census_.beads()[b].frames == frames) always.push_back(b);
+      if (census_.beads()[b].frames == r_.gathered.spool().size()) always.push_back(b);
     }
+    if (w_.no_tracks = why_none(always.size()); !w_.no_tracks.empty()) return;
     const std::size_t count = std::min(kTracked, always.size());
     std::vector<output::TrackInfo> infos;
     for (std::size_t i = 0; i < count; ++i) {
@@ -116,7 +131,6 @@ class Writer {
       const BeadKind& bead = census_.beads()[followed_.back()];
       infos.push_back({fmt::format("bead_{}", bead.id), bead.id, 2 * bead.radius, bead.density, "simulation"});
     }
-    if (infos.empty()) return;
     tracks_ = output::TrackWriter::create(r_.folder / "tracks.h5", infos);
     w_.tracks = count;
   }
@@ -152,10 +166,17 @@ class Writer {
   }
 
   /// Velocity from the places in the frames to either side, or the one that there is. Exact on a parabola, where both are there.
+  /// A bead in neither has none, and counts as one that is not there.
   void differ(const Dense* before, Dense& now, const Dense* after) const {
     for (std::size_t i = 0; i < now.position.size(); ++i) {
       const bool left = before != nullptr && before->there[i / 3] != 0, right = after != nullptr && after->there[i / 3] != 0;
-      if (now.there[i / 3] == 0 || (!left && !right)) continue;
+      if (now.there[i / 3] == 0) continue;
+      if (!left && !right) {
+        for (std::size_t k = 0; k < 3; ++k) now.position[i + k] = now.spin[i + k] = kNaN;
+        now.there[i / 3] = 0;
+        ++w_.alone;
+        continue;
+      }
       const double back = left ? now.time - before->time : 0, on = right ? after->time - now.time : 0;
       const double from = left ? along(now.position[i] - before->position[i], i % 3) / back : 0;
       const double to = right ? along(after->position[i] - now.position[i], i % 3) / on : 0;
@@ -176,6 +197,11 @@ class Writer {
         rotation += 0.2 * m * bead.radius * bead.radius * d.spin[3 * b + k] * d.spin[3 * b + k];
       }
     }
+    if (count == 0)
+      throw base::UserError(fmt::format(
+          "{}: none of the beads at {:.6g} s is in a frame beside it, so that no difference of places says a velocity; leave that frame "
+          "out, or let the program write velocities",
+          r_.mill.file, d.time));
     for (double& c : centre) c /= mass;
     output::FrameView view;
     view.time = d.time;
@@ -256,10 +282,12 @@ std::vector<std::string> notes_of(const Written& w, const Gather& gathered) {
     notes.push_back(fmt::format(
         "the files hold no velocities, {}: maps of velocity and all that needs them is left out; let the program write velocities", why));
   }
+  if (w.alone > 0)
+    notes.push_back(fmt::format(
+        "{} times a bead is in one frame, and in neither beside it: it is left out there, since no difference says its velocity", w.alone));
   if (w.tracks == 0)
-    notes.push_back(
-        fmt::format("no virtual camera can be laid over these frames ({}): it needs numbered beads with velocities every {:.3g} ms",
-                    w.interval > 0 ? fmt::format("{:.3g} ms apart", 1e3 * w.interval) : "there is one", 1e3 * analysis::kCameraInterval));
+    notes.push_back(fmt::format("no virtual camera can be laid over this run ({}): it needs numbered beads with velocities every {:.3g} ms",
+                                w.no_tracks, 1e3 * analysis::kCameraInterval));
   return notes;
 }
 

@@ -17,9 +17,12 @@ enum class Velocities { files, differences, none };
 struct Written {
   Velocities velocities = Velocities::none;
   double interval = 0;     ///< s, the usual one; 0: there is one frame
+  double longest = 0;      ///< s, the longest interval
+  std::size_t alone = 0;   ///< times a bead is left out, since it is in neither frame beside: no difference says its velocity
   double mass = 0;         ///< kg, mean of the charge
   double count = 0;        ///< beads, mean
   std::size_t tracks = 0;  ///< beads that are followed in tracks.h5
+  std::string no_tracks;   ///< why there are none
   run::Course course;      ///< from `analyze_from` on
 };
 
