@@ -160,10 +160,9 @@ Vector3 Placement::place(const Vector3& v) const {
 
 std::optional<double> ByType::value(long long type, const std::string& word) const {
   if (of.empty()) return all;
-  auto found = of.find(word);
-  if (found == of.end()) found = of.find(std::to_string(type));
-  if (found == of.end())
-    node->fail(fmt::format("says nothing of type {}, which the files hold; add it", word.empty() ? std::to_string(type) : word));
+  const std::string key = word.empty() ? std::to_string(type) : word;
+  const auto found = of.find(key);
+  if (found == of.end()) node->fail(fmt::format("says nothing of type {}, which the files hold; add it", key));
   return found->second;
 }
 

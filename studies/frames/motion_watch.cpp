@@ -88,8 +88,8 @@ void MotionWatch::judge(bool numbered) const {
   std::vector<double> off = off_, part = part_;
   if (base::quantile(off, 0.5) <= kMostOff) return;
   throw UserError(
-      fmt::format("{}: from frame to frame beads go {:.3g} times as far as their velocities say (the median; {:.3g} of the way is "
-                  "unexplained, and at most {} can be); check 'time' and 'velocity_unit', {}",
+      fmt::format("{}: from frame to frame beads go {:.3g} times as far as their velocities say (in the median; they miss the place by "
+                  "{:.3g} times that way, and true frames by less than {}); check 'time' and 'velocity_unit', {}",
                   mill_.file, base::quantile(part, 0.5), base::quantile(off, 0.5), kMostOff,
                   numbered ? "and that each bead keeps its number" : "and write the id of the beads: their order may change"));
 }
