@@ -108,7 +108,7 @@ class Table : public FrameStream {
 
   /// "TIME:,0.5", "Time: 0.5 s", "Simulation Time (ms),500". s.
   bool is_time(double& value) {
-    if (cells_.empty() || cells_.size() > 3 || !first_cell_is_text()) return false;
+    if (cells_.empty() || cells_.size() > 3 || !first_cell_is_text() || is_query()) return false;
     std::string name(cells_[0]), number, unit;
     if (cells_.size() == 1) {
       const std::size_t colon = name.find_first_of(":=");
@@ -181,12 +181,12 @@ class Table : public FrameStream {
 
   /// What stands under one time.
   bool read_block(Frame& frame) {
-    bool headed = columns_.has_value();  // so that no numbers are no beads
+    bool queried = false;
     while (line()) {
       double time = 0;
       if (cells_.empty()) continue;
       if (is_time(time)) {
-        if (frame.time && (frame.count > 0 || headed)) {
+        if (frame.time && (frame.count > 0 || queried || columns_)) {  // known what numbers would be: none are no beads
           time_ = time;
           return end_block(frame);
         }
@@ -194,7 +194,7 @@ class Table : public FrameStream {
         frame.time = time;
       } else if (is_query()) {
         read_query(frame);
-        headed = true;
+        queried = true;
       } else if (is_head()) {
         begin_rows();
         return read_rows(frame, true);
@@ -205,7 +205,7 @@ class Table : public FrameStream {
         in_.fail("numbers stand here without a head that says what they are; export with the texts, the queries' names");
       }
     }
-    if (frame.count == 0 && frame.time && !headed)
+    if (frame.count == 0 && frame.time && !queried)
       in_.fail(fmt::format("no bead stands under the time {} s; export the queries of the particles", *frame.time));
     return (frame.count > 0 || frame.time) && end_block(frame);
   }

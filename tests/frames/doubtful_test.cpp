@@ -132,6 +132,7 @@ TEST_CASE("a table that holds no bead at one time goes on behind it") {
   CHECK(counts(table(c, "0.5") + "TIME:,0.6\n" + table(later, "0.7")) == Counts{60, 0, 60});
   CHECK(counts(table(none, "0.5") + table(c, "0.6") + table(none, "0.7")) == Counts{0, 60, 0});
   CHECK(counts(queries(c, 0.5, false) + queries(none, 0.6, false) + queries(later, 0.7, false)) == Counts{60, 0, 60});
+  CHECK_THAT(refused_files({write(scratch / "t.csv", table(c, "0.5") + "TIME:,0.6\n")}), Contains("no bead stands under the time 0.6"));
   // A head before the times.
   const std::string one = table(c, "0.5"), head = one.substr(one.find('\n') + 1, one.find('\n', 12) - one.find('\n'));
   CHECK(counts(head + "TIME:,0.5\n1,1,0,0,0,0,0,0,0,0,0,5,0\n") == Counts{1});
