@@ -15,6 +15,7 @@ using base::UserError;
 
 constexpr double kMostOutside = 0.01;    // of the beads of a frame: single ones leak, whole charges do not
 constexpr double kNearestToShell = 0.6;  // of the radius: gravity holds a charge against its shell or its lifters
+constexpr double kLeastLength = 0.25;    // of the mill: a charge spreads from end to end
 constexpr double kAbove = 0.05;          // of the radius: a charge that is flung round hangs on the axis
 constexpr double kTouch = 0.2;           // of a bead's radius, from the shell
 constexpr std::size_t kFewestRiding = 30, kMostKept = 2'000'000;
@@ -49,6 +50,7 @@ void WallWatch::look(const Beads& beads, const std::vector<double>& radius, cons
     mean_y_ += y / static_cast<double>(beads.size());
     beyond_shell += r > shell ? 1 : 0;
     beyond_ends += !mill_.periodic && (z < 0 || z > mill_.length) ? 1 : 0;
+    low_ = std::min(low_, z), high_ = std::max(high_, z);
     low = std::min(low, z), high = std::max(high, z - mill_.length), farthest = std::max(farthest, r);
     if (r <= shell) farthest_ = std::max(farthest_, r + radius[i]);
     if (!beads.velocity.empty()) ride(beads.time, {x, y, z}, {beads.velocity[3 * i], beads.velocity[3 * i + 1], 0}, radius[i]);
@@ -83,6 +85,11 @@ void WallWatch::judge() const {
     throw UserError(
         fmt::format("{}: no bead comes farther than {:.4g} m from the axis, in a shell of {:.4g} m radius; {}check 'diameter' and 'centre'",
                     mill_.file, farthest_, shell, unit_hint(farthest_ / shell, mill_.length_unit)));
+  }
+  if (high_ - low_ < kLeastLength * mill_.length && high_ - low_ > 0) {
+    throw UserError(
+        fmt::format("{}: the beads take {:.4g} m of the {:.4g} m between the ends; 'ends' are in m or say their unit, e.g. [0 mm, 40 mm]",
+                    mill_.file, high_ - low_, mill_.length));
   }
   if (mean_y_ > kAbove * shell)
     throw UserError(fmt::format("{}: in the last frame the charge's middle stands {:.4g} m above the axis; check 'gravity' and 'centre'",

@@ -18,7 +18,8 @@ class WallWatch {
   void look(const Beads& beads, const std::vector<double>& radius, const std::string& place);
   /// A bead where it is and how it moves: counts for `turning` where it is at the shell, and the mill turns at that time.
   void ride(double time, const base::Vector3& place, const base::Vector3& velocity, double radius);
-  /// After the last frame. Throws base::UserError where the mill is too large for its beads, or the charge hangs above its axis.
+  /// After the last frame. Throws base::UserError where the mill is too large or too long for its beads, or the charge hangs above its
+  /// axis.
   void judge() const;
 
   /// Angular speed about our z of the beads within a fifth of their radius of the shell, the median; nothing where too few are seen, or
@@ -32,7 +33,8 @@ class WallWatch {
   const MillFile& mill_;
   std::vector<double> turning_;
   std::size_t seen_ = 0, outside_ = 0;
-  double farthest_ = 0;  ///< m from the axis, of the beads' surfaces
+  double farthest_ = 0;                 ///< m from the axis, of the beads' surfaces
+  double low_ = 1e300, high_ = -1e300;  ///< m along the axis, of the beads' centres
   double mean_y_ = 0;
 };
 

@@ -160,6 +160,12 @@ TEST_CASE("mill.yaml is read strictly") {
   CHECK_THAT(not_imported(scratch, whole, beads + "length_unit: kg\n"), Contains("no unit like m"));
   CHECK_THAT(not_imported(scratch, whole, beads + "time: {step: 1e-6 s, interval: 0.1 s}\n"), Contains("keep one"));
   CHECK_THAT(not_imported(scratch, whole, beads, "speed: 2 rad/s", "nothing_*.txt"), Contains("no file has such a name"));
+  write(scratch / "long.yaml",
+        "files: d.txt\naxis: z\ngravity: -y\nbeads: {density: 2500}\nmill: {diameter: 200 mm, ends: [-20, 20], speed: 2 rad/s, direction: "
+        "counter_clockwise}\n");
+  write(scratch / "d.txt", whole);
+  CHECK_THAT(refusal([&] { frames::import_frames(scratch / "long.yaml", scratch / "out", testing::registry(), {}); }),
+             Contains("of the 40 m between the ends") && Contains("say their unit"));
   write(scratch / "bad.yaml", "files: d.txt\naxis: z\ngravity: -z\nmill: {diameter: 200 mm, ends: [0 mm, 50 mm]}\n");
   CHECK_THAT(refusal([&] { frames::import_frames(scratch / "bad.yaml", scratch / "out", testing::registry(), {}); }),
              Contains("bad.yaml:3") && Contains("along the mill's axis"));
