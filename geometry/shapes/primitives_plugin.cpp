@@ -18,6 +18,7 @@ constexpr Parameter kPlaneParameters[] = {
     vector_parameter("point", "m", 0, "A point of the plane."),
     vector_parameter("normal", "1", kRequired, "Direction towards the beads; its length does not matter."),
     number_parameter("size", "m", 1, 1e-3, 1e3, "Side of the square that pictures show; the plane itself has no end."),
+    flag_parameter("round", false, "It is drawn as a disc of that diameter, not as a square; contact is endless all the same."),
 };
 constexpr Parameter kBoxParameters[] = {
     vector_parameter("low", "m", kRequired, "Corner with the smallest coordinates."),

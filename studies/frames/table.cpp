@@ -78,6 +78,15 @@ class Table : public FrameStream {
     }
     written_ = cells_.size();
     while (!cells_.empty() && cells_.back().empty()) cells_.pop_back();  // a comma at the end of the line
+    drop_query_numbers();
+  }
+
+  /// "Q01 : Particle ID,Q02 : Particle Position X (m)": heads of columns that are numbered as queries are.
+  void drop_query_numbers() {
+    if (cells_.size() < 2 || !is_numbered(cells_[0]) || !is_numbered(cells_[1])) return;
+    for (std::string_view& cell : cells_) {
+      if (is_numbered(cell)) cell.remove_prefix(std::min(cell.find_first_not_of(' ', cell.find(':') + 1), cell.size()));
+    }
   }
 
   bool first_cell_is_text() const {
@@ -173,10 +182,11 @@ class Table : public FrameStream {
   }
 
   /// "Q01 : Particle ID:" and its like: a title alone, or before numbers.
-  bool is_query() const {
-    if (cells_.empty() || cells_[0].size() < 3) return false;
-    const std::string_view c = cells_[0];
-    return (c[0] == 'Q' || c[0] == 'q') && std::isdigit(static_cast<unsigned char>(c[1])) != 0 && c.find(':') != std::string_view::npos;
+  bool is_query() const { return !cells_.empty() && is_numbered(cells_[0]); }
+
+  static bool is_numbered(std::string_view c) {
+    return c.size() > 2 && (c[0] == 'Q' || c[0] == 'q') && std::isdigit(static_cast<unsigned char>(c[1])) != 0 &&
+           c.find(':') != std::string_view::npos;
   }
 
   /// What stands under one time.

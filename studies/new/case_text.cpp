@@ -53,7 +53,8 @@ std::string liner_text(const Mill& m) {
   const auto face = [&](const char* name, double z, int normal) {
     text += fmt::format(
         "  {}:                      # the mesh has no wall here: a flat face that turns with the mill\n    kind: plane\n"
-        "    point: [0, 0, {:.6g}]\n    normal: [0, 0, {}]\n    size: {:.6g}\n    material: {}\n    motion: mill\n",
+        "    point: [0, 0, {:.6g}]\n    normal: [0, 0, {}]\n    size: {:.6g}\n    round: true                 # to look at: a plane is "
+        "endless\n    material: {}\n    motion: mill\n",
         name, z, normal, 2 * l.radius, m.liner_material.name);
   };
   if (m.closed && !l.wall_low) face("end_low", l.low, 1);

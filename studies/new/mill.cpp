@@ -39,6 +39,9 @@ double round_up(double x) {
 
 }  // namespace
 
+/// Of the critical speed: slower is a slip of the pen, "0.7 %critical", more often than a mill.
+constexpr double kSlowest = 0.05;
+
 double critical_speed(double diameter, double bead) { return 42.3 / std::sqrt(diameter - bead) * 2 * std::numbers::pi / 60; }
 
 double usual_seconds(double omega) { return 0.5 * std::ceil(2 * 4.5 * 2 * std::numbers::pi / omega); }
@@ -77,6 +80,11 @@ std::vector<std::string> warnings(const Mill& m, const Choices& c) {
         fmt::format("a filling of {} is more than half of the mill: the charge turns about its own core and draws less power "
                     "the fuller it is; mills run at 20 to 45 %",
                     m.filling.text));
+  }
+  if (m.omega < kSlowest * m.critical_omega) {
+    all.push_back(fmt::format(
+        "{} is {:.2g} % of the critical speed, which no mill is and which takes {:.0f} s to simulate; mills run at 60 to 85 %critical",
+        m.speed.text, 100 * m.omega / m.critical_omega, m.seconds.si));
   }
   if (m.omega >= m.critical_omega) {
     all.push_back(

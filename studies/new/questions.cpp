@@ -131,7 +131,7 @@ void ask_for_operation(const Answer& answer, Mill& m) {
     m.speed.text = text;
   });
   const Question direction{"direction",
-                           "sense of turning as you look along -z: counter_clockwise (the charge rises on the right) or clockwise",
+                           "sense of turning, seen so that z points at you: counter_clockwise (the charge rises on the right) or clockwise",
                            "counter_clockwise"};
   m.clockwise = ask_choice(answer, direction, "counter_clockwise|clockwise") == "clockwise";
 }

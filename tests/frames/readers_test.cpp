@@ -63,6 +63,16 @@ TEST_CASE("EDEM's exports and other tables") {
   CHECK(one.time == 0.5);
   CHECK(one.passed_over == std::vector<std::string>{"Kinetic Energy (J)"});
   CHECK_FALSE(only(write(scratch / "plain.csv", table(c))).time);
+  // Heads that are numbered as queries are.
+  std::string numbered = table(c, "0.5");
+  const std::size_t head = numbered.find('\n') + 1;
+  for (std::size_t at = head, k = 1; k < 20; ++k) {
+    const std::string number = "Q" + std::to_string(10 + k) + " : ";
+    numbered.insert(at, number);
+    at = numbered.find_first_of(",\n", at + number.size());
+    if (numbered[at++] == '\n') break;
+  }
+  same(only(write(scratch / "numbered.csv", numbered)), c);
   // Decimal commas between semicolons; tabs.
   same(only(write(scratch / "commas.csv", table(c, "0,5", ';'))), c);
   same(only(write(scratch / "tabs.txt", table(c, "0.5", '\t'))), c);

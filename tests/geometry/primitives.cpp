@@ -33,7 +33,7 @@ std::string refusal(const Given& given) {
 
 TEST_CASE("plane") {
   Given g;
-  g.number("point", 0, 1, 0).number("normal", 0, 3, 0).number("size", 1);
+  g.number("point", 0, 1, 0).number("normal", 0, 3, 0).number("size", 1).number("round", 0);
   Plane plane(g.parameters());
   const WallContacts found = touch(plane, {5, 1.004, -7}, 0.005);
   REQUIRE(found.count() == 1);
@@ -43,8 +43,14 @@ TEST_CASE("plane") {
   CHECK(touch(plane, {5, 1.006, 0}, 0.005, 0.002).count() == 1);
   const auto mesh = make_mesh(soup_of(plane.surface(), {"all"}));
   CHECK(double_area(mesh->mesh(), 0).y > 0);
+  CHECK_THAT(mesh->survey().area, WithinAbs(1, 1e-12));
+  Given disc;
+  disc.number("point", 0, 1, 0).number("normal", 0, 3, 0).number("size", 1).number("round", 1);
+  const auto drawn = make_mesh(soup_of(Plane(disc.parameters()).surface(), {"all"}));
+  CHECK_THAT(drawn->survey().area, WithinAbs(0.7854, 2e-3));
+  CHECK(double_area(drawn->mesh(), 0).y > 0);
   Given flat;
-  flat.number("point", 0).number("normal", 0, 0, 0).number("size", 1);
+  flat.number("point", 0).number("normal", 0, 0, 0).number("size", 1).number("round", 0);
   CHECK_THAT(refusal<Plane>(flat), Contains("no direction"));
 }
 

@@ -136,7 +136,8 @@ class Warns(CliTest):
     def test_in_words(self):
         for words, said in ((("--bead-size", "40 mm"), "larger than a tenth of the mill"),
                             ((*SMALL, "--filling", "51 %"), "more than half of the mill"),
-                            ((*SMALL, "--speed", "105 %critical"), "105 % of the critical speed: .*centrifuging")):
+                            ((*SMALL, "--speed", "105 %critical"), "105 % of the critical speed: .*centrifuging"),
+                            ((*SMALL, "--speed", "0.7 %critical"), "0.7 % of the critical speed, which no mill is")):
             self.assertRegex(self.warned(*words), f"^millscope: warning: .*{said}")
 
     def test_too_many_beads(self):
