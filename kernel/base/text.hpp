@@ -1,4 +1,4 @@
-// Whole files as text; text without the blanks around it.
+// Whole files as text; text without the blanks around it, in small letters.
 #pragma once
 
 #include <filesystem>
@@ -19,6 +19,13 @@ inline std::string trimmed(std::string_view text, std::string_view blanks = " \t
   const std::size_t first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) return {};
   return std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
+}
+
+/// `text` with its ASCII letters small.
+inline std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return out;
 }
 
 }  // namespace millscope::base

@@ -8,6 +8,7 @@
 #include <cctype>
 #include <sstream>
 
+#include "kernel/base/text.hpp"
 #include "kernel/config/node_data.hpp"
 
 namespace millscope::config {
@@ -19,8 +20,7 @@ bool digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 std::string odd_number(const std::string& text) {
   std::string_view rest = text;
   if (!rest.empty() && (rest[0] == '+' || rest[0] == '-')) rest.remove_prefix(1);
-  std::string low;
-  for (const char c : rest) low += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string low = base::lower(rest);
   if (low == ".nan" || low == ".inf") return "is not a finite number";
   if (low.size() > 2 && low[0] == '0' && (low[1] == 'x' || low[1] == 'o') && digit(low[2])) return "is not decimal; write it in decimal";
   if (low.size() < 2 || low[0] != '0' || !digit(low[1])) return "";

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "kernel/base/nearest.hpp"
+#include "kernel/base/text.hpp"
 #include "kernel/config/document.hpp"
 #include "kernel/config/values.hpp"
 
@@ -28,8 +29,7 @@ std::vector<std::string> choices_of(const Loaded& plugin, std::string_view param
 }
 
 std::string extension_of(const std::string& file) {
-  std::string text = std::filesystem::path(file).extension().string();
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string text = base::lower(std::filesystem::path(file).extension().string());
   return text.empty() ? text : text.substr(1);
 }
 

@@ -21,18 +21,21 @@ class _Finding:
         return f"{type(self).__name__}('{self.path}')"
 
 
-class Comparison(_Finding):
-    """What differs between two analyses, B less A. `verdict`: 'no_difference', 'differ' or 'cannot_tell'; `sentence`: in words."""
-
-    FILE, COMES_FROM = "comparison.json", "millscope compare A B -o OUT"
-
+class _Judged(_Finding):
     @property
     def verdict(self) -> str:
         return self.data["verdict"]
 
     @property
     def sentence(self) -> str:
+        """The verdict in words."""
         return self.data["sentence"]
+
+
+class Comparison(_Judged):
+    """What differs between two analyses, B less A. `verdict`: 'no_difference', 'differ' or 'cannot_tell'; `sentence`: in words."""
+
+    FILE, COMES_FROM = "comparison.json", "millscope compare A B -o OUT"
 
     @property
     def notes(self) -> list[str]:
@@ -84,18 +87,10 @@ class Validation(_Finding):
         return pandas.DataFrame(rows, columns=columns)
 
 
-class Diagnosis(_Finding):
+class Diagnosis(_Judged):
     """Which physics a base case left out. `verdict`: 'no_mismatch', 'named', 'ambiguous', 'outside_library' or 'undetectable'."""
 
     FILE, COMES_FROM = "diagnosis.json", "millscope diagnose STUDY.yaml -o OUT"
-
-    @property
-    def verdict(self) -> str:
-        return self.data["verdict"]
-
-    @property
-    def sentence(self) -> str:
-        return self.data["sentence"]
 
     @property
     def named(self) -> list[str]:

@@ -20,6 +20,11 @@ COMES_FROM = "millscope analyze SOURCE -o OUT"
 DOUBTS = {1: "few blocks", 2: "correlated blocks", 4: "often undefined", 8: "no uncertainty"}  # docs/analysis.md says what they mean
 
 
+def _place(name: str) -> str:
+    """Of a result in results.h5."""
+    return "analyzers/" + name.replace(".", "/", 1)
+
+
 class Result:
     """One result: a number, a curve or a map.
 
@@ -45,7 +50,7 @@ class Result:
         """[K, the result's shape]: resamples less `value`. Draw k of every result comes from the same blocks, so functions of several
         results have an error, too. Error where there are none (one block, or more than 50 000 values)."""
         with open_hdf5(self._file, "millscope results", COMES_FROM) as file:
-            group = file["analyzers/" + self.name.replace(".", "/", 1)]
+            group = file[_place(self.name)]
             if "draws" not in group:
                 raise Error(f"{self._file}: {self.name} has no draws: it is an axis, has more than 50000 values, or the data are one block")
             return group["draws"][:]
@@ -93,14 +98,13 @@ class Analysis(Mapping[str, Result]):
         self.file = self.path / "results.h5" if self.path.is_dir() else self.path
         with self._open() as file:
             groups = [(int(group.attrs["order"]), f"{analyzer}.{name}") for analyzer, results in file["analyzers"].items() for name, group in results.items()]
-        self._names = [name for _, name in sorted(groups)]
-        self._known = set(self._names)
+        self._names = dict.fromkeys(name for _, name in sorted(groups))
 
     def _open(self) -> h5py.File:
         return open_hdf5(self.file, "millscope results", COMES_FROM)
 
     def __getitem__(self, name: str) -> Result:
-        if name not in self._known:
+        if name not in self._names:
             analyzer, _, short = name.rpartition(".")
             near = sorted((known for known in self._names if short in known), key=lambda known: not known.startswith(analyzer))
             raise UnknownName(f"{self.file}: there is no result '{name}'; " + (f"near it: {', '.join(near[:5])}" if near else "list(analysis) has all names"))
@@ -108,13 +112,12 @@ class Analysis(Mapping[str, Result]):
             return self._read(file, name)
 
     def _read(self, file: h5py.File, name: str) -> Result:
-        analyzer, _, short = name.partition(".")
-        group = file[f"analyzers/{analyzer}/{short}"]
+        group, analyzer = file[_place(name)], name.partition(".")[0]
         axes = [self._read(file, f"{analyzer}.{axis}") if axis else None for axis in map(str, group.attrs.get("axes", []))]
         return Result(name, group, axes)
 
     def __contains__(self, name: object) -> bool:
-        return name in self._known
+        return name in self._names
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
@@ -137,7 +140,7 @@ class Analysis(Mapping[str, Result]):
     def numbers(self) -> pandas.DataFrame:
         """All single numbers, a row each, by name: value, sem, low, high (90 % interval), unit, effective_blocks, doubts."""
         with self._open() as file:
-            found = [self._read(file, name) for name in self._names if file["analyzers/" + name.replace(".", "/", 1) + "/value"].shape == ()]
+            found = [self._read(file, name) for name in self._names if file[_place(name) + "/value"].shape == ()]
         rows = {r.name: {"value": float(r.value), **{word: _number(getattr(r, word)) for word in ("sem", "low", "high")}, "unit": r.unit,
                          "effective_blocks": _number(r.effective_blocks), "doubts": ", ".join(r.doubts())} for r in found}
         return pandas.DataFrame.from_dict(rows, orient="index", columns=["value", "sem", "low", "high", "unit", "effective_blocks", "doubts"])

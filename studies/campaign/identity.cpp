@@ -38,9 +38,7 @@ std::string read_file(const std::string& path) {
 /// A glTF file may keep its numbers in files beside it: their contents belong to it.
 NamedFile name_file(const std::string& path) {
   NamedFile file{path, content_hash(read_file(path)), true};
-  std::string extension = fs::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (extension != ".gltf") return file;
+  if (base::lower(fs::path(path).extension().string()) != ".gltf") return file;
   file.alone = false;
   const nlohmann::json json = nlohmann::json::parse(read_file(path), nullptr, false);
   if (!json.is_object() || !json.contains("buffers") || !json["buffers"].is_array()) return file;

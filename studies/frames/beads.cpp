@@ -8,6 +8,8 @@
 #include "kernel/output/file.hpp"
 
 namespace millscope::frames {
+
+std::string material_name(long long type) { return "type_" + std::to_string(type); }
 namespace {
 
 template <class T>

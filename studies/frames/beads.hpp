@@ -4,10 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
 namespace millscope::frames {
+
+/// What the run calls the material of a type of that program: "type_2".
+std::string material_name(long long type);
 
 /// One instant; arrays in one order. [n,3] is x0 y0 z0 x1 …
 struct Beads {

@@ -61,7 +61,7 @@ std::string beads_text(const Census& census) {
   std::string materials = "materials:\n", beads = "beads:\n";
   const auto all = static_cast<double>(census.beads().size());
   for (const auto& [type, c] : classes_of(census)) {
-    const std::string name = fmt::format("type_{}", type);
+    const std::string name = material_name(type);
     materials += fmt::format("  {}: {{density: {}}}\n", name, number_text(c.mass / c.volume));
     beads += fmt::format("  {}:\n    material: {}\n    share: {}\n    fractions_by: number\n    sizes:\n", name, name,
                          number_text(static_cast<double>(c.radii.size()) / all));

@@ -15,13 +15,28 @@ namespace {
 struct Name {
   const char* text;
   Quantity quantity;
+  double part = 1;  ///< of what the column holds: half of a diameter is a radius
 };
 
-constexpr Name kScalars[] = {
-    {"id", kId},           {"number", kId},     {"globalid", kId},         {"globalpointids", kId},  {"type", kType},  {"typeid", kType},
-    {"material", kType},   {"radius", kRadius}, {"sphereradius", kRadius}, {"r", kRadius},           {"rad", kRadius}, {"mass", kMass},
-    {"density", kDensity}, {"rho", kDensity},   {"time", kTime},           {"simulationtime", kTime}};
-constexpr Name kDiameters[] = {{"diameter", kRadius}, {"d", kRadius}, {"diam", kRadius}};
+constexpr Name kScalars[] = {{"id", kId},
+                             {"number", kId},
+                             {"globalid", kId},
+                             {"globalpointids", kId},
+                             {"type", kType},
+                             {"typeid", kType},
+                             {"material", kType},
+                             {"radius", kRadius},
+                             {"sphereradius", kRadius},
+                             {"r", kRadius},
+                             {"rad", kRadius},
+                             {"mass", kMass},
+                             {"density", kDensity},
+                             {"rho", kDensity},
+                             {"time", kTime},
+                             {"simulationtime", kTime},
+                             {"diameter", kRadius, 0.5},
+                             {"d", kRadius, 0.5},
+                             {"diam", kRadius, 0.5}};
 constexpr Name kVectors[] = {{"", kX},
                              {"position", kX},
                              {"pos", kX},
@@ -42,10 +57,7 @@ constexpr Name kVectors[] = {{"", kX},
 
 /// Small letters and digits alone, without "Q01 :" before, units behind and the word "particle".
 std::string plain(std::string_view name) {
-  if (name.size() > 3 && (name[0] == 'Q' || name[0] == 'q') && std::isdigit(static_cast<unsigned char>(name[1])) != 0) {
-    const std::size_t colon = name.find(':');
-    if (colon != std::string_view::npos) name.remove_prefix(colon + 1);
-  }
+  name = without_number(name);
   if (const std::size_t bracket = name.find_first_of("([{"); bracket != std::string_view::npos && bracket > 0) {
     // "c_spin[1]" of a dump is no unit, and no name that is known.
     name = name.substr(0, bracket);
@@ -109,9 +121,18 @@ std::optional<std::size_t> coordinate_at_end(const std::string& name) {
   return std::nullopt;
 }
 
+Column found(std::string_view name, Quantity quantity, const ReadOptions& options, double part = 1) {
+  return {quantity, part * factor_of(name, quantity, options), unit_in(name).has_value(), false};
+}
+
 }  // namespace
 
-bool is_si(const ReadOptions& options) { return options.length == 1; }
+std::string_view without_number(std::string_view name) {
+  if (name.size() < 3 || (name[0] != 'Q' && name[0] != 'q') || std::isdigit(static_cast<unsigned char>(name[1])) == 0) return name;
+  const std::size_t colon = name.find(':');
+  if (colon != std::string_view::npos) name.remove_prefix(std::min(name.find_first_not_of(' ', colon + 1), name.size()));
+  return name;
+}
 
 Column column_of(std::string_view name, const ReadOptions& options) {
   const std::string text = plain(name);
@@ -124,11 +145,8 @@ Column column_of(std::string_view name, const ReadOptions& options) {
   for (const Name& known : kScalars) {
     if (text != known.text) continue;
     const bool needs_si = known.quantity == kMass || known.quantity == kDensity;
-    if (needs_si && !unit_in(name) && !is_si(options)) return {};
-    return {known.quantity, factor_of(name, known.quantity, options), unit_in(name).has_value(), false};
-  }
-  for (const Name& known : kDiameters) {
-    if (text == known.text) return {known.quantity, 0.5 * factor_of(name, known.quantity, options), unit_in(name).has_value(), false};
+    if (needs_si && !unit_in(name) && options.length != 1) return {};  // a kilogram and a kg/m³ are what they are only in SI
+    return found(name, known.quantity, options, known.part);
   }
   const std::optional<std::size_t> coordinate = coordinate_at_end(text);
   if (!coordinate) return {};
@@ -136,7 +154,7 @@ Column column_of(std::string_view name, const ReadOptions& options) {
     if (text.substr(0, text.size() - 1) != known.text) continue;
     if (text.size() == 1 && std::isdigit(static_cast<unsigned char>(text[0])) != 0) return {};
     const Quantity q = component(known.quantity, *coordinate);
-    return {q, factor_of(name, q, options), unit_in(name).has_value(), false};
+    return found(name, q, options);
   }
   return {};
 }
@@ -145,8 +163,7 @@ Column vector_column_of(std::string_view name, const ReadOptions& options) {
   const std::string text = plain(name);
   for (const Name& known : kVectors) {
     // Places are the points of the picture.
-    if (text == known.text && known.quantity != kX)
-      return {known.quantity, factor_of(name, known.quantity, options), unit_in(name).has_value(), false};
+    if (text == known.text && known.quantity != kX) return found(name, known.quantity, options);
   }
   return {};
 }
@@ -177,9 +194,7 @@ std::string Columns::lacking() const {
 }
 
 void Columns::begin(Frame& frame) const {
-  for (std::vector<double>& values : frame.value) values.clear();
-  frame.count = 0;
-  frame.passed_over.clear();
+  frame.clear();
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     if (!columns_[i].quantity && !names_[i].empty()) frame.passed_over.push_back(names_[i]);
   }

@@ -47,7 +47,7 @@ class Columns {
   std::vector<Column> columns_;
 };
 
-/// A kilogram and a kg/m³ are what they are only in SI.
-bool is_si(const ReadOptions& options);
+/// "Particle ID" of "Q01 : Particle ID", as EDEM numbers its queries; any other name as it is.
+std::string_view without_number(std::string_view name);
 
 }  // namespace millscope::frames

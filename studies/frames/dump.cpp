@@ -37,9 +37,7 @@ class Dump : public FrameStream {
   Dump(const std::filesystem::path& file, const ReadOptions& options) : in_(file), options_(options) {}
 
   bool next(Frame& frame) override {
-    frame.file = in_.file();
-    frame.time.reset(), frame.step.reset();
-    frame.time_of_picture = frame.spin_without_unit = false;
+    frame.begin(in_.file());
     count_.reset(), box_.reset(), tilted_ = false;
     std::string_view line;
     bool any = false;

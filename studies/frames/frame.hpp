@@ -51,6 +51,10 @@ struct Frame {
   std::array<std::vector<double>, kQuantities> value;  ///< [count], SI; empty: the file does not say it
   std::vector<std::string> passed_over;                ///< columns and arrays that are nothing of the above
 
+  /// Empty, and of that file.
+  void begin(const std::filesystem::path& from);
+  /// Without beads, and what was passed over.
+  void clear();
   bool has(std::size_t quantity) const { return !value[quantity].empty(); }
   /// "file:line" of a bead, or "file: point 17".
   std::string place(std::size_t bead) const;

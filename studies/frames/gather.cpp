@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "kernel/base/error.hpp"
-#include "kernel/base/statistics.hpp"
 
 namespace millscope::frames {
 namespace {
@@ -260,7 +259,7 @@ std::vector<std::string> Gather::notes() const {
   if (spin_without_unit_ && !mill_.spin_unit)
     notes.emplace_back("the table names no unit of the spin: it is taken for rad/s; state 'spin_unit' where it is deg/s or rpm");
   for (std::size_t t = 0; t < types_->words().size(); ++t)
-    notes.push_back(fmt::format("type '{}' is type_{} in the run", types_->words()[t], t + 1));
+    notes.push_back(fmt::format("type '{}' is {} in the run", types_->words()[t], material_name(static_cast<long long>(t) + 1)));
   if (time_unknown_) notes.emplace_back("the file says no time: it is taken for 0");
   if (!passed_over_.empty()) notes.push_back(fmt::format("passed over: {}", fmt::join(passed_over_, ", ")));
   return notes;

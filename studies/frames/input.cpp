@@ -100,10 +100,15 @@ bool Input::word(std::string_view& text) {
   }
 }
 
-double Input::number(const char* what) {
+std::string_view Input::word(const char* what) {
   std::string_view text;
   if (!word(text))
     fail(fmt::format("the file ends where {} is expected: it is cut short; copy it again, or let the program write it again", what));
+  return text;
+}
+
+double Input::number(const char* what) {
+  const std::string_view text = word(what);
   double value = 0;
   if (!parse_number(text, value))
     fail(fmt::format("'{}' stands where {} is expected; the file is damaged, or cut short", text.substr(0, 60), what));
@@ -117,20 +122,12 @@ void Input::bytes(void* to, std::size_t count, const char* what) {
       fail_here(fmt::format(
           "the file ends {} bytes before the end of {}: it is cut short; copy it again, or let the program write it again", count, what));
     const std::size_t part = std::min(count, end_ - at_);
-    std::memcpy(out, buffer_.data() + at_, part);
-    out += part, at_ += part, count -= part;
-  }
-}
-
-void Input::pass_over(std::size_t count, const char* what) {
-  while (count > 0) {
-    if (at_ == end_ && !more())
-      fail_here(fmt::format(
-          "the file ends {} bytes before the end of {}: it is cut short; copy it again, or let the program write it again", count, what));
-    const std::size_t part = std::min(count, end_ - at_);
+    if (out != nullptr) std::memcpy(out, buffer_.data() + at_, part), out += part;
     at_ += part, count -= part;
   }
 }
+
+void Input::pass_over(std::size_t count, const char* what) { bytes(nullptr, count, what); }
 
 std::string_view Input::look(std::size_t most) {
   while (end_ - at_ < most && more()) {

@@ -23,6 +23,8 @@ class Input {
   bool line(std::string_view& text);
   /// The next word, whatever lines lie between; false at the end.
   bool word(std::string_view& text);
+  /// The next word. `what` is expected there, for the message.
+  std::string_view word(const char* what);
   /// The next word as a number. `what` is expected there, for the message.
   double number(const char* what);
   /// Exactly so many bytes. `what` they are, for the message where the file ends before.

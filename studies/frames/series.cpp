@@ -72,6 +72,8 @@ std::vector<Part> parts_of(const fs::path& collection) {
   return parts;
 }
 
+std::unique_ptr<FrameStream> open_as(Format format, const fs::path& file, const ReadOptions& options);
+
 class Series : public FrameStream {
  public:
   /// `collection`: that lists the parts; empty: mill.yaml does.
@@ -91,10 +93,11 @@ class Series : public FrameStream {
 
  private:
   std::unique_ptr<FrameStream> open_part(const fs::path& file) const {
-    if (!collection_.empty() && format_by_bytes(file) == Format::collection)
+    const Format format = format_by_bytes(file);
+    if (!collection_.empty() && format == Format::collection)
       throw UserError(fmt::format("{}: lists '{}', which is a list itself; list the files of the beads", collection_.string(),
                                   file.filename().string()));
-    return open_frames(file, options_);
+    return open_as(format, file, options_);
   }
 
   std::vector<Part> parts_;
@@ -103,6 +106,22 @@ class Series : public FrameStream {
   std::size_t at_ = 0;
   std::unique_ptr<FrameStream> open_;
 };
+
+std::unique_ptr<FrameStream> open_as(Format format, const fs::path& file, const ReadOptions& options) {
+  switch (format) {
+    case Format::dump:
+      return open_dump(file, options);
+    case Format::legacy_vtk:
+      return open_legacy_vtk(file, options);
+    case Format::xml_vtk:
+      return open_xml_vtk(file, options);
+    case Format::collection:
+      return std::make_unique<Series>(parts_of(file), options, file);
+    case Format::table:
+      break;
+  }
+  return open_table(file, options);
+}
 
 }  // namespace
 
@@ -115,6 +134,20 @@ int TypeWords::number(std::string_view word) {
 
 std::string TypeWords::word(long long number) const {
   return number >= 1 && number <= static_cast<long long>(words_.size()) ? words_[static_cast<std::size_t>(number) - 1] : "";
+}
+
+void Frame::begin(const fs::path& from) {
+  file = from;
+  first_line = 0;
+  time.reset(), step.reset();
+  time_of_picture = spin_without_unit = false;
+  clear();
+}
+
+void Frame::clear() {
+  for (std::vector<double>& values : value) values.clear();
+  count = 0;
+  passed_over.clear();
 }
 
 std::string Frame::place(std::size_t bead) const {
@@ -138,19 +171,7 @@ std::string format_of(const fs::path& file) {
 }
 
 std::unique_ptr<FrameStream> open_frames(const fs::path& file, const ReadOptions& options) {
-  switch (format_by_bytes(file)) {
-    case Format::dump:
-      return open_dump(file, options);
-    case Format::legacy_vtk:
-      return open_legacy_vtk(file, options);
-    case Format::xml_vtk:
-      return open_xml_vtk(file, options);
-    case Format::collection:
-      return std::make_unique<Series>(parts_of(file), options, file);
-    case Format::table:
-      break;
-  }
-  return open_table(file, options);
+  return open_as(format_by_bytes(file), file, options);
 }
 
 std::unique_ptr<FrameStream> read_frames(const std::vector<fs::path>& files, const ReadOptions& options) {

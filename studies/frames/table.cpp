@@ -29,12 +29,7 @@ class Table : public FrameStream {
   Table(const std::filesystem::path& file, const ReadOptions& options) : in_(file), options_(options) {}
 
   bool next(Frame& frame) override {
-    frame.file = in_.file();
-    frame.step.reset(), frame.time.reset(), frame.first_line = 0;
-    frame.time_of_picture = frame.spin_without_unit = false;
-    for (std::vector<double>& values : frame.value) values.clear();
-    frame.count = 0;
-    frame.passed_over.clear();
+    frame.begin(in_.file());
     if (in_rows_) return read_rows(frame, false);
     if (time_ || find_block()) {
       frame.time = time_;
@@ -78,15 +73,6 @@ class Table : public FrameStream {
     }
     written_ = cells_.size();
     while (!cells_.empty() && cells_.back().empty()) cells_.pop_back();  // a comma at the end of the line
-    drop_query_numbers();
-  }
-
-  /// "Q01 : Particle ID,Q02 : Particle Position X (m)": heads of columns that are numbered as queries are.
-  void drop_query_numbers() {
-    if (cells_.size() < 2 || !is_numbered(cells_[0]) || !is_numbered(cells_[1])) return;
-    for (std::string_view& cell : cells_) {
-      if (is_numbered(cell)) cell.remove_prefix(std::min(cell.find_first_not_of(' ', cell.find(':') + 1), cell.size()));
-    }
   }
 
   bool first_cell_is_text() const {
@@ -181,13 +167,10 @@ class Table : public FrameStream {
     return known > 0;
   }
 
-  /// "Q01 : Particle ID:" and its like: a title alone, or before numbers.
-  bool is_query() const { return !cells_.empty() && is_numbered(cells_[0]); }
+  /// "Q01 : Particle ID:" and its like: a title alone, or before numbers. Before another title it is the head of a table.
+  bool is_query() const { return !cells_.empty() && is_numbered(cells_[0]) && (cells_.size() == 1 || !is_numbered(cells_[1])); }
 
-  static bool is_numbered(std::string_view c) {
-    return c.size() > 2 && (c[0] == 'Q' || c[0] == 'q') && std::isdigit(static_cast<unsigned char>(c[1])) != 0 &&
-           c.find(':') != std::string_view::npos;
-  }
+  static bool is_numbered(std::string_view cell) { return without_number(cell).size() < cell.size(); }
 
   /// What stands under one time.
   bool read_block(Frame& frame) {
@@ -268,7 +251,8 @@ class Table : public FrameStream {
 
   // -------- a bead a line
   void begin_rows() {
-    std::vector<std::string> names(cells_.begin(), cells_.end());
+    std::vector<std::string> names;
+    for (const std::string_view cell : cells_) names.emplace_back(without_number(cell));
     try {
       columns_.emplace(names, options_);
     } catch (const std::invalid_argument& e) {

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
 
 #include "kernel/base/error.hpp"
+#include "kernel/base/text.hpp"
 #include "studies/frames/columns.hpp"
 
 namespace millscope::frames {
@@ -28,6 +27,14 @@ void convert(const char* from, std::size_t count, bool reversed, std::vector<dou
     std::memcpy(&value, bytes, sizeof(T));
     to[i] = static_cast<double>(value);
   }
+}
+
+template <class One, class Two, class Four, class Eight>
+void convert_of_size(std::size_t bytes, const char* from, std::size_t count, bool reversed, std::vector<double>& to) {
+  if (bytes == 1) return convert<One>(from, count, reversed, to);
+  if (bytes == 2) return convert<Two>(from, count, reversed, to);
+  if (bytes == 4) return convert<Four>(from, count, reversed, to);
+  convert<Eight>(from, count, reversed, to);
 }
 
 /// A place or a speed in any unit; zero is one.
@@ -54,8 +61,8 @@ void add_array(const VtkArray& array, const ReadOptions& options, Frame& frame) 
 
 }  // namespace
 
-NumberType number_type_of(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+NumberType number_type_of(std::string_view written) {
+  const std::string name = base::lower(written);
   struct Known {
     const char* name;
     NumberType type;
@@ -100,33 +107,9 @@ std::vector<double> numbers_from(const char* bytes, std::size_t count, NumberTyp
   if (type.kind == real) {
     type.bytes == 4 ? convert<float>(bytes, count, reversed, values) : convert<double>(bytes, count, reversed, values);
   } else if (type.kind == whole) {
-    switch (type.bytes) {
-      case 1:
-        convert<std::int8_t>(bytes, count, reversed, values);
-        break;
-      case 2:
-        convert<std::int16_t>(bytes, count, reversed, values);
-        break;
-      case 4:
-        convert<std::int32_t>(bytes, count, reversed, values);
-        break;
-      default:
-        convert<std::int64_t>(bytes, count, reversed, values);
-    }
+    convert_of_size<std::int8_t, std::int16_t, std::int32_t, std::int64_t>(type.bytes, bytes, count, reversed, values);
   } else {
-    switch (type.bytes) {
-      case 1:
-        convert<std::uint8_t>(bytes, count, reversed, values);
-        break;
-      case 2:
-        convert<std::uint16_t>(bytes, count, reversed, values);
-        break;
-      case 4:
-        convert<std::uint32_t>(bytes, count, reversed, values);
-        break;
-      default:
-        convert<std::uint64_t>(bytes, count, reversed, values);
-    }
+    convert_of_size<std::uint8_t, std::uint16_t, std::uint32_t, std::uint64_t>(type.bytes, bytes, count, reversed, values);
   }
   return values;
 }
@@ -147,8 +130,8 @@ void VtkPicture::pass_over_cells(const std::string& name) {
   if (std::find(passed_over.begin(), passed_over.end(), text) == passed_over.end()) passed_over.push_back(text);
 }
 
-bool is_time_field(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+bool is_time_field(std::string_view written) {
+  const std::string name = base::lower(written);
   return name == "timevalue" || name == "time";
 }
 
@@ -157,15 +140,11 @@ void take_field(VtkPicture& picture, const VtkArray& array) {
 }
 
 void to_frame(const VtkPicture& picture, const std::filesystem::path& file, const ReadOptions& options, Frame& frame) {
-  frame.file = file;
-  frame.first_line = 0;
-  frame.step.reset();
+  frame.begin(file);
   frame.time = picture.time;
   frame.time_of_picture = picture.time.has_value();
-  frame.spin_without_unit = false;
   frame.count = picture.points.size() / 3;
   frame.passed_over = picture.passed_over;
-  for (std::vector<double>& values : frame.value) values.clear();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     frame.value[kX + axis].resize(frame.count);
     for (std::size_t i = 0; i < frame.count; ++i) frame.value[kX + axis][i] = options.length * picture.points[3 * i + axis];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "studies/frames/frame.hpp"
@@ -18,7 +19,7 @@ struct NumberType {
   std::size_t bytes = 0;
 };
 /// bytes 0: not known.
-NumberType number_type_of(std::string name);
+NumberType number_type_of(std::string_view written);
 
 /// `count` numbers of a type as they lie in memory, or with each number's bytes reversed.
 std::vector<double> numbers_from(const char* bytes, std::size_t count, NumberType type, bool reversed);
@@ -42,7 +43,7 @@ struct VtkPicture {
 };
 
 /// TimeValue (VTK, ParaView), TIME, time.
-bool is_time_field(std::string name);
+bool is_time_field(std::string_view written);
 /// Adds an array of the field data.
 void take_field(VtkPicture& picture, const VtkArray& array);
 

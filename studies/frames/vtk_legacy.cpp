@@ -66,12 +66,7 @@ class Legacy : public FrameStream {
       in_.fail(fmt::format("holds {}; beads are the points of POLYDATA or UNSTRUCTURED_GRID: name such files alone in 'files'", kind));
   }
 
-  std::string word(const char* what) {
-    std::string_view text;
-    if (!in_.word(text))
-      in_.fail(fmt::format("the file ends where {} is expected: it is cut short; copy it again, or let the program write it again", what));
-    return std::string(text);
-  }
+  std::string word(const char* what) { return std::string(in_.word(what)); }
 
   std::size_t count(const char* what) {
     const double number = in_.number(what);

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <pugixml.hpp>
 
 #include "kernel/base/error.hpp"

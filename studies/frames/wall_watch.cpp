@@ -55,7 +55,6 @@ void WallWatch::look(const Beads& beads, const std::vector<double>& radius, cons
     if (r <= shell) farthest_ = std::max(farthest_, r + radius[i]);
     if (!beads.velocity.empty()) ride(beads.time, {x, y, z}, {beads.velocity[3 * i], beads.velocity[3 * i + 1], 0}, radius[i]);
   }
-  seen_ += beads.size();
   outside_ = std::max({outside_, beyond_shell, beyond_ends});
   const double most = kMostOutside * static_cast<double>(beads.size());
   if (static_cast<double>(beyond_shell) > most) {

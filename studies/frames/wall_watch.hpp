@@ -32,7 +32,7 @@ class WallWatch {
  private:
   const MillFile& mill_;
   std::vector<double> turning_;
-  std::size_t seen_ = 0, outside_ = 0;
+  std::size_t outside_ = 0;
   double farthest_ = 0;                 ///< m from the axis, of the beads' surfaces
   double low_ = 1e300, high_ = -1e300;  ///< m along the axis, of the beads' centres
   double mean_y_ = 0;

@@ -92,7 +92,7 @@ class Writer {
     for (const BeadKind& bead : census_.beads()) types.push_back(bead.type);
     std::sort(types.begin(), types.end());
     types.erase(std::unique(types.begin(), types.end()), types.end());
-    for (const long long type : types) names.push_back(fmt::format("type_{}", type));
+    for (const long long type : types) names.push_back(material_name(type));
     for (const BeadKind& bead : census_.beads()) {
       id.push_back(bead.id);
       radius.push_back(bead.radius);

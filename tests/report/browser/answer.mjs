@@ -1,17 +1,9 @@
 // node answer.mjs PAGE.html [--chromium PATH]: prints what stands on the page from above, one line each: in an answer its headings, first
 // sentence, next step, pictures and tables; of all else the contents, the kinds of the sections, and what is said first of a
 // calibration's parameters.
-import { resolve } from "node:path";
-import { pathToFileURL } from "node:url";
-import { PATIENCE, launch, readArguments } from "./browser.mjs";
+import { openPage } from "./browser.mjs";
 
-const PROGRAM = "answer.mjs";
-const { pages, options } = readArguments(PROGRAM, "usage: node answer.mjs PAGE.html [--chromium PATH]", ["chromium"]);
-const browser = await launch(PROGRAM, options.chromium);
-const page = await browser.newPage();
-page.setDefaultTimeout(PATIENCE);
-await page.goto(pathToFileURL(resolve(pages[0])).href);
-await page.waitForSelector("#contents li");
+const { browser, page } = await openPage("answer.mjs", "usage: node answer.mjs PAGE.html [--chromium PATH]");
 const lines = await page.evaluate(() => [...document.querySelectorAll(".answer h2, .answer h3, .answer p, .answer .chart, .answer table, #contents, main > .part, .part [id$=-parameters] > h3 + p")]
   .sort((one, other) => (one.compareDocumentPosition(other) & Node.DOCUMENT_POSITION_FOLLOWING ? -1 : 1)).map((node) => {
     if (node.id === "contents") return "contents";

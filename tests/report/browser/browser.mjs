@@ -1,6 +1,7 @@
 // What both programs share: the browser, the data in a page, complaints.
 import { existsSync, mkdirSync, readFileSync, renameSync, writeFileSync } from "node:fs";
-import { dirname } from "node:path";
+import { dirname, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
 const PLACES = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
@@ -36,6 +37,17 @@ export function readArguments(program, usage, names) {
   if (pages.length === 0) stop(`${program}: no page was given; ${usage}`);
   for (const page of pages) if (!existsSync(page)) stop(`${program}: there is no file ${page}: make it with millscope report`);
   return { pages, options };
+}
+
+/** {browser, page}: the one page that is named on the command line, with its contents there. */
+export async function openPage(program, usage) {
+  const { pages, options } = readArguments(program, usage, ["chromium"]);
+  const browser = await launch(program, options.chromium);
+  const page = await browser.newPage();
+  page.setDefaultTimeout(PATIENCE);
+  await page.goto(pathToFileURL(resolve(pages[0])).href);
+  await page.waitForSelector("#contents li");
+  return { browser, page };
 }
 
 /** Headless, drawing 3-D in software, as build machines have no graphics card. */

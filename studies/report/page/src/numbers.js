@@ -1,6 +1,7 @@
 // Numbers as a mill engineer reads them. Data are SI; a `scale` turns all values of one chart or column into one unit.
 
 export const MISSING = "–";
+export const INSIDE = 1.645; // standard deviations that hold nine of ten numbers
 export const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 
 const SUPERSCRIPT = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };

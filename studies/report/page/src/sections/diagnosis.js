@@ -1,6 +1,6 @@
 // A diagnosis: its answer, and how that was found: where it differs, what was tried, what was found, whether it predicts.
 import { block, disclosure, figure, list, note, paragraph, table } from "../dom.js";
-import { isNumber, number, probability, pValue, readable, signed, words } from "../numbers.js";
+import { INSIDE, isNumber, number, probability, pValue, readable, signed, words } from "../numbers.js";
 import { intervals } from "../plots/intervals.js";
 import { answer } from "./diagnosis_answer.js";
 import { drift } from "./diagnosis_friction.js";
@@ -38,7 +38,7 @@ function mismatch({ mismatch: rows = [], base }, key) {
     figure("Recording less retuned base, in standard deviations, the farthest first. Shaded: within 1.645, as nine of ten numbers are when nothing differs. "
       + "Hollow: not significant among so many.", intervals(`${key}-mismatch`, { label: `The ${first.length} farthest of ${rows.length} numbers: ${first.slice(0, 4)
       .map((row, index) => `${names[index]} z = ${signed(row.z, 2)}`).join(", ")}`, rows: names, groups: [{ name: "", values }],
-      x: { name: "z: difference over its standard deviation" }, zero: 0, zone: [-1.645, 1.645] })),
+      x: { name: "z: difference over its standard deviation" }, zero: 0, zone: [-INSIDE, INSIDE] })),
     mismatchTable(first, `The ${first.length} farthest numbers`),
     rest.length ? disclosure(`${key}-rest`, `The other ${rest.length} numbers`, () => mismatchTable(rest, "The other numbers")) : null);
 }

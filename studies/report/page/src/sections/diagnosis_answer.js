@@ -2,14 +2,12 @@
 import { block, element, figure, paragraph, table } from "../dom.js";
 import { doubtsElement } from "../doubts.js";
 import { hint } from "../chart.js";
-import { capital, isNumber, number, pValue, readable, scale, signed, words } from "../numbers.js";
+import { INSIDE, capital, isNumber, number, pValue, readable, scale, signed, words } from "../numbers.js";
 import { range, roundRange } from "../plots/axes.js";
 import { lines } from "../plots/lines.js";
 import { frictionBlock } from "./diagnosis_friction.js";
 import { CORRECTED, TO_ALL, TO_POWER } from "./models.js";
 import { strength } from "./parameters.js";
-
-const INSIDE = 1.645; // standard deviations that hold nine of ten numbers
 
 const either = (names) => (names.length < 2 ? names.join("") : `${names.slice(0, -1).join(", ")} or ${names[names.length - 1]}`);
 

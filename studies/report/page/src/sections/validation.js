@@ -1,6 +1,6 @@
 // A calibrated set held against recordings.
 import { block, disclosure, element, figure, table } from "../dom.js";
-import { interval, number, probability, quantity, signed, words } from "../numbers.js";
+import { INSIDE, interval, number, probability, quantity, signed, words } from "../numbers.js";
 import { intervals } from "../plots/intervals.js";
 import { scaleOf } from "./parameters.js";
 
@@ -21,7 +21,7 @@ function condition([name, found], key, index) {
     text: `${signed(row.difference, 3)} ${row.unit} (${interval(row.low90, row.high90)}), p ${probability(row.p)}` }));
   return block(id, `${name}: ${passed} of ${rows.length} pass`, figure(`${name} (${words(found.role)}): simulated less recorded in standard errors, with 90 % intervals. Hollow: passes; filled: fails. `
     + "Shaded: nine of ten numbers lie there when nothing differs.", intervals(`${id}-dots`, { label: `${passed} of ${rows.length} numbers of ${name} pass`, rows: usable.map((row) => row.name),
-    groups: [{ name: "", values }], x: { name: "difference in standard errors" }, zero: 0, zone: [-1.645, 1.645] })),
+    groups: [{ name: "", values }], x: { name: "difference in standard errors" }, zero: 0, zone: [-INSIDE, INSIDE] })),
   disclosure(`${id}-table`, `All ${rows.length} numbers of ${name}`, () => judged(rows, `${name}: recorded and simulated`)));
 }
 
