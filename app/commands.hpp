@@ -47,6 +47,7 @@ int check(const Arguments& arguments);
 int export_case(const Arguments& arguments);
 int import_case(const Arguments& arguments);
 int crosscheck_engines(const Arguments& arguments);
+int wear_liner(const Arguments& arguments);
 int analyze(const Arguments& arguments);
 int compare(const Arguments& arguments);
 int report_page(const Arguments& arguments);

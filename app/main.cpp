@@ -25,6 +25,7 @@ constexpr Command kCommands[] = {
     {"export", "a case for another engine", export_case},
     {"import", "what another engine made, as a run", import_case},
     {"crosscheck", "whether another engine says the same", crosscheck_engines},
+    {"wear", "how a liner wears away in hours of running", wear_liner},
     {"calibrate", "contact parameters from recordings", calibrate_study},
     {"validate", "whether what was calibrated holds elsewhere", validate},
     {"diagnose", "which physics a base case has left out", diagnose_study},

@@ -58,7 +58,7 @@ int plugin(const Arguments& arguments) {
                   "Writes a plugin project of its own (CMake, source, test, README) that builds against the installed SDK.",
                   "millscope plugin new contact_law my_law");
   options.positional("ACTION", "new");
-  options.positional("KIND", "contact_law, interaction, pair_parameter, body_force, geometry, observation, analyzer");
+  options.positional("KIND", "contact_law, interaction, pair_parameter, body_force, geometry, observation, analyzer, wear_law");
   options.positional("NAME", "lower_case_words");
   options.choices("ACTION", {"new"});
   std::vector<std::string> kinds;

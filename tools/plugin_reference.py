@@ -22,6 +22,7 @@ KINDS = {
     "contact_law": ("Contact laws", "One in a case, under `contact.law`: the normal and the tangential force of a contact."),
     "interaction": ("Interactions", "Any number, under `contact.interactions`: adhesion and films before the law, rolling resistance after it."),
     "pair_parameter": ("Pair parameters", "Under `contact.pair_parameters`: restitution or friction that depends on the contact's own state."),
+    "wear_law": ("Wear laws", "Any number, under `contact.wear`: how much of a wall a bead takes away ([wear](wear.md)). They move nothing."),
     "body_force": ("Body forces", "Under `body_forces`: what acts on each bead alone."),
     "geometry": ("Geometries", "Under `geometry`: walls ([importing a liner](importing_a_liner.md))."),
     "observation": ("Observations", "Under `observations` of a camera file: what a camera does to a track ([virtual camera](virtual_camera.md))."),

@@ -101,6 +101,7 @@ struct ContactCase {
   PluginInstance law;
   std::vector<PluginInstance> interactions;  ///< in the order of the file
   std::vector<PluginInstance> pair_parameters;
+  std::vector<PluginInstance> wear;  ///< what beads take away from walls; counted from `time.analyze_from_s` on
 };
 
 enum class Direction { counter_clockwise, clockwise };

@@ -84,6 +84,7 @@ void check_plugins(const Case& c, std::span<const Descriptor* const> descriptors
   on_pairs.push_back(check(Kind::contact_law, c.contact.law));
   for (const PluginInstance& i : c.contact.interactions) on_pairs.push_back(check(Kind::interaction, i));
   for (const PluginInstance& i : c.contact.pair_parameters) on_pairs.push_back(check(Kind::pair_parameter, i));
+  for (const PluginInstance& i : c.contact.wear) on_pairs.push_back(check(Kind::wear_law, i));
   for (const PluginInstance& i : c.body_forces) check(Kind::body_force, i);
   for (const GeometryCase& g : c.geometry) check(Kind::geometry, g.plugin);
   for (const std::string& key : c.pairs.keys()) {
@@ -105,12 +106,13 @@ std::vector<PluginInstance> read_instances(const Node& section, const char* what
 }
 
 ContactCase read_contact(const Node& section) {
-  section.expect({"law", "interactions", "pair_parameters"});
+  section.expect({"law", "interactions", "pair_parameters", "wear"});
   ContactCase contact;
   const Node law = section.at("law", "{kind: hertz_mindlin}");
   contact.law = {"law", law.at("kind", "the name of a contact law, e.g. hertz_mindlin").text(), law, law.where()};
   if (const auto node = section.find("interactions")) contact.interactions = read_instances(*node, "interaction");
   if (const auto node = section.find("pair_parameters")) contact.pair_parameters = read_instances(*node, "pair parameter");
+  if (const auto node = section.find("wear")) contact.wear = read_instances(*node, "wear law");
   return contact;
 }
 

@@ -196,7 +196,8 @@ json start_schema() {
 json case_schema(std::span<const Descriptor* const> descriptors) {
   const json contact = object({{"law", plugin(descriptors, Kind::contact_law)},
                                {"interactions", map_of(plugin(descriptors, Kind::interaction))},
-                               {"pair_parameters", map_of(plugin(descriptors, Kind::pair_parameter))}},
+                               {"pair_parameters", map_of(plugin(descriptors, Kind::pair_parameter))},
+                               {"wear", map_of(plugin(descriptors, Kind::wear_law))}},
                               {"law"});
   const json mill = object({{"speed", quantity("rad/s, rpm or %critical, not negative")},
                             {"diameter", quantity("m, for %critical")},

@@ -39,6 +39,7 @@ class Writer {
     instance("law", Kind::contact_law, c_.contact.law);
     if (!c_.contact.interactions.empty()) instances("interactions", Kind::interaction, c_.contact.interactions);
     if (!c_.contact.pair_parameters.empty()) instances("pair_parameters", Kind::pair_parameter, c_.contact.pair_parameters);
+    if (!c_.contact.wear.empty()) instances("wear", Kind::wear_law, c_.contact.wear);
     out_.close();
   }
 
@@ -113,6 +114,7 @@ class Writer {
     for (const PluginInstance& i : c_.contact.interactions) on_pairs.push_back(find_descriptor(descriptors_, Kind::interaction, i.kind));
     for (const PluginInstance& i : c_.contact.pair_parameters)
       on_pairs.push_back(find_descriptor(descriptors_, Kind::pair_parameter, i.kind));
+    for (const PluginInstance& i : c_.contact.wear) on_pairs.push_back(find_descriptor(descriptors_, Kind::wear_law, i.kind));
     const bool all_known = std::find(on_pairs.begin(), on_pairs.end(), nullptr) == on_pairs.end();
     if (c_.pairs.keys().empty()) return out_.value("pairs", "{}");
     out_.open("pairs");

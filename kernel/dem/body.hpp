@@ -16,7 +16,7 @@ struct Body {
   Motion motion;
   std::vector<int> material_of_slot;  ///< material index of each slot of the geometry
   double greatest_distance = 0;       ///< of its surface from the axis of rotation, m
-  bool per_triangle = false;          ///< keep impact and shear work per triangle
+  bool per_triangle = false;          ///< keep impact and shear work, and wear, per triangle
   std::uint64_t triangle_count = 0;
 };
 

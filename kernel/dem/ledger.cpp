@@ -31,6 +31,7 @@ void Ledger::add(const Ledger& other) {
     const PairLedger& q = other.pairs[i];
     p.elastic += q.elastic;
     for (std::size_t c = 0; c < p.dissipated.size(); ++c) p.dissipated[c] += q.dissipated[c];
+    for (std::size_t w = 0; w < p.worn.size(); ++w) p.worn[w] += q.worn[w];
     p.contacts += q.contacts;
     p.collisions += q.collisions;
     p.impact_energy += q.impact_energy;

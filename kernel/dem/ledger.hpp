@@ -19,6 +19,7 @@ struct ImpactBins {
 struct PairLedger {
   double elastic = 0;                ///< J, at this instant
   std::vector<double> dissipated;    ///< J since the start, per channel
+  std::vector<double> worn;          ///< m³ of the wall since Settings::wear_from_step, per wear law
   std::int64_t contacts = 0;         ///< at this instant
   std::int64_t collisions = 0;       ///< first touches since the start
   double impact_energy = 0;          ///< Σ ½ m* v_n² of them, J

@@ -12,6 +12,7 @@
 #include "millscope/geometry.hpp"
 #include "millscope/interaction.hpp"
 #include "millscope/pair_parameter.hpp"
+#include "millscope/wear_law.hpp"
 
 namespace millscope::dem {
 
@@ -33,6 +34,12 @@ struct PairParameterReference {
   bool gives_restitution = false, gives_friction = false;
 };
 
+struct WearReference {
+  const WearLawTable* table = nullptr;
+  const void* self = nullptr;
+  std::string name;
+};
+
 /// Everything that acts between two materials. `wall`: the second is a wall.
 struct PairPhysics {
   int first = 0, second = 0;
@@ -41,7 +48,8 @@ struct PairPhysics {
   LawReference law;
   std::vector<InteractionReference> interactions;
   std::vector<PairParameterReference> pair_parameters;
-  double reach = 0;  ///< m
+  std::vector<WearReference> wear;  ///< of a wall
+  double reach = 0;                 ///< m
 
   bool has_pre() const {
     return std::any_of(interactions.begin(), interactions.end(), [](const InteractionReference& i) { return i.pre; });

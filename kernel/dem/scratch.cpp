@@ -35,8 +35,8 @@ class Arrays {
 Scratch::Scratch(int history_count) {
   PairBatch& p = pairs;
   Arrays<double> doubles;
-  doubles.add(walls.lever, p.normal, p.velocity, walls.wall_velocity, p.spin_i, p.spin_j, p.force, p.torque_i, p.torque_j, p.moment_i,
-              p.moment_j);
+  doubles.add(walls.pressing, walls.sliding, walls.worn, walls.lever, p.normal, p.velocity, walls.wall_velocity, p.spin_i, p.spin_j,
+              p.force, p.torque_i, p.torque_j, p.moment_i, p.moment_j);
   doubles.add(p.overlap, p.radius_i, p.radius_j, p.radius, p.mass, p.arm_i, p.arm_j, p.normal_force, p.normal_stiffness, p.added_force,
               p.added_cap, p.restitution, p.friction, query_radius, found.overlap, p.power, query_position, found.normal);
   doubles.add(bodies.position, bodies.velocity, bodies.spin, bodies.radius, bodies.mass, bodies.force, bodies.moment, bodies.added_mass);

@@ -14,11 +14,12 @@ struct Settings {
   int threads = 1;
   PeriodicBox periodic{};
   double periodic_low[3] = {0, 0, 0};
-  double skin_steps = 30;       ///< a bead's skin lasts this many steps at its present speed …
-  double skin_base = 0.05;      ///< … beyond this fraction of its radius
-  double skin_cap = 0.6;        ///< and no more than this fraction of the largest radius
-  double low[3], high[3];       ///< a bead outside has left the domain, m
-  std::string instruction_set;  ///< "" for the best
+  double skin_steps = 30;           ///< a bead's skin lasts this many steps at its present speed …
+  double skin_base = 0.05;          ///< … beyond this fraction of its radius
+  double skin_cap = 0.6;            ///< and no more than this fraction of the largest radius
+  double low[3], high[3];           ///< a bead outside has left the domain, m
+  std::int64_t wear_from_step = 0;  ///< what is worn before is not counted
+  std::string instruction_set;      ///< "" for the best
 };
 
 /// K for a charge: a function of the case alone, never of the machine, for K decides the last bits of a result.

@@ -28,6 +28,7 @@ struct alignas(kCacheLine) SlabState {
   IntegrateResult result{false, -1};               ///< of this step
   Ledger ledger;                                   ///< since the start
   std::vector<std::vector<double>> impact, shear;  ///< [body][triangle], J since the start
+  std::vector<std::vector<double>> worn;           ///< [body][triangle], m³ since Settings::wear_from_step
 };
 
 struct SlabPass {

@@ -136,6 +136,8 @@ void Step::each_work(Self& self, int body, Visit& visit) {
       at + "impact", triangles, slabs, [body](auto& slab) -> auto& { return slab.impact[body]; });
   visit.parts(
       at + "shear", triangles, slabs, [body](auto& slab) -> auto& { return slab.shear[body]; });
+  visit.parts(
+      at + "worn", triangles, slabs, [body](auto& slab) -> auto& { return slab.worn[body]; });
 }
 
 template <class Self, class Visit>
@@ -145,6 +147,7 @@ void Step::each_book(Self& self, Visit& visit) {
   for (auto& slab : self.slabs_) {
     for (auto& p : slab.ledger.pairs) {
       for (auto& channel : p.dissipated) numbers.push_back(&channel);
+      for (auto& volume : p.worn) numbers.push_back(&volume);
       numbers.insert(numbers.end(), {&p.impact_energy, &p.largest_closing_speed, &p.largest_overlap});
       counts.push_back(&p.collisions);
       for (auto& bin : p.spectrum) counts.push_back(&bin);

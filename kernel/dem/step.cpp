@@ -23,12 +23,16 @@ Step::Step(Common& common, Particles& particles, PairLists& pairs, WallLists& wa
 void Step::prepare() {
   SlabState empty;
   empty.ledger.pairs.resize(common_.physics.count());
-  for (PairLedger& p : empty.ledger.pairs) p.dissipated.assign(common_.layout.channels.size(), 0.0);
+  for (int p = 0; p < common_.physics.count(); ++p) {
+    empty.ledger.pairs[p].dissipated.assign(common_.layout.channels.size(), 0.0);
+    empty.ledger.pairs[p].worn.assign(common_.physics[p].wear.size(), 0.0);
+  }
   empty.ledger.bodies.resize(walls_.bodies().size());
   empty.ledger.body_force_work.assign(body_forces_.size(), 0.0);
   for (const Body& body : walls_.bodies()) {
     empty.impact.emplace_back(body.per_triangle ? body.triangle_count : 0, 0.0);
     empty.shear.push_back(empty.impact.back());
+    empty.worn.push_back(empty.impact.back());
   }
   slabs_.assign(common_.slabs.count, empty);
   pushed_ = std::vector<std::atomic<std::int64_t>>(common_.slabs.count);

@@ -122,20 +122,18 @@ double System::total_mass() const {
   return mass;
 }
 
-std::vector<double> System::impact_work(std::size_t body) const {
-  std::vector<double> sum(parts_->step.slabs()[0].impact[body].size(), 0.0);
-  for (const SlabState& slab : parts_->step.slabs()) {
-    for (std::size_t t = 0; t < sum.size(); ++t) sum[t] += slab.impact[body][t];
+/// Of all slabs, in their order, what each has added up of the triangles of a body.
+std::vector<double> System::triangle_sums(std::size_t body, std::vector<std::vector<double>> SlabState::*kind) const {
+  const auto& slabs = parts_->step.slabs();
+  std::vector<double> sum((slabs[0].*kind)[body].size(), 0.0);
+  for (const SlabState& slab : slabs) {
+    for (std::size_t t = 0; t < sum.size(); ++t) sum[t] += (slab.*kind)[body][t];
   }
   return sum;
 }
 
-std::vector<double> System::shear_work(std::size_t body) const {
-  std::vector<double> sum(parts_->step.slabs()[0].shear[body].size(), 0.0);
-  for (const SlabState& slab : parts_->step.slabs()) {
-    for (std::size_t t = 0; t < sum.size(); ++t) sum[t] += slab.shear[body][t];
-  }
-  return sum;
-}
+std::vector<double> System::impact_work(std::size_t body) const { return triangle_sums(body, &SlabState::impact); }
+std::vector<double> System::shear_work(std::size_t body) const { return triangle_sums(body, &SlabState::shear); }
+std::vector<double> System::worn_volume(std::size_t body) const { return triangle_sums(body, &SlabState::worn); }
 
 }  // namespace millscope::dem

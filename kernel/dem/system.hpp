@@ -27,6 +27,7 @@ namespace millscope::dem {
 
 class PairLists;
 class WallLists;
+struct SlabState;
 
 /// A bead moved more than half its radius in one step: the state is of no use any more.
 struct Runaway : base::UserError {
@@ -82,6 +83,8 @@ class System {
   /// Impact and shear work of each triangle of a body, J since the start.
   std::vector<double> impact_work(std::size_t body) const;
   std::vector<double> shear_work(std::size_t body) const;
+  /// What beads have taken away at each triangle of a body, m³ since Settings::wear_from_step.
+  std::vector<double> worn_volume(std::size_t body) const;
 
   /// FNV-1a over ids, positions, velocities, spins, contact histories, time, wall angles, in id order.
   std::uint64_t state_hash() const;
@@ -100,6 +103,7 @@ class System {
  private:
   struct Parts;
   void rebuild();
+  std::vector<double> triangle_sums(std::size_t body, std::vector<std::vector<double>> SlabState::*kind) const;
   std::array<std::int64_t, 6> counters() const;
   template <class Self, class SelfParts, class Visit>
   static void each_bead_array(Self& self, SelfParts& parts, Visit& visit);

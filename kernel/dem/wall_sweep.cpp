@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "kernel/dem/evaluate.hpp"
 
@@ -9,6 +10,34 @@ namespace millscope::dem {
 namespace {
 
 constexpr std::int64_t kBeadsPerQuery = kBatch / kMaxWallContacts;
+
+/// W that sliding and its damping take from contact `k`.
+double tangential_loss(const PairTermInfo& law, const WallBatch& b, std::int64_t k) {
+  double power = 0;
+  for (std::size_t c = 0; c < law.channel_count; ++c) {
+    if (law.channels[c].part == ChannelPart::tangential && law.channels[c].nature == ChannelNature::dissipative) power += b.power[c][k];
+  }
+  return power;
+}
+
+/// Pressing force and sliding speed. The law says what friction takes: over its force that is the speed of sliding. It is nearly 0 while
+/// the spring sticks, though the surfaces then move by what the spring gives.
+void note_rubbing(const PairPhysics& physics, std::int64_t count, const WallBatch& b) {
+  const bool has_cap = physics.has_pre();
+  for (std::int64_t k = 0; k < count; ++k) {
+    double along = 0, force2 = 0, closing = 0, speed2 = 0;
+    for (int a = 0; a < 3; ++a) {
+      along += b.force[a][k] * b.normal[a][k];
+      force2 += b.force[a][k] * b.force[a][k];
+      closing += b.velocity[a][k] * b.normal[a][k];
+      speed2 += b.velocity[a][k] * b.velocity[a][k];
+    }
+    const double shear = std::sqrt(std::max(force2 - along * along, 0.0));
+    const double most = std::sqrt(std::max(speed2 - closing * closing, 0.0));
+    b.pressing[k] = std::max(along + (has_cap ? b.added_cap[k] : 0.0), 0.0);
+    b.sliding[k] = shear > 0 ? std::min(tangential_loss(physics.law.table->info, b, k) / shear, most) : 0.0;
+  }
+}
 
 }  // namespace
 
@@ -164,6 +193,7 @@ void WallSweep::scatter(const Chunk& chunk, int physics_index, std::int64_t coun
   }
   if (!body.per_triangle) return;
   for (std::int64_t k = 0; k < count; ++k) book_triangle(chunk, physics, k);
+  if (!physics.wear.empty() && pass_.step >= pass_.common.settings.wear_from_step) wear(chunk, physics_index, count);
 }
 
 /// Work that the contact at place `k` of the batch does on its triangle.
@@ -175,6 +205,29 @@ void WallSweep::book_triangle(const Chunk& chunk, const PairPhysics& physics, st
   for (std::size_t channel = 0; channel < law.channel_count; ++channel) {
     auto& kind = law.channels[channel].part == ChannelPart::normal ? pass_.state.impact : pass_.state.shear;
     kind[chunk.body][triangle] += b.power[channel][k] * pass_.common.settings.time_step;
+  }
+}
+
+/// What the contacts of the batch take away from the body.
+void WallSweep::wear(const Chunk& chunk, int physics_index, std::int64_t count) {
+  const WallBatch& b = pass_.scratch.walls;
+  const PairPhysics& physics = pass_.common.physics[physics_index];
+  note_rubbing(physics, count, b);
+  WearBatch batch{count, pass_.common.settings.time_step, b.fresh, {}, {}, b.radius_i, b.mass, b.pressing, b.sliding, b.worn};
+  for (int a = 0; a < 3; ++a) {
+    batch.normal[a] = b.normal[a];
+    batch.velocity[a] = b.velocity[a];
+  }
+  std::vector<double>& worn = pass_.state.worn[chunk.body];
+  for (std::size_t law = 0; law < physics.wear.size(); ++law) {
+    physics.wear[law].table->evaluate(physics.wear[law].self, &batch);
+    double& total = pass_.state.ledger.pairs[physics_index].worn[law];
+    for (std::int64_t k = 0; k < count; ++k) {
+      if (!(b.overlap[k] > 0)) continue;
+      const std::uint32_t triangle = pass_.scratch.found.triangle[b.contact[k]];
+      if (triangle < worn.size()) worn[triangle] += b.worn[k];
+      total += b.worn[k];
+    }
   }
 }
 

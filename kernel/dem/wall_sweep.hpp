@@ -33,6 +33,7 @@ class WallSweep {
   std::int64_t gather(const Chunk& chunk, int physics_index);
   void scatter(const Chunk& chunk, int physics_index, std::int64_t count);
   void book_triangle(const Chunk& chunk, const PairPhysics& physics, std::int64_t place);
+  void wear(const Chunk& chunk, int physics_index, std::int64_t count);
 
   const SlabPass& pass_;
   WallLists& walls_;

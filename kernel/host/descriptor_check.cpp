@@ -17,6 +17,7 @@
 #include "millscope/interaction.hpp"
 #include "millscope/observation.hpp"
 #include "millscope/pair_parameter.hpp"
+#include "millscope/wear_law.hpp"
 
 namespace millscope::host {
 
@@ -36,6 +37,7 @@ constexpr KindLayout kLayouts[] = {
     {Kind::geometry, kGeometryLayout, sizeof(GeometryTable)},
     {Kind::observation, kObservationLayout, sizeof(ObservationTable)},
     {Kind::analyzer, kAnalyzerLayout, sizeof(AnalyzerTable)},
+    {Kind::wear_law, kWearLawLayout, sizeof(WearLawTable)},
 };
 
 const KindLayout* layout_of(std::uint32_t kind) {

@@ -14,6 +14,7 @@
 #include "millscope/interaction.hpp"
 #include "millscope/observation.hpp"
 #include "millscope/pair_parameter.hpp"
+#include "millscope/wear_law.hpp"
 
 namespace millscope::host {
 
@@ -63,6 +64,7 @@ class Object {
 using LawObject = Object<ContactLawTable>;
 using InteractionObject = Object<InteractionTable>;
 using PairParameterObject = Object<PairParameterTable>;
+using WearLawObject = Object<WearLawTable>;
 using BodyForceObject = Object<BodyForceTable>;
 using GeometryObject = Object<GeometryTable>;
 using ObservationObject = Object<ObservationTable>;

@@ -22,7 +22,7 @@ const std::map<Kind, std::string>& kind_words() {
   static const std::map<Kind, std::string> words = {
       {Kind::contact_law, "contact_law"}, {Kind::interaction, "interaction"}, {Kind::pair_parameter, "pair_parameter"},
       {Kind::body_force, "body_force"},   {Kind::geometry, "geometry"},       {Kind::observation, "observation"},
-      {Kind::analyzer, "analyzer"}};
+      {Kind::analyzer, "analyzer"},       {Kind::wear_law, "wear_law"}};
   return words;
 }
 

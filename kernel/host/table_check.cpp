@@ -6,6 +6,7 @@
 #include "millscope/interaction.hpp"
 #include "millscope/observation.hpp"
 #include "millscope/pair_parameter.hpp"
+#include "millscope/wear_law.hpp"
 
 namespace millscope::host {
 
@@ -47,6 +48,8 @@ std::string check(const GeometryTable& t, const Descriptor&) {
 
 std::string check(const ObservationTable& t, const Descriptor&) { return missing(t.create, t.destroy, t.observe); }
 
+std::string check(const WearLawTable& t, const Descriptor&) { return missing(t.create, t.destroy, t.evaluate); }
+
 std::string check(const AnalyzerTable& t, const Descriptor&) { return missing(t.create, t.destroy, t.arrays, t.accumulate, t.finish); }
 
 template <class Table>
@@ -72,6 +75,8 @@ std::string table_complaint(const Descriptor& d) {
       return check_as<ObservationTable>(d);
     case Kind::analyzer:
       return check_as<AnalyzerTable>(d);
+    case Kind::wear_law:
+      return check_as<WearLawTable>(d);
   }
   return "is of an unknown kind";
 }

@@ -128,7 +128,7 @@ void write_beads_vtp(const std::filesystem::path& path, const BeadPicture& p) {
 void write_mesh_vtp(const std::filesystem::path& path, const MeshPicture& p) {
   const std::size_t count = p.triangles.size() / 3;
   require(p.materials.size() == count && (p.impact_work.empty() || p.impact_work.size() == count) &&
-              (p.shear_work.empty() || p.shear_work.size() == count),
+              (p.shear_work.empty() || p.shear_work.size() == count) && (p.worn_volume.empty() || p.worn_volume.size() == count),
           "write_mesh_vtp: arrays differ in length");
   Vtp vtp;
   vtp.tag(fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\">",
@@ -137,6 +137,7 @@ void write_mesh_vtp(const std::filesystem::path& path, const MeshPicture& p) {
   vtp.array("material", as<std::uint32_t>(p.materials));
   add_work(vtp, p, "impact_work", p.impact_work);
   add_work(vtp, p, "shear_work", p.shear_work);
+  add_work(vtp, p, "worn_volume", p.worn_volume);
   vtp.tag("</CellData>\n<Points>");
   vtp.array("position", as<double>(p.vertices), 3);
   vtp.tag("</Points>\n<Polys>");

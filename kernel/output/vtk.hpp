@@ -26,12 +26,13 @@ struct MeshPicture {
   std::span<const std::uint32_t> materials;  ///< [T] slot of each triangle
   std::span<const double> impact_work;       ///< [T] J since the start, or empty
   std::span<const double> shear_work;        ///< [T] J since the start, or empty
+  std::span<const double> worn_volume;       ///< [T] m³ since the analysis began, or empty
 };
 
 /// Points with radius, velocity, speed, spin, id, material; whole or not at all. UserError when it cannot be written.
 void write_beads_vtp(const std::filesystem::path& path, const BeadPicture& picture);
 
-/// Triangles with material, impact_work, shear_work (J) and the same per area (J/m²); whole or not at all.
+/// Triangles with material, impact_work, shear_work (J), worn_volume (m³) and the same per area; whole or not at all.
 void write_mesh_vtp(const std::filesystem::path& path, const MeshPicture& picture);
 
 /// A PVD file: which picture shows which time. Replaced as a whole at each change, so that ParaView never sees half of it.

@@ -133,6 +133,9 @@ std::optional<config::Vessel> vessel_of(const Assembly& a, double period) {
   return {};
 }
 
+/// Steps until a time, the last one whole.
+std::int64_t steps_until(double time, double time_step) { return static_cast<std::int64_t>(std::ceil(time / time_step)); }
+
 /// And the number of beads, which that of the slabs follows from.
 dem::Settings settings_of(Assembly& a, const host::Registry& registry, const AssemblyOptions& options) {
   dem::Settings s;
@@ -147,6 +150,7 @@ dem::Settings settings_of(Assembly& a, const host::Registry& registry, const Ass
   a.bead_count = config::bead_count(a.c, vessel_of(a, s.periodic.length[2]));
   if (a.c.run.partitions == 0) a.c.run.partitions = dem::partitions_for(a.bead_count);
   s.partitions = a.c.run.partitions;
+  s.wear_from_step = steps_until(a.c.time.analyze_from, a.time_step);
   return s;
 }
 
@@ -161,7 +165,7 @@ void add_bodies(Assembly& a) {
     for (const std::string& slot : use.slots) body.material_of_slot.push_back(a.index_of_material(a.c.geometry[g].material_of(slot)));
     body.greatest_distance = greatest_distance(use.surface, body.motion);
     body.triangle_count = use.surface.triangle_count;
-    body.per_triangle = a.c.output.vtk.has_value();
+    body.per_triangle = a.c.output.vtk.has_value() || !a.c.contact.wear.empty();
     a.system->bodies.push_back(std::move(body));
   }
 }
@@ -177,9 +181,6 @@ void add_body_forces(Assembly& a) {
     }
   }
 }
-
-/// Steps until a time, the last one whole.
-std::int64_t steps_until(double time, double time_step) { return static_cast<std::int64_t>(std::ceil(time / time_step)); }
 
 }  // namespace
 

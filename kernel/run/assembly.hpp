@@ -32,6 +32,7 @@ struct Assembly {
   std::vector<host::LawObject> laws;
   std::vector<host::InteractionObject> interactions;
   std::vector<host::PairParameterObject> pair_parameters;
+  std::vector<host::WearLawObject> wear_laws;
   std::vector<host::BodyForceObject> body_forces;
   std::vector<GeometryUse> geometries;
   std::unique_ptr<dem::System> system;

@@ -111,6 +111,10 @@ dem::PairPhysics make_pair(Assembly& a, const host::Registry& registry, int firs
     const std::uint64_t features = i.plugin().descriptor->features;
     p.pair_parameters.push_back({&i.table(), i.self(), (features & kGivesRestitution) != 0, (features & kGivesFriction) != 0});
   }
+  for (const config::PluginInstance& use : wall ? a.c.contact.wear : std::vector<config::PluginInstance>{}) {
+    a.wear_laws.push_back(create(static_cast<host::WearLawObject*>(nullptr), Kind::wear_law, use, context));
+    p.wear.push_back({&a.wear_laws.back().table(), a.wear_laws.back().self(), use.name});
+  }
   const double time = contact_time(p.law, context, a.typical_speed);
   a.stiffness_from_young &= gets_shorter(law, law_between(stiffer(context, 2)), context);
   a.hertz_contact_time = a.hertz_contact_time > 0 ? std::min(a.hertz_contact_time, time) : time;

@@ -38,11 +38,12 @@ void Pictures::add(const Assembly& a, double time, std::int64_t number, const ou
     const Surface& s = a.geometries[b].surface;
     if (s.triangle_count == 0) continue;
     const std::vector<double> moved = vertices_at(s, a.system->bodies[b].motion, time);
-    std::vector<double> impact, shear;
+    std::vector<double> impact, shear, worn;
     if (worked != nullptr) impact = worked->impact_work(b), shear = worked->shear_work(b);
+    if (worked != nullptr && !a.c.contact.wear.empty()) worn = worked->worn_volume(b);
     const std::string wall = fmt::format("{}_{:06d}.vtp", a.system->bodies[b].name, number);
     output::write_mesh_vtp(folder_ / wall,
-                           {moved, {s.triangles, 3 * s.triangle_count}, {s.triangle_materials, s.triangle_count}, impact, shear});
+                           {moved, {s.triangles, 3 * s.triangle_count}, {s.triangle_materials, s.triangle_count}, impact, shear, worn});
     walls_.add(time, wall, static_cast<int>(b));
   }
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "kernel/run/wear.hpp"
 #include "millscope/random.hpp"
 
 namespace millscope::run {
@@ -251,6 +252,7 @@ void Recorder::close() {
   if (series_) series_->close();
   if (frames_) frames_->close();
   if (tracks_) tracks_->close();
+  if (!a_.c.contact.wear.empty()) write_wear(a_, directory_ / kWearFile);
 }
 
 }  // namespace millscope::run

@@ -153,6 +153,7 @@ Json collision_summary(const Assembly& a, const dem::Ledger& now, const dem::Led
     Json power;
     for (std::size_t c = 0; c < channels.size(); ++c) power[channels[c]] = (n.dissipated[c] - b.dissipated[c]) / seconds;
     j["dissipation_W"] = power;
+    for (std::size_t w = 0; w < n.worn.size(); ++w) j["worn_m3_per_s"][physics[p].wear[w].name] = n.worn[w] / seconds;
     Json edges = Json::array(), counts = Json::array();
     int low = dem::ImpactBins::kCount, high = -1;
     for (int k = 0; k < dem::ImpactBins::kCount; ++k) {

@@ -61,6 +61,7 @@ void each_plugin(const config::Case& c, const Visit& visit) {
   on_pairs(Kind::contact_law, c.contact.law);
   for (const config::PluginInstance& use : c.contact.interactions) on_pairs(Kind::interaction, use);
   for (const config::PluginInstance& use : c.contact.pair_parameters) on_pairs(Kind::pair_parameter, use);
+  for (const config::PluginInstance& use : c.contact.wear) on_pairs(Kind::wear_law, use);
   for (const config::PluginInstance& use : c.body_forces) visit(Kind::body_force, use.kind, use.node, Scope::instance);
   for (const config::GeometryCase& g : c.geometry) visit(Kind::geometry, g.plugin.kind, g.plugin.node, Scope::instance);
 }

@@ -101,6 +101,12 @@ Json crosscheck_section(const fs::path& folder) {
   return section;
 }
 
+Json wear_section(const fs::path& folder) {
+  Json section = from_file("wear", "wear.json", folder);
+  section["title"] = section["wear"].value("name", section["title"]);
+  return section;
+}
+
 Json calibration_section(const fs::path& folder) {
   Json section = from_file("calibration", "calibration.json", folder);
   section["runs"] = fs::exists(folder / "runs.csv") ? table_json(folder / "runs.csv") : Json(nullptr);

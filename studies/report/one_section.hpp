@@ -19,6 +19,7 @@ Json run_section(const std::filesystem::path& folder, const host::Registry& regi
 Json analysis_section(const std::filesystem::path& folder, const host::Registry& registry);
 Json comparison_section(const std::filesystem::path& folder);
 Json crosscheck_section(const std::filesystem::path& folder);
+Json wear_section(const std::filesystem::path& folder);
 /// Of a folder with the cache of a study or a campaign.
 Json campaign_section(const std::filesystem::path& folder);
 Json calibration_section(const std::filesystem::path& folder);

@@ -22,13 +22,14 @@ struct Kind {
   std::function<Json(const fs::path&, const host::Registry&, const SectionOptions&)> make;
 };
 
-const std::array<Kind, 9>& kinds() {
-  static const std::array<Kind, 9> all{{
+const std::array<Kind, 10>& kinds() {
+  static const std::array<Kind, 10> all{{
       {output::kResolvedCase, run_section},
       {"results.h5",
        [](const fs::path& folder, const host::Registry& registry, const SectionOptions&) { return analysis_section(folder, registry); }},
       {"comparison.json", [](const fs::path& folder, const host::Registry&, const SectionOptions&) { return comparison_section(folder); }},
       {"crosscheck.json", [](const fs::path& folder, const host::Registry&, const SectionOptions&) { return crosscheck_section(folder); }},
+      {"wear.json", [](const fs::path& folder, const host::Registry&, const SectionOptions&) { return wear_section(folder); }},
       {"cache", [](const fs::path& folder, const host::Registry&, const SectionOptions&) { return campaign_section(folder); }},
       {"calibration.json",
        [](const fs::path& folder, const host::Registry&, const SectionOptions&) { return calibration_section(folder); }},
@@ -53,8 +54,8 @@ void find_places(const fs::path& folder, int depth, std::vector<Place>& places) 
     places.push_back({k, folder});
     any = true;
   }
-  // Below a score are the sets that it counts.
-  if ((any && fs::exists(folder / "score.json")) || depth == kDeepest) return;
+  // Below a score are the sets that it counts, below a wear study its stages.
+  if ((any && (fs::exists(folder / "score.json") || fs::exists(folder / "wear.json"))) || depth == kDeepest) return;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, fs::directory_options::skip_permission_denied)) {
     const std::string name = entry.path().filename();
     if (!entry.is_directory() || entry.is_symlink() || name == "cache" || name.starts_with('.')) continue;

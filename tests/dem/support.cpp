@@ -49,7 +49,8 @@ std::string Setup::text() const {
        "  heavy: {density: 7800 kg/m^3, young_modulus: 63.96 GPa, poisson_ratio: 0.30}\n"
        "  wall: {density: 2500 kg/m^3, young_modulus: 63.96 GPa, poisson_ratio: 0.23}\n";
   t += "beads: " + beads + "\nfill: " + fill + "\n";
-  t += "contact:\n  law: " + law + "\n  interactions: " + interactions + "\n  pair_parameters: " + pair_parameters + "\n";
+  t += "contact:\n  law: " + law + "\n  interactions: " + interactions + "\n  pair_parameters: " + pair_parameters + "\n  wear: " + wear +
+       "\n";
   t += fmt::format(
       "pairs:\n  glass~glass: {{{0}}}\n  glass~heavy: {{{0}}}\n  heavy~heavy: {{{0}}}\n  glass~wall: {{{1}}}\n  heavy~wall: {{{1}}}\n",
       pairs, walls);

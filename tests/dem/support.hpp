@@ -29,7 +29,7 @@ struct Setup {
   std::string wall_pairs;                                        ///< … those with the wall, when they differ
   std::string beads = "{glass: {material: glass, diameter: 5 mm}}";
   std::string fill = "{count: 1, settle_s: 0}";
-  std::string interactions = "{}", pair_parameters = "{}";
+  std::string interactions = "{}", pair_parameters = "{}", wear = "{}";
   std::string body_forces = "{}";  ///< or "{gravity: {kind: gravity}}"
   std::string geometry = "{}";
   std::string domain = "{low: [-10, -10, -10], high: [10, 10, 10]}";

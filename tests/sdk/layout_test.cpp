@@ -86,6 +86,7 @@ TEST_CASE("every member of every struct that crosses is in its list of offsets")
   check_structs(PairStructs<PairTermInfo, Channel, ContactBatch, ContactLawTable>{});
   check_structs(StructList<InteractionBatch, InteractionTable, PairParameterInfo, PairParameterBatch, PairParameterTable>{});
   check_structs(StructList<BodyForceBatch, BodyForceTable>{});
+  check_structs(StructList<WearBatch, WearLawTable>{});
   check_structs(StructList<CandidateSink, GeometryBeads, GeometryQuery, GeometryContacts, Surface, Interior, GeometryTable>{});
   check_structs(StructList<TrackView, TrackBuffer, TrackSink, TrackContext, ObservationTable>{});
   check_structs(StructList<FrameBlock, AnalyzerContext, ArrayInfo, Result, ResultSink, AnalyzerTable>{});
@@ -106,6 +107,6 @@ TEST_CASE("two members of one size exchanged, or an array that grows, change the
 
 TEST_CASE("each kind has a layout hash of its own") {
   const std::uint64_t all[] = {kContactLawLayout, kInteractionLayout, kPairParameterLayout, kBodyForceLayout,
-                               kGeometryLayout,   kObservationLayout, kAnalyzerLayout};
+                               kGeometryLayout,   kObservationLayout, kAnalyzerLayout,      kWearLawLayout};
   for (const std::uint64_t& one : all) CHECK(std::count(std::begin(all), std::end(all), one) == 1);
 }

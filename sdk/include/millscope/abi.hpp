@@ -27,6 +27,7 @@ enum class Kind : std::uint32_t {
   geometry = 5,
   observation = 6,
   analyzer = 7,
+  wear_law = 8,
 };
 
 /// How a parameter is written in YAML.

@@ -17,3 +17,4 @@
 #include "millscope/conformance/observation.hpp"
 #include "millscope/conformance/open.hpp"
 #include "millscope/conformance/pair_parameter.hpp"
+#include "millscope/conformance/wear_law.hpp"

@@ -12,3 +12,4 @@
 #include "millscope/pack.hpp"
 #include "millscope/pair_parameter_adapter.hpp"
 #include "millscope/parameters.hpp"
+#include "millscope/wear_law_adapter.hpp"

@@ -60,6 +60,9 @@ void check_interactions(const run::Assembly& a, const host::Registry& registry, 
                                      "usual speed under pairs",
                                      use.name));
   }
+  for (const config::PluginInstance& use : a.c.contact.wear) {
+    found.add(use.where, fmt::format("contact.wear '{}': wear is not counted in LIGGGHTS; leave it out", use.name));
+  }
 }
 
 void check_forces(const run::Assembly& a, Obstacles& found) {

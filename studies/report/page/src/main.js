@@ -13,8 +13,9 @@ import { crosscheck } from "./sections/crosscheck.js";
 import { diagnosis } from "./sections/diagnosis.js";
 import { run } from "./sections/run.js";
 import { validation } from "./sections/validation.js";
+import { wear } from "./sections/wear.js";
 
-const KINDS = { run, analysis, comparison, campaign, calibration, validation, diagnosis, challenge, crosscheck };
+const KINDS = { run, analysis, comparison, campaign, calibration, validation, diagnosis, challenge, crosscheck, wear };
 
 const byId = (id) => document.getElementById(id);
 const shown = []; // what stands in the page: {text, part, answer}

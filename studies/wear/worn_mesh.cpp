@@ -1,0 +1,186 @@
+#include "studies/wear/worn_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace millscope::wear {
+namespace {
+
+constexpr std::size_t kMostParts = 64;
+constexpr double kReach = 4;  // deviations of the Gaussian that count
+
+double distance(const Place& a, const Place& b) { return std::hypot(b.x - a.x, b.y - a.y); }
+
+/// Radius at the border between two rows, where the triangles have their vertices.
+Profile at_borders(const Profile& p) {
+  Profile b = p;
+  b.rows = p.rows + 1;
+  b.radius.assign(b.rows * b.columns, 0.0);
+  for (std::size_t j = 0; j < b.rows; ++j) {
+    const std::size_t below = j == 0 ? 0 : j - 1, above = std::min(j, p.rows - 1);
+    for (std::size_t c = 0; c < p.columns; ++c) b.at(j, c) = 0.5 * (p.at(below, c) + p.at(above, c));
+  }
+  return b;
+}
+
+void add_triangle(Mesh& m, std::size_t a, std::size_t b, std::size_t c, std::uint32_t material) {
+  for (const std::size_t v : {a, b, c}) m.triangles.push_back(static_cast<std::uint32_t>(v));
+  m.materials.push_back(material);
+}
+
+/// One ring of vertices at z: all stretches of all pitches.
+void add_ring(Mesh& m, const Profile& borders, const Stretches& s, std::size_t row, double z) {
+  for (int pitch = 0; pitch < borders.pitches; ++pitch) {
+    const double turn = kTurn * pitch / borders.pitches, cosine = std::cos(turn), sine = std::sin(turn);
+    for (std::size_t c = 0; c < borders.columns; ++c) {
+      for (std::size_t part = 0; part < s.parts[c]; ++part) {
+        const Place at = place_of(borders, row, c, static_cast<double>(part) / static_cast<double>(s.parts[c]));
+        m.vertices.insert(m.vertices.end(), {cosine * at.x - sine * at.y, sine * at.x + cosine * at.y, z});
+      }
+    }
+  }
+}
+
+/// A fan from the axis to the ring that begins at vertex `ring`.
+void add_face(Mesh& m, const Profile& p, std::size_t ring, std::size_t count, bool upper) {
+  const std::size_t centre = m.vertices.size() / 3;
+  m.vertices.insert(m.vertices.end(), {0.0, 0.0, upper ? p.high : p.low});
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t here = ring + k, next = ring + (k + 1) % count;
+    upper ? add_triangle(m, centre, next, here, p.face_material) : add_triangle(m, centre, here, next, p.face_material);
+  }
+}
+
+/// Spreads n numbers that stand at `place` in a period (0: none).
+void spread(std::vector<double>& values, const std::vector<double>& place, const std::vector<double>& length, double period,
+            double deviation) {
+  const std::size_t n = values.size();
+  std::vector<double> out(n, 0.0), weight(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(values[i] > 0)) continue;
+    double sum = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+      double away = std::fabs(place[j] - place[i]);
+      if (period > 0) away = std::min(away, period - away);
+      away /= deviation;
+      weight[j] = away > kReach ? 0.0 : length[j] * std::exp(-0.5 * away * away);
+      sum += weight[j];
+    }
+    for (std::size_t j = 0; j < n; ++j) out[j] += values[i] * weight[j] / sum;
+  }
+  values = out;
+}
+
+}  // namespace
+
+Stretches stretches_of(const Profile& p) {
+  Stretches s{std::vector<std::size_t>(p.columns, 1), {0}};
+  double radius = 0;
+  for (const double r : p.radius) radius += r / static_cast<double>(p.radius.size());
+  const double cell = p.step() * radius;
+  for (std::size_t c = 0; c < p.columns; ++c) {
+    for (std::size_t row = 0; row < p.rows; ++row) {
+      const double length = distance(place_of(p, row, c, 0), place_of(p, row, c, 1));
+      s.parts[c] = std::max(s.parts[c], std::min(kMostParts, static_cast<std::size_t>(std::lround(length / cell))));
+    }
+    s.first.push_back(s.first.back() + s.parts[c]);
+  }
+  return s;
+}
+
+Place place_of(const Profile& p, std::size_t row, std::size_t column, double share) {
+  const double a = p.step() * static_cast<double>(column), b = p.step() * static_cast<double>(column + 1);
+  const double from = (1 - share) * p.at(row, column), to = share * p.at(row, column + 1);
+  return {from * std::cos(a) + to * std::cos(b), from * std::sin(a) + to * std::sin(b)};
+}
+
+std::vector<double> lengths_of(const Profile& p, const Stretches& s, std::size_t row) {
+  std::vector<double> all;
+  for (std::size_t c = 0; c < p.columns; ++c) {
+    const double chord = distance(place_of(p, row, c, 0), place_of(p, row, c, 1));
+    all.insert(all.end(), s.parts[c], chord / static_cast<double>(s.parts[c]));
+  }
+  return all;
+}
+
+Surface Mesh::surface() const { return {vertices.size() / 3, vertices.data(), materials.size(), triangles.data(), materials.data()}; }
+
+Mesh mesh_of(const Profile& p, const Stretches& s) {
+  Mesh m;
+  const Profile borders = at_borders(p);
+  const std::size_t ring = static_cast<std::size_t>(p.pitches) * s.count();
+  for (std::size_t j = 0; j <= p.rows; ++j) {
+    const double z = j == p.rows ? p.high : p.low + static_cast<double>(j) * p.row_length();
+    add_ring(m, borders, s, j, z);
+  }
+  for (std::size_t row = 0; row < p.rows; ++row) {
+    for (std::size_t k = 0; k < ring; ++k) {
+      const std::size_t column =
+          static_cast<std::size_t>(std::upper_bound(s.first.begin(), s.first.end(), k % s.count()) - s.first.begin()) - 1;
+      const std::size_t next = (k + 1) % ring, low = row * ring, high = low + ring;
+      add_triangle(m, low + k, high + next, low + next, p.material[column]);
+      add_triangle(m, low + k, high + k, high + next, p.material[column]);
+    }
+  }
+  if (p.low_face) add_face(m, p, 0, ring, false);
+  if (p.high_face) add_face(m, p, p.rows * ring, ring, true);
+  return m;
+}
+
+Loss loss_of(const run::WornSurface& worn, const Profile& p, const Stretches& s) {
+  Loss loss;
+  loss.of_pitch.assign(static_cast<std::size_t>(p.pitches), std::vector<double>(p.rows * s.count(), 0.0));
+  const double pitch_angle = kTurn / p.pitches;
+  for (std::size_t t = 0; t < worn.worn.size(); ++t) {
+    double centre[3] = {0, 0, 0}, lowest = p.high, highest = p.low;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double* v = worn.vertices.data() + std::size_t{3} * worn.triangles[3 * t + k];
+      for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] += v[axis] / 3;
+      lowest = std::min(lowest, v[2]), highest = std::max(highest, v[2]);
+    }
+    const double rate = worn.worn[t] / worn.time;
+    if (highest - lowest < 1e-3 * p.row_length()) {
+      loss.faces += rate;
+      continue;
+    }
+    double angle = std::atan2(centre[1], centre[0]);
+    if (angle < 0) angle += kTurn;
+    const auto pitch = std::min(static_cast<std::size_t>(angle / pitch_angle), loss.of_pitch.size() - 1);
+    const double across = (angle - static_cast<double>(pitch) * pitch_angle) / p.step();
+    const std::size_t column = std::min(static_cast<std::size_t>(std::max(across, 0.0)), p.columns - 1);
+    const double share = std::clamp(across - static_cast<double>(column), 0.0, 1.0);
+    const std::size_t part = std::min(static_cast<std::size_t>(share * static_cast<double>(s.parts[column])), s.parts[column] - 1);
+    const double up = (centre[2] - p.low) / p.row_length();
+    const std::size_t row = std::min(static_cast<std::size_t>(std::max(up, 0.0)), p.rows - 1);
+    loss.of_pitch[pitch][row * s.count() + s.first[column] + part] += rate;
+  }
+  return loss;
+}
+
+void smooth(std::vector<double>& loss, const Profile& p, const Stretches& s, double length) {
+  const std::size_t n = s.count();
+  for (std::size_t row = 0; row < p.rows; ++row) {
+    const std::vector<double> lengths = lengths_of(p, s, row);
+    std::vector<double> place(n),
+        values(loss.begin() + static_cast<std::ptrdiff_t>(row * n), loss.begin() + static_cast<std::ptrdiff_t>((row + 1) * n));
+    double at = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      place[k] = at + 0.5 * lengths[k];
+      at += lengths[k];
+    }
+    spread(values, place, lengths, at, length);
+    std::copy(values.begin(), values.end(), loss.begin() + static_cast<std::ptrdiff_t>(row * n));
+  }
+  if (p.rows == 1) return;
+  const std::vector<double> lengths(p.rows, p.row_length());
+  std::vector<double> place(p.rows), values(p.rows);
+  for (std::size_t row = 0; row < p.rows; ++row) place[row] = (static_cast<double>(row) + 0.5) * p.row_length();
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t row = 0; row < p.rows; ++row) values[row] = loss[row * n + k];
+    spread(values, place, lengths, 0, length);
+    for (std::size_t row = 0; row < p.rows; ++row) loss[row * n + k] = values[row];
+  }
+}
+
+}  // namespace millscope::wear
