@@ -84,7 +84,8 @@ struct WallBatch : ContactArrays {
   double* torque[3];         ///< on the bead
   double* body_torque[3];    ///< on the body, about its centre
   double* wall_power;        ///< of the body, W
-  double* pressing;          ///< what wear laws are told: force that presses the surfaces together, N
+  std::uint8_t* first;       ///< what wear laws are told: they came to touch in this step; …
+  double* pressing;          ///< … force that presses the surfaces together, N
   double* sliding;           ///< … and the speed at which they slide, m/s
   double* worn;              ///< what they say: m³ of the body, in this step
 };

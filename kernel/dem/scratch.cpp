@@ -50,7 +50,7 @@ Scratch::Scratch(int history_count) {
   indices.add(found.bead);
   indices.deal(signed_);
   Arrays<std::uint8_t> bytes;
-  bytes.add(p.fresh);
+  bytes.add(p.fresh, walls.first);
   bytes.deal(bytes_);
   found.capacity = kBatch;
 

@@ -20,20 +20,23 @@ double tangential_loss(const PairTermInfo& law, const WallBatch& b, std::int64_t
   return power;
 }
 
-/// Pressing force and sliding speed. The law says what friction takes: over its force that is the speed of sliding. It is nearly 0 while
-/// the spring sticks, though the surfaces then move by what the spring gives.
-void note_rubbing(const PairPhysics& physics, std::int64_t count, const WallBatch& b) {
+/// First touches, pressing force and sliding speed. Within the reach of a film or an adhesion a contact is fresh before it touches: then it
+/// is the first that was a gap a step ago. The law says what friction takes: over its force that is the speed of sliding. It is nearly 0
+/// while the spring sticks, though the surfaces then move by what the spring gives.
+void note_rubbing(const PairPhysics& physics, double time_step, std::int64_t count, const WallBatch& b) {
   const bool has_cap = physics.has_pre();
   for (std::int64_t k = 0; k < count; ++k) {
-    double along = 0, force2 = 0, closing = 0, speed2 = 0;
+    double along = 0, force2 = 0, parting = 0, speed2 = 0;
     for (int a = 0; a < 3; ++a) {
       along += b.force[a][k] * b.normal[a][k];
       force2 += b.force[a][k] * b.force[a][k];
-      closing += b.velocity[a][k] * b.normal[a][k];
+      parting += b.velocity[a][k] * b.normal[a][k];
       speed2 += b.velocity[a][k] * b.velocity[a][k];
     }
+    const bool was_gap = b.overlap[k] + parting * time_step <= 0;
+    b.first[k] = b.overlap[k] > 0 && (b.fresh[k] != 0 || was_gap) ? 1 : 0;
     const double shear = std::sqrt(std::max(force2 - along * along, 0.0));
-    const double most = std::sqrt(std::max(speed2 - closing * closing, 0.0));
+    const double most = std::sqrt(std::max(speed2 - parting * parting, 0.0));
     b.pressing[k] = std::max(along + (has_cap ? b.added_cap[k] : 0.0), 0.0);
     b.sliding[k] = shear > 0 ? std::min(tangential_loss(physics.law.table->info, b, k) / shear, most) : 0.0;
   }
@@ -212,8 +215,8 @@ void WallSweep::book_triangle(const Chunk& chunk, const PairPhysics& physics, st
 void WallSweep::wear(const Chunk& chunk, int physics_index, std::int64_t count) {
   const WallBatch& b = pass_.scratch.walls;
   const PairPhysics& physics = pass_.common.physics[physics_index];
-  note_rubbing(physics, count, b);
-  WearBatch batch{count, pass_.common.settings.time_step, b.fresh, {}, {}, b.radius_i, b.mass, b.pressing, b.sliding, b.worn};
+  note_rubbing(physics, pass_.common.settings.time_step, count, b);
+  WearBatch batch{count, pass_.common.settings.time_step, b.first, {}, {}, b.radius_i, b.mass, b.pressing, b.sliding, b.worn};
   for (int a = 0; a < 3; ++a) {
     batch.normal[a] = b.normal[a];
     batch.velocity[a] = b.velocity[a];
@@ -223,7 +226,6 @@ void WallSweep::wear(const Chunk& chunk, int physics_index, std::int64_t count) 
     physics.wear[law].table->evaluate(physics.wear[law].self, &batch);
     double& total = pass_.state.ledger.pairs[physics_index].worn[law];
     for (std::int64_t k = 0; k < count; ++k) {
-      if (!(b.overlap[k] > 0)) continue;
       const std::uint32_t triangle = pass_.scratch.found.triangle[b.contact[k]];
       if (triangle < worn.size()) worn[triangle] += b.worn[k];
       total += b.worn[k];

@@ -16,20 +16,22 @@ using Catch::Contains;
 
 namespace {
 
-/// A slice of 100 mm with eight lifters and 60 beads of 8 mm.
-std::string slice(const std::string& wear) {
+const std::string kSliding = ", wear_coefficient: 1e-3, hardness: 2 GPa";
+
+/// A slice of 100 mm with eight lifters and 90 beads of 8 mm.
+std::string slice(const std::string& wear, const std::string& values) {
   Setup s;
   s.stiffness_factor = 1e-4;
   s.wear = wear;
-  s.pairs = "restitution: 0.5, static_friction: 0.3, wear_coefficient: 1e-3, cutting_share: 0.2, hardness: 2 GPa";
+  s.pairs = "restitution: 0.5, static_friction: 0.3" + values;
   s.beads = "{glass: {material: glass, diameter: 8 mm}}";
-  s.fill = "{count: 60, settle_s: 0.1}";
+  s.fill = "{count: 90, settle_s: 0.1}";
   s.body_forces = kWithGravity;
   s.geometry =
-      "{drum: {kind: mill, diameter: 100 mm, length: 20 mm, lifters: 8, lifter_height: 6 mm, lifter_width: 12 mm, material: wall, motion: "
+      "{drum: {kind: mill, diameter: 100 mm, length: 30 mm, lifters: 8, lifter_height: 6 mm, lifter_width: 12 mm, material: wall, motion: "
       "mill}}";
   s.mill = "{speed: 8 rad/s}";
-  s.domain = "{periodic: {z: [0, 20 mm]}}";
+  s.domain = "{periodic: {z: [0, 30 mm]}}";
   s.time = "{end_s: 0.6, analyze_from_s: 0.2}";
   return s.text();
 }
@@ -53,7 +55,7 @@ nlohmann::json result_of(const fs::path& folder) { return nlohmann::json::parse(
 TEST_CASE("a liner wears away by what the laws say, and a study that is repeated computes nothing again") {
   const testing::Scratch scratch;
   const fs::path file = scratch / "case.yaml", out = scratch / "out";
-  std::ofstream(file) << slice("{sliding: {kind: archard}, cutting: {kind: finnie}}");
+  std::ofstream(file) << slice("{sliding: {kind: archard}, cutting: {kind: finnie}}", kSliding + ", cutting_share: 0.2");
   const std::string words = "wear " + file.string() + " --hours 200 --steps 2 --seeds 2 -o " + out.string();
   const Said first = ask(words, scratch.path);
   INFO(first.text);
@@ -83,11 +85,11 @@ TEST_CASE("a liner wears away by what the laws say, and a study that is repeated
 TEST_CASE("a case without wear laws, hours or a mill is refused with the remedy") {
   const testing::Scratch scratch;
   const fs::path file = scratch / "case.yaml", out = scratch / "out";
-  std::ofstream(file) << slice("{}");
+  std::ofstream(file) << slice("{}", "");
   const Said none = ask("wear " + file.string() + " --hours 100 -o " + out.string(), scratch.path);
   CHECK(none.code != 0);
   CHECK_THAT(none.text, Contains("no wear law") && Contains("contact.wear"));
-  std::ofstream(file) << slice("{sliding: {kind: archard}}");
+  std::ofstream(file) << slice("{sliding: {kind: archard}}", kSliding);
   const Said hours = ask("wear " + file.string() + " -o " + out.string(), scratch.path);
   CHECK(hours.code != 0);
   CHECK_THAT(hours.text, Contains("--hours"));

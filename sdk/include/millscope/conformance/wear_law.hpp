@@ -112,9 +112,9 @@ inline void wear_is_local(const WearLaw& law, const Setting& setting, Violations
     RubbingBeads alone = beads.only(i);
     alone.act(law, 1e-5);
     const double off = std::fabs(turned.volume[i] - beads.volume[i]), apart = std::fabs(alone.volume[0] - beads.volume[i]);
+    if (!(apart <= 0.0)) return out.push_back({"bead by bead", text_of("alone it takes %g of %g m3 more", apart, beads.volume[i])});
     if (!(off <= 1e-9 * largest))
       return out.push_back({"frame indifference", text_of("turned in space it takes %g of %g m3 more", off, beads.volume[i])});
-    if (!(apart <= 0.0)) return out.push_back({"bead by bead", text_of("alone it takes %g of %g m3 more", apart, beads.volume[i])});
   }
 }
 
