@@ -53,6 +53,7 @@ void build_and_load(Kind kind) {
 
 TEST_CASE("a scaffolded contact law builds, passes its test and loads") { build_and_load(Kind::contact_law); }
 TEST_CASE("a scaffolded interaction builds, passes its test and loads") { build_and_load(Kind::interaction); }
+TEST_CASE("a scaffolded wear law builds, passes its test and loads") { build_and_load(Kind::wear_law); }
 TEST_CASE("a scaffolded pair parameter builds, passes its test and loads") { build_and_load(Kind::pair_parameter); }
 TEST_CASE("a scaffolded geometry builds, passes its test and loads") { build_and_load(Kind::geometry); }
 TEST_CASE("a scaffolded body force builds, passes its test and loads") { build_and_load(Kind::body_force); }

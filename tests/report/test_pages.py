@@ -34,11 +34,11 @@ class Pages(unittest.TestCase):
 class StaticPages(Pages):
     def test_every_kind_of_section(self):
         call(self.folder, "analyze", "out", "-o", "an", "-q", "--no-pictures")
-        kinds = [str(FIXTURES / name) for name in ("difference", "crosschecked", "campaign", "surface", "retuned", "validated", "diagnosis", "scored")]
+        kinds = [str(FIXTURES / name) for name in ("difference", "crosschecked", "worn", "campaign", "surface", "retuned", "validated", "diagnosis", "scored")]
         call(self.folder, "report", "out", "an", "-o", "run.html", "-q")
         call(self.folder, "report", *kinds, "-o", "studies.html", "-q")
         shown = [section["kind"] for page in ("run.html", "studies.html") for section in data_of(self.folder / page)["sections"]]
-        self.assertEqual(shown, ["run", "analysis", "diagnosis", "challenge", "calibration", "calibration", "validation", "comparison", "crosscheck", "campaign"])
+        self.assertEqual(shown, ["run", "analysis", "diagnosis", "challenge", "calibration", "calibration", "validation", "comparison", "crosscheck", "wear", "campaign"])
         known = re.search(r"const KINDS = \{ (.*?) \};", (PAGE / "src" / "main.js").read_text())
         self.assertEqual(set(shown), set(known.group(1).split(", ")), "a kind of section that the page knows is not looked at here")
         done = looked_at("check.mjs", self.folder / "run.html")

@@ -72,6 +72,13 @@ void write_box(const std::string& path) {
 
 }  // namespace
 
+TEST_CASE("every wear law holds to the suite of its kind") {
+  check_all(Kind::wear_law,
+            {{"archard", {"wear_coefficient=0.007 hardness=1.8e9", "wear_coefficient=0 hardness=1e6"}},
+             {"finnie", {"cutting_share=0.1 hardness=1.8e9", "cutting_share=1 hardness=1e6"}}},
+            [](const Descriptor& d, const Values& values) { return check_wear_law(d, values); });
+}
+
 TEST_CASE("every pair parameter holds to the suite of its kind") {
   check_all(Kind::pair_parameter,
             {{"restitution_by_speed",
