@@ -35,6 +35,8 @@ int wear_liner(const Arguments& arguments) {
   options.add()("pitches", po::value<int>()->value_name("N"), "how often the liner repeats in a turn (default: found out)");
   options.add()("rows", po::value<int>()->value_name("N"),
                 "rows along the mill, each with a profile of its own (default: 1 for a slice, else one for two bead diameters)");
+  options.add()("plate", po::value<std::string>()->value_name("LENGTH"),
+                "metal behind the shell, e.g. \"40 mm\": when it is through, the study stops");
   options.add()("smooth", po::value<std::string>()->value_name("LENGTH"),
                 "e.g. \"3 mm\": the loss is smoothed over it (default: the largest bead's radius)");
   add_runner_options(options, "where the simulations are kept, each once (default: OUT/cache)");
@@ -52,6 +54,7 @@ int wear_liner(const Arguments& arguments) {
   if (options.has("pitches")) request.pitches = options.integer("pitches");
   if (options.has("rows")) request.rows = options.integer("rows");
   if (options.has("smooth")) request.smooth = length_of(options, "smooth");
+  if (options.has("plate")) request.plate = length_of(options, "plate");
   request.campaign = calibrate::campaign_of(study_session(options, request.output));
   if (!options.has("quiet")) request.say = print_line;
   const wear::Found found = wear::wear(request, options.registry());

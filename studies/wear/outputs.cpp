@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr std::size_t kMostCurves = 6;  // in one picture
 
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : ""; }
 
@@ -32,18 +33,30 @@ std::vector<double> error_of_mean(const Stage& s) {
   return all;
 }
 
-std::vector<double> angles_of(const Profile& p) {
-  std::vector<double> all;
-  for (std::size_t c = 0; c < p.columns; ++c) all.push_back(kDegrees * p.step() * static_cast<double>(c));
-  return all;
+/// The direction to begin with, so that the lifter stands in the middle: opposite to the middle of what stands out of the new shell.
+std::size_t beginning_of(const Profile& p) {
+  const std::vector<double> mean = p.mean_row();
+  const double shell = *std::max_element(mean.begin(), mean.end()), turn = kTurn / static_cast<double>(p.columns);
+  double x = 0, y = 0;
+  for (std::size_t c = 0; c < p.columns; ++c) {
+    x += (shell - mean[c]) * std::cos(turn * static_cast<double>(c));
+    y += (shell - mean[c]) * std::sin(turn * static_cast<double>(c));
+  }
+  const double middle = std::atan2(y, x) / turn + 0.5 * static_cast<double>(p.columns);
+  return static_cast<std::size_t>(std::lround(middle) + static_cast<long>(p.columns)) % p.columns;
 }
 
-Json stage_json(const Stage& s) {
+std::vector<double> from(std::size_t beginning, std::vector<double> values) {
+  std::rotate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(beginning), values.end());
+  return values;
+}
+
+Json stage_json(const Stage& s, std::size_t beginning) {
   Json runs = Json::array();
   for (const fs::path& run : s.runs) runs.push_back(run.string());
   return {{"hours", s.hours},
           {"lifter_height_m", s.relief},
-          {"deepest_m", s.deepest},
+          {"plate_lost_m", s.plate_lost},
           {"volume_lost_m3", s.volume},
           {"volume_lost_error_m3", s.volume_error},
           {"volume_of_the_laws_m3", s.law_volume},
@@ -53,13 +66,16 @@ Json stage_json(const Stage& s) {
           {"power_error_W", s.power_error},
           {"shoulder_deg", s.shoulder},
           {"toe_deg", s.toe},
-          {"radius_m", s.profile.mean_row()},
-          {"radius_error_m", error_of_mean(s)},
+          {"radius_m", from(beginning, s.profile.mean_row())},
+          {"radius_error_m", from(beginning, error_of_mean(s))},
           {"runs", runs}};
 }
 
 Json json_of(const Found& found) {
-  const Profile& p = found.stages.back().profile;
+  const Profile& p = found.stages.front().profile;
+  const std::size_t beginning = beginning_of(p);
+  std::vector<double> angles;
+  for (std::size_t c = 0; c < p.columns; ++c) angles.push_back(kDegrees * p.step() * static_cast<double>(c + beginning));
   Json j{{"schema_version", 1},
          {"name", found.name},
          {"body", found.body},
@@ -67,20 +83,20 @@ Json json_of(const Found& found) {
          {"rows", p.rows},
          {"z_m", {p.low, p.high}},
          {"smoothed_over_m", found.smooth},
-         {"angle_deg", angles_of(p)},
+         {"angle_deg", angles},
          {"stopped", found.stopped},
          {"doubts", found.doubts},
          {"stages", Json::array()}};
-  for (const Stage& s : found.stages) j["stages"].push_back(stage_json(s));
+  for (const Stage& s : found.stages) j["stages"].push_back(stage_json(s, beginning));
   return j;
 }
 
 std::string csv_of(const Found& found) {
   std::string csv =
-      "hours,lifter_height_m,deepest_m,volume_lost_m3,volume_lost_error_m3,mass_lost_kg,volume_lost_by_faces_m3,power_W,power_error_W,"
+      "hours,lifter_height_m,plate_lost_m,volume_lost_m3,volume_lost_error_m3,mass_lost_kg,volume_lost_by_faces_m3,power_W,power_error_W,"
       "shoulder_deg,toe_deg\n";
   for (const Stage& s : found.stages) {
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", cell(s.hours), cell(s.relief), cell(s.deepest), cell(s.volume),
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", cell(s.hours), cell(s.relief), cell(s.plate_lost), cell(s.volume),
                        cell(s.volume_error), cell(s.mass), cell(s.face_volume), cell(s.power), cell(s.power_error), cell(s.shoulder),
                        cell(s.toe));
   }
@@ -115,9 +131,11 @@ void draw_profiles(const Found& found, const fs::path& folder) {
   picture.x_label = "along the shell", picture.x_unit = "m";
   picture.value_label = "height above the new shell", picture.value_unit = "m";
   picture.band = "standard error";
-  for (const Stage& s : found.stages) {
+  const std::size_t beginning = beginning_of(first), last = found.stages.size() - 1, count = std::min(last + 1, kMostCurves);
+  for (std::size_t n = 0; n < count; ++n) {
+    const Stage& s = found.stages[count == 1 ? 0 : n * last / (count - 1)];
     picture::Curve curve{fmt::format("{:.0f} h", s.hours), {}, {}, {}, {}};
-    const std::vector<double> mean = s.profile.mean_row(), error = error_of_mean(s);
+    const std::vector<double> mean = from(beginning, s.profile.mean_row()), error = from(beginning, error_of_mean(s));
     for (std::size_t c = 0; c <= s.profile.columns; ++c) {
       const std::size_t k = c % s.profile.columns;
       curve.x.push_back(shell * s.profile.step() * static_cast<double>(c));
@@ -190,10 +208,11 @@ void write_liner(const Stage& s, const Profile& first, const fs::path& file) {
 }  // namespace
 
 std::string table(const Found& found) {
-  std::vector<base::Row> rows{{"hours", "lifter mm", "deepest mm", "lost cm3", "±", "lost kg", "power W", "±", "shoulder deg", "toe deg"}};
+  std::vector<base::Row> rows{
+      {"hours", "lifter mm", "plate lost mm", "lost cm3", "±", "lost kg", "power W", "±", "shoulder deg", "toe deg"}};
   const auto angle = [](double value) { return std::isfinite(value) ? fmt::format("{:.1f}", value) : std::string("none"); };
   for (const Stage& s : found.stages) {
-    rows.push_back({fmt::format("{:.0f}", s.hours), fmt::format("{:.3g}", 1e3 * s.relief), fmt::format("{:.3g}", 1e3 * s.deepest),
+    rows.push_back({fmt::format("{:.0f}", s.hours), fmt::format("{:.3g}", 1e3 * s.relief), fmt::format("{:.3g}", 1e3 * s.plate_lost),
                     fmt::format("{:.4g}", 1e6 * s.volume), fmt::format("{:.2g}", 1e6 * s.volume_error), fmt::format("{:.4g}", s.mass),
                     fmt::format("{:.4g}", s.power), fmt::format("{:.2g}", s.power_error), angle(s.shoulder), angle(s.toe)});
   }

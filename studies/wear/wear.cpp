@@ -103,11 +103,9 @@ void add_errors(std::vector<double>& errors, const Profile& p, const Stretches& 
   }
 }
 
-double deepest_of(const Profile& before, const Profile& after) {
-  const std::vector<double> a = before.mean_row(), b = after.mean_row();
-  double deepest = 0;
-  for (std::size_t c = 0; c < a.size(); ++c) deepest = std::max(deepest, b[c] - a[c]);
-  return deepest;
+double deepest(const Profile& p) {
+  const std::vector<double> mean = p.mean_row();
+  return *std::max_element(mean.begin(), mean.end());
 }
 
 double mass_between(const Profile& before, const Profile& after, const std::vector<double>& density) {
@@ -131,10 +129,10 @@ std::vector<double> densities_of(const run::Assembly& a, std::size_t body) {
   return all;
 }
 
-Resolution resolution_of(const Request& r, const run::Assembly& a, std::size_t body, double smoothing) {
+Resolution resolution_of(const Request& r, const run::Assembly& a, std::size_t body) {
   const Interior& in = a.geometries[body].interior;
   const double length = in.high[2] - in.low[2];
-  Resolution resolution{smoothing / kCellsInSmooth, 1, r.pitches};
+  Resolution resolution{r.smooth / kCellsInSmooth, 1, r.pitches};
   if (r.rows > 0) {
     resolution.rows = static_cast<std::size_t>(r.rows);
   } else if (!a.c.domain.periodic[2]) {
@@ -143,7 +141,55 @@ Resolution resolution_of(const Request& r, const run::Assembly& a, std::size_t b
   return resolution;
 }
 
-std::string hours_text(double hours) { return fmt::format("{:.0f} h", hours); }
+/// When a liner is worn out.
+struct Limits {
+  double height;        ///< of the lifters when new, m
+  double least_lifter;  ///< what is lower is no lifter, m
+  double plate;         ///< m; 0: not known
+
+  bool has_lifters() const { return height > least_lifter; }
+  std::string reason(const Stage& s) const {
+    if (has_lifters() && s.relief < kGone * height)
+      return fmt::format("the lifters are gone after {:.0f} h: {:.2g} mm of {:.3g} are left", s.hours, 1e3 * s.relief, 1e3 * height);
+    if (plate > 0 && s.plate_lost >= plate) return fmt::format("the plate of {:.3g} mm is through after {:.0f} h", 1e3 * plate, s.hours);
+    return "";
+  }
+};
+
+Stage new_liner(const Request& r, const run::Assembly& a, std::size_t body) {
+  Stage s;
+  s.profile =
+      profile_of(a.geometries[body].surface, a.geometries[body].interior, resolution_of(r, a, body), a.c.geometry[body].plugin.name);
+  s.error.assign(s.profile.radius.size(), 0.0);
+  s.relief = s.profile.relief();
+  return s;
+}
+
+void tell(Stage& s, const Told& told) {
+  s.power = told.power, s.power_error = told.power_error, s.shoulder = told.shoulder, s.toe = told.toe;
+  s.runs = told.runs;
+}
+
+/// Some hours later. Returns the greatest distance moved, m.
+double go_on(Stage& now, const Rate& rate, const Stretches& s, double hours) {
+  const double seconds = hours * kHour;
+  std::vector<double> volume = rate.mean;
+  for (double& v : volume) v *= seconds;
+  const Profile before = now.profile;
+  const double moved = wear_away(now.profile, s, volume);
+  add_errors(now.error, before, s, rate, seconds);
+  now.hours += hours;
+  now.volume += volume_between(before, now.profile);
+  now.law_volume += sum_of(volume);
+  now.face_volume += rate.faces * seconds;
+  now.volume_error = std::hypot(now.volume_error, rate.sum_error * seconds);
+  now.relief = now.profile.relief();
+  return moved;
+}
+
+std::string line_of(const Stage& s) {
+  return fmt::format("{:.0f} h: power {:.4g} W, lifters {:.3g} mm high, {:.3g} kg lost", s.hours, s.power, 1e3 * s.relief, s.mass);
+}
 
 }  // namespace
 
@@ -151,54 +197,29 @@ Found wear(const Request& request, const host::Registry& registry) {
   check(request);
   const run::Assembly a = run::assemble(config::read_case(request.case_file.string(), request.settings), registry);
   const std::size_t body = body_of(a);
-  Found found{a.c.name, a.c.geometry[body].plugin.name, a.geometries[body].slots, {}, request.smooth, "", {}};
-  if (!(found.smooth > 0)) found.smooth = 0.5 * a.c.largest_diameter();
-  const std::vector<double> density = densities_of(a, body);
-  Request with_cache = request;
-  if (with_cache.campaign.cache.empty()) with_cache.campaign.cache = request.output / "cache";
-  const Stages stages(with_cache, registry, a, body);
-
-  Stage now;
-  now.profile =
-      profile_of(a.geometries[body].surface, a.geometries[body].interior, resolution_of(request, a, body, found.smooth), found.body);
-  now.error.assign(now.profile.radius.size(), 0.0);
-  now.relief = now.profile.relief();
+  Request r = request;
+  if (r.campaign.cache.empty()) r.campaign.cache = r.output / "cache";
+  if (!(r.smooth > 0)) r.smooth = 0.5 * a.c.largest_diameter();
+  const Stages stages(r, registry, a, body);
+  Found found{a.c.name, a.c.geometry[body].plugin.name, a.geometries[body].slots, {}, r.smooth, "", {}};
+  Stage now = new_liner(r, a, body);
   const Profile first = now.profile;
-  const bool has_lifters = now.relief > kLifter * 0.5 * a.c.largest_diameter();
-  const double seconds = request.hours / request.steps * kHour;
+  const Limits limits{first.relief(), kLifter * 0.5 * a.c.largest_diameter(), r.plate};
+  const std::vector<double> density = densities_of(a, body);
   double largest_step = 0;
   for (int step = 0;; ++step) {
     const Stretches s = stretches_of(now.profile);
     const Told told = stages.run(step, now.profile, s);
-    now.power = told.power, now.power_error = told.power_error, now.shoulder = told.shoulder, now.toe = told.toe;
-    now.runs = told.runs;
+    tell(now, told);
     found.stages.push_back(now);
-    if (request.say)
-      request.say(fmt::format("{}: power {:.4g} W, lifters {:.3g} mm high, {:.3g} kg lost", hours_text(now.hours), now.power,
-                              1e3 * now.relief, now.mass));
-    if (has_lifters && now.relief < kGone * first.relief()) {
-      found.stopped = fmt::format("the lifters are gone after {}: {:.2g} mm of {:.3g} are left", hours_text(now.hours), 1e3 * now.relief,
-                                  1e3 * first.relief());
-      break;
-    }
-    if (step == request.steps) break;
-    const Rate rate = rate_of(told.losses, now.profile, s, found.smooth);
-    std::vector<double> volume = rate.mean;
-    for (double& v : volume) v *= seconds;
-    const Profile before = now.profile;
-    const double moved = wear_away(now.profile, s, volume);
-    largest_step = std::max(largest_step, moved);
-    add_errors(now.error, before, s, rate, seconds);
-    now.hours = request.hours * (step + 1) / request.steps;
-    now.volume += volume_between(before, now.profile);
-    now.law_volume += sum_of(volume);
-    now.face_volume += rate.faces * seconds;
-    now.volume_error = std::hypot(now.volume_error, rate.sum_error * seconds);
-    now.mass += mass_between(before, now.profile, density);
-    now.relief = now.profile.relief();
-    now.deepest = deepest_of(first, now.profile);
+    if (r.say) r.say(line_of(now));
+    found.stopped = limits.reason(now);
+    if (!found.stopped.empty() || step == r.steps) break;
+    largest_step = std::max(largest_step, go_on(now, rate_of(told.losses, now.profile, s, r.smooth), s, r.hours / r.steps));
+    now.mass = mass_between(first, now.profile, density);
+    now.plate_lost = deepest(now.profile) - deepest(first);
   }
-  if (has_lifters && largest_step > kMostOfStep * first.relief()) {
+  if (limits.has_lifters() && largest_step > kMostOfStep * limits.height) {
     found.doubts.push_back(fmt::format("one step took up to {:.2g} mm, more than {:.0f} % of a lifter's height: give more --steps",
                                        1e3 * largest_step, 100 * kMostOfStep));
   }

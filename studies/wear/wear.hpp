@@ -25,6 +25,7 @@ struct Request {
   int seeds = 2;      ///< simulations of each stage, from other starts
   int pitches = 0;    ///< 0: found out
   int rows = 0;       ///< along the mill; 0: one for a slice, else about two beads long
+  double plate = 0;   ///< m of metal behind the shell; when it is through the study stops; 0: not known
   double smooth = 0;  ///< m; 0: the largest bead's radius
   std::vector<std::string> command_line = {};
   campaign::Options campaign;
@@ -41,7 +42,7 @@ struct Stage {
   double law_volume = 0;              ///< what the laws said so far, m³, end faces left out
   double face_volume = 0;             ///< m³ from the end faces so far; they stay where they are
   double relief = 0;                  ///< height of the lifters, m
-  double deepest = 0;                 ///< greatest loss so far of the mean row, m
+  double plate_lost = 0;              ///< how far its deepest place is beyond the deepest of the new liner, m
   double power = 0, power_error = 0;  ///< W, of the liner as it is
   double shoulder = 0, toe = 0;       ///< deg; NaN: there is none
   std::vector<std::filesystem::path> runs;

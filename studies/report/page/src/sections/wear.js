@@ -37,7 +37,7 @@ function slider(found, key) {
 }
 
 const profiles = (found, key) => lines(`${key}-profiles`, {
-  label: `Profile of one pitch at ${found.stages.length} times`, x: { name: "along the shell", unit: "mm" }, y: { name: "height above the new shell", unit: "mm" },
+  label: `Profile of one pitch at ${found.stages.length} times`, x: { name: "along the shell", unit: "mm", min: 0, max: profileOf(found, found.stages[0]).at(-1)[0] }, y: { name: "height above the new shell", unit: "mm" },
   series: found.stages.map((stage, index) => ({ name: hours(stage), points: profileOf(found, stage), colour: colourAt("sequential", 0.15 + (0.75 * index) / Math.max(1, found.stages.length - 1)) })),
 });
 
@@ -58,7 +58,7 @@ const COURSES = [{ name: "power_W", title: "Power", unit: "W", error: "power_err
   { name: "shoulder_deg", title: "Shoulder", unit: "deg" }, { name: "toe_deg", title: "Toe", unit: "deg" }];
 
 const stages = (found) => table({ caption: "The liner at each stage", rows: found.stages, columns: [{ label: "hours", header: true, number: true, value: (one) => number(one.hours, 5) },
-  { label: "height of the lifters", number: true, value: (one) => quantity(one.lifter_height_m, "m", 3) }, { label: "deepest", number: true, value: (one) => quantity(one.deepest_m, "m", 3) },
+  { label: "height of the lifters", number: true, value: (one) => quantity(one.lifter_height_m, "m", 3) }, { label: "plate lost", number: true, value: (one) => quantity(one.plate_lost_m, "m", 3) },
   { label: "mass lost", number: true, value: (one) => quantity(one.mass_lost_kg, "kg", 3) }, { label: "volume lost", number: true, value: (one) => `${number(1e6 * one.volume_lost_m3, 3)} ± ${number(1e6 * one.volume_lost_error_m3, 2)}\u00a0cm³` },
   { label: "power", number: true, value: (one) => withError(one.power_W, one.power_error_W, "W") }, { label: "shoulder", number: true, value: (one) => quantity(one.shoulder_deg, "deg", 3) }, { label: "toe", number: true, value: (one) => quantity(one.toe_deg, "deg", 3) }] });
 
@@ -75,7 +75,7 @@ export function wear(section, key) {
   return {
     kind: "Wear", sentence: sentenceOf(found),
     headline: [["Liner", found.body, `${number(found.pitches)} pitches, ${number(found.rows)} ${found.rows === 1 ? "row" : "rows"} along the mill`], ["Hours", number(last.hours, 5), `in ${number(found.stages.length - 1)} steps`],
-      ["Mass lost", quantity(last.mass_lost_kg, "kg", 3)]],
+      ["Mass lost", quantity(last.mass_lost_kg, "kg", 3)], ["Plate lost", quantity(last.plate_lost_m, "m", 3), "where it is deepest"]],
     blocks: [
       found.doubts?.length ? block(`${key}-doubts`, "Doubts", list(found.doubts)) : null,
       block(`${key}-away`, "The liner wears away", figure("A cut across one pitch, the metal grey, the new liner dashed. Mean over all pitches and the mill's length. Move the slider.", slider(found, key)),
