@@ -32,6 +32,7 @@ int wear_liner(const Arguments& arguments) {
   options.add()("steps", po::value<int>()->value_name("N"), "steps in which they pass (default: 8); more follow the shape better");
   options.add()("seeds", po::value<int>()->value_name("N"),
                 "simulations of each stage, from other starts (default: 2); more make errors smaller");
+  options.add()("body", po::value<std::string>()->value_name("NAME"), "the geometry that wears (default: the one that turns)");
   options.add()("pitches", po::value<int>()->value_name("N"), "how often the liner repeats in a turn (default: found out)");
   options.add()("rows", po::value<int>()->value_name("N"),
                 "rows along the mill, each with a profile of its own (default: 1 for a slice, else one for two bead diameters)");
@@ -51,6 +52,7 @@ int wear_liner(const Arguments& arguments) {
   request.hours = options.number("hours");
   if (options.has("steps")) request.steps = options.integer("steps");
   if (options.has("seeds")) request.seeds = options.integer("seeds");
+  if (options.has("body")) request.body = options.text("body");
   if (options.has("pitches")) request.pitches = options.integer("pitches");
   if (options.has("rows")) request.rows = options.integer("rows");
   if (options.has("smooth")) request.smooth = length_of(options, "smooth");

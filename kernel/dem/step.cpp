@@ -50,6 +50,13 @@ void Step::prepare() {
   });
 }
 
+void Step::forget_wear() {
+  for (SlabState& slab : slabs_) {
+    for (std::vector<double>& body : slab.worn) std::fill(body.begin(), body.end(), 0.0);
+    for (PairLedger& p : slab.ledger.pairs) std::fill(p.worn.begin(), p.worn.end(), 0.0);
+  }
+}
+
 void Step::lists_changed() {
   schedule_.renew(pairs_, particles_.count());
   for (int worker = 0; worker < common_.workers.count(); ++worker) {

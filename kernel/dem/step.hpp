@@ -19,6 +19,7 @@ class Step {
   /// After particles, bodies and body forces are in place: empty books, room to work in.
   void prepare();
   /// After each rebuild.
+  void forget_wear();
   void lists_changed();
   /// Makes step number `step`. `observe` is called, where it is set, when all forces of the present positions are there, before the drift.
   IntegrateResult make(std::int64_t step, const std::function<void()>& observe);

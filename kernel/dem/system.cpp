@@ -135,5 +135,6 @@ std::vector<double> System::triangle_sums(std::size_t body, std::vector<std::vec
 std::vector<double> System::impact_work(std::size_t body) const { return triangle_sums(body, &SlabState::impact); }
 std::vector<double> System::shear_work(std::size_t body) const { return triangle_sums(body, &SlabState::shear); }
 std::vector<double> System::worn_volume(std::size_t body) const { return triangle_sums(body, &SlabState::worn); }
+void System::forget_wear() { parts_->step.forget_wear(); }
 
 }  // namespace millscope::dem

@@ -85,6 +85,8 @@ class System {
   std::vector<double> shear_work(std::size_t body) const;
   /// What beads have taken away at each triangle of a body, m³ since Settings::wear_from_step.
   std::vector<double> worn_volume(std::size_t body) const;
+  /// It is counted anew from here.
+  void forget_wear();
 
   /// FNV-1a over ids, positions, velocities, spins, contact histories, time, wall angles, in id order.
   std::uint64_t state_hash() const;

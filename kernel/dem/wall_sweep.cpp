@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 #include "kernel/dem/evaluate.hpp"
 
@@ -11,20 +12,27 @@ namespace {
 
 constexpr std::int64_t kBeadsPerQuery = kBatch / kMaxWallContacts;
 
-/// W that sliding and its damping take from contact `k`.
-double tangential_loss(const PairTermInfo& law, const WallBatch& b, std::int64_t k) {
-  double power = 0;
+constexpr double kSlides = 0.02;  // of the surfaces' speed: less is what turning and the spring's own motion take, not sliding
+
+/// What slides of the surfaces' motion, m/s: what friction and damping take, over the tangential force. Damping counts with friction only:
+/// a spring that sticks is damped, too. Laws without a channel `friction` say it by all of their tangential channels.
+double sliding_speed(const PairTermInfo& law, const WallBatch& b, std::int64_t k, double shear, double surfaces) {
+  double friction = 0, damping = 0;
+  bool has_friction = false;
   for (std::size_t c = 0; c < law.channel_count; ++c) {
-    if (law.channels[c].part == ChannelPart::tangential && law.channels[c].nature == ChannelNature::dissipative) power += b.power[c][k];
+    if (law.channels[c].part != ChannelPart::tangential || law.channels[c].nature != ChannelNature::dissipative) continue;
+    const bool is_friction = std::strcmp(law.channels[c].name, "friction") == 0;
+    has_friction = has_friction || is_friction;
+    (is_friction ? friction : damping) += b.power[c][k];
   }
-  return power;
+  if (!(shear > 0) || (has_friction && friction < kSlides * shear * surfaces)) return 0;
+  return std::min((friction + damping) / shear, surfaces);
 }
 
 /// First touches, pressing force and sliding speed. Within the reach of a film or an adhesion a contact is fresh before it touches: then it
-/// is the first that was a gap a step ago. The law says what friction takes: over its force that is the speed of sliding. It is nearly 0
-/// while the spring sticks, though the surfaces then move by what the spring gives.
+/// is the first that was a gap a step ago. What presses is the law's own force, with what is added to Coulomb's cap.
 void note_rubbing(const PairPhysics& physics, double time_step, std::int64_t count, const WallBatch& b) {
-  const bool has_cap = physics.has_pre();
+  const bool has_added = physics.has_pre();
   for (std::int64_t k = 0; k < count; ++k) {
     double along = 0, force2 = 0, parting = 0, speed2 = 0;
     for (int a = 0; a < 3; ++a) {
@@ -36,9 +44,9 @@ void note_rubbing(const PairPhysics& physics, double time_step, std::int64_t cou
     const bool was_gap = b.overlap[k] + parting * time_step <= 0;
     b.first[k] = b.overlap[k] > 0 && (b.fresh[k] != 0 || was_gap) ? 1 : 0;
     const double shear = std::sqrt(std::max(force2 - along * along, 0.0));
-    const double most = std::sqrt(std::max(speed2 - parting * parting, 0.0));
-    b.pressing[k] = std::max(along + (has_cap ? b.added_cap[k] : 0.0), 0.0);
-    b.sliding[k] = shear > 0 ? std::min(tangential_loss(physics.law.table->info, b, k) / shear, most) : 0.0;
+    const double surfaces = std::sqrt(std::max(speed2 - parting * parting, 0.0));
+    b.pressing[k] = std::max(has_added ? along - b.added_force[k] + b.added_cap[k] : along, 0.0);
+    b.sliding[k] = sliding_speed(physics.law.table->info, b, k, shear, surfaces);
   }
 }
 

@@ -1,5 +1,6 @@
 #include "kernel/run/faces_round.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -11,6 +12,7 @@ namespace {
 using Point = std::array<double, 2>;
 
 constexpr double kWholeTurn = 2 * std::numbers::pi;
+constexpr double kRadial = 1e-6;    // of a segment's length across the direction: it points to the axis
 constexpr double kRounding = 1e-9;  // of a step between directions: an end that two triangles share is seen in both
 
 /// Where the plane z cuts a triangle, seen from the axis; false: it does not.
@@ -31,13 +33,16 @@ void look_at(const std::array<Point, 2>& ends, std::uint64_t triangle, std::vect
   const auto directions = static_cast<int>(nearest.size());
   const double first = std::atan2(ends[0][1], ends[0][0]), sweep = std::remainder(std::atan2(ends[1][1], ends[1][0]) - first, kWholeTurn);
   const double step = kWholeTurn / directions, low = std::min(first, first + sweep) / step, high = std::max(first, first + sweep) / step;
+  const double span = std::hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]);
+  const double nearer = std::min(std::hypot(ends[0][0], ends[0][1]), std::hypot(ends[1][0], ends[1][1]));
   const double moment = ends[0][0] * ends[1][1] - ends[0][1] * ends[1][0];
   for (auto k = static_cast<int>(std::ceil(low - kRounding)); k <= high + kRounding; ++k) {
     const double c = std::cos(k * step), sn = std::sin(k * step);
     const double across = c * (ends[1][1] - ends[0][1]) - sn * (ends[1][0] - ends[0][0]);
-    if (across == 0) continue;
+    // Along the direction itself, as an upright face is, both are but rounding.
+    const double distance = std::fabs(across) < kRadial * span ? nearer : moment / across;
     Facing& seen = nearest[static_cast<std::size_t>((k % directions + directions) % directions)];
-    if (moment / across < seen.distance) seen = {moment / across, triangle};
+    if (distance < seen.distance) seen = {distance, triangle};
   }
 }
 

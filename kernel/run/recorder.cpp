@@ -246,13 +246,13 @@ void Recorder::flush() {
   if (series_) series_->flush();
   if (frames_) frames_->flush();
   if (tracks_) tracks_->flush();
+  if (!a_.c.contact.wear.empty()) write_wear(a_, directory_ / kWearFile);
 }
 
 void Recorder::close() {
   if (series_) series_->close();
   if (frames_) frames_->close();
   if (tracks_) tracks_->close();
-  if (!a_.c.contact.wear.empty()) write_wear(a_, directory_ / kWearFile);
 }
 
 }  // namespace millscope::run

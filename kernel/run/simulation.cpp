@@ -363,11 +363,12 @@ Outcome resume_run(const host::Registry& registry, const RunOptions& options) {
     s.recorder->samples().resize(numbers.size() * sizeof(double) / sizeof(Sample));
     if (!numbers.empty()) std::memcpy(static_cast<void*>(s.recorder->samples().data()), numbers.data(), numbers.size() * sizeof(double));
     if (archive.read_value<std::int64_t>("window/started")) s.recorder->set_window_start(load_ledger(archive, system.ledger()));
+  } else {
+    system.forget_wear();  // of another window
   }
   write_resolved(s, registry);
   s.wall_before = archive.read_value<double>("wall_s");
-  s.first_step = system.step();
-  s.started = Clock::now();
+  s.first_step = system.step(), s.started = Clock::now();
   return step_to_end(s, registry);
 }
 
@@ -377,8 +378,7 @@ Estimate estimate(const std::string& case_file, const host::Registry& registry, 
   insert_beads(a);
   begin(a);
   Estimate e;
-  e.beads = a.bead_count;
-  e.time_step = a.time_step;
+  e.beads = a.bead_count, e.time_step = a.time_step;
   e.rayleigh_fraction = a.time_step / a.rayleigh_time;
   e.contact_steps = a.hertz_contact_time / a.time_step;
   e.steps = a.end_step - a.first_step;

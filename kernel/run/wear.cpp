@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "kernel/output/archive.hpp"
 
 namespace millscope::run {
 
 void write_wear(const Assembly& a, const std::filesystem::path& path) {
   output::ArchiveWriter archive(path);
-  archive.write_value("counted_s", static_cast<double>(a.end_step - a.analyze_step) * a.time_step);
+  archive.write_value("counted_s", static_cast<double>(std::max<std::int64_t>(a.system->step() - a.analyze_step, 0)) * a.time_step);
   for (std::size_t b = 0; b < a.geometries.size(); ++b) {
     const Surface& s = a.geometries[b].surface;
     if (s.triangle_count == 0) continue;

@@ -1,4 +1,4 @@
-// What a run leaves of wear: how much each triangle of a wall has lost from `time.analyze_from_s` to the end.
+// What a run leaves of wear: how much each triangle of a wall has lost since `time.analyze_from_s`.
 #pragma once
 
 #include <filesystem>

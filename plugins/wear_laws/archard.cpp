@@ -8,7 +8,7 @@
 //
 //   V = k F_n s / H
 //
-// Archard 1953, eq. 7. Sliding counts, not the small motion of a contact that sticks.
+// Archard 1953, in the form in which Archard & Hirst 1956 give k. Sliding counts, not the small motion of a contact that sticks.
 #include "millscope/wear_law_adapter.hpp"
 
 namespace millscope::wear_laws {

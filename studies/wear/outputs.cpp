@@ -56,6 +56,7 @@ Json stage_json(const Stage& s, std::size_t beginning) {
   for (const fs::path& run : s.runs) runs.push_back(run.string());
   return {{"hours", s.hours},
           {"lifter_height_m", s.relief},
+          {"lifter_left_m", s.lifter_left},
           {"plate_lost_m", s.plate_lost},
           {"volume_lost_m3", s.volume},
           {"volume_lost_error_m3", s.volume_error},
@@ -71,7 +72,7 @@ Json stage_json(const Stage& s, std::size_t beginning) {
           {"runs", runs}};
 }
 
-Json json_of(const Found& found) {
+Json json_of(const Found& found, const Request& r) {
   const Profile& p = found.stages.front().profile;
   const std::size_t beginning = beginning_of(p);
   std::vector<double> angles;
@@ -79,6 +80,10 @@ Json json_of(const Found& found) {
   Json j{{"schema_version", 1},
          {"name", found.name},
          {"body", found.body},
+         {"case", r.case_file.string()},
+         {"settings", r.settings},
+         {"seeds", r.seeds},
+         {"steps", r.steps},
          {"pitches", p.pitches},
          {"rows", p.rows},
          {"z_m", {p.low, p.high}},
@@ -93,12 +98,13 @@ Json json_of(const Found& found) {
 
 std::string csv_of(const Found& found) {
   std::string csv =
-      "hours,lifter_height_m,plate_lost_m,volume_lost_m3,volume_lost_error_m3,mass_lost_kg,volume_lost_by_faces_m3,power_W,power_error_W,"
+      "hours,lifter_height_m,lifter_left_m,plate_lost_m,volume_lost_m3,volume_lost_error_m3,mass_lost_kg,volume_lost_by_faces_m3,power_W,"
+      "power_error_W,"
       "shoulder_deg,toe_deg\n";
   for (const Stage& s : found.stages) {
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", cell(s.hours), cell(s.relief), cell(s.plate_lost), cell(s.volume),
-                       cell(s.volume_error), cell(s.mass), cell(s.face_volume), cell(s.power), cell(s.power_error), cell(s.shoulder),
-                       cell(s.toe));
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", cell(s.hours), cell(s.relief), cell(s.lifter_left), cell(s.plate_lost),
+                       cell(s.volume), cell(s.volume_error), cell(s.mass), cell(s.face_volume), cell(s.power), cell(s.power_error),
+                       cell(s.shoulder), cell(s.toe));
   }
   return csv;
 }
@@ -177,7 +183,7 @@ void draw_course(const Found& found, const Course& course, const fs::path& folde
   picture::draw_curves(picture, folder / course.file);
 }
 
-/// The liner with its loss so far: worn_volume_per_area is the depth, m.
+/// The liner with its loss so far: worn_volume_per_area is the depth along the normal, m.
 void write_liner(const Stage& s, const Profile& first, const fs::path& file) {
   const Stretches stretches = stretches_of(s.profile);
   const Mesh mesh = mesh_of(s.profile, stretches);
@@ -195,12 +201,12 @@ void write_liner(const Stage& s, const Profile& first, const fs::path& file) {
     const std::size_t row = std::min(static_cast<std::size_t>(std::max(0.0, (z - first.low) / first.row_length())), first.rows - 1);
     const double depth =
         0.5 * (s.profile.at(row, column) + s.profile.at(row, column + 1) - first.at(row, column) - first.at(row, column + 1));
-    double area = 0;
     const double a[3] = {v[1][0] - v[0][0], v[1][1] - v[0][1], v[1][2] - v[0][2]},
                  b[3] = {v[2][0] - v[0][0], v[2][1] - v[0][1], v[2][2] - v[0][2]};
-    area = 0.5 * std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+    const double radial = std::fabs((a[1] * b[2] - a[2] * b[1]) * x + (a[2] * b[0] - a[0] * b[2]) * y) /
+                          std::hypot(x, y);  // twice the area, seen from the axis
     const bool face = v[0][2] == v[1][2] && v[1][2] == v[2][2];
-    lost.push_back(face ? 0 : area * depth);
+    lost.push_back(face ? 0 : 0.5 * radial * depth);
   }
   output::write_mesh_vtp(file, {mesh.vertices, mesh.triangles, mesh.materials, {}, {}, lost});
 }
@@ -209,12 +215,13 @@ void write_liner(const Stage& s, const Profile& first, const fs::path& file) {
 
 std::string table(const Found& found) {
   std::vector<base::Row> rows{
-      {"hours", "lifter mm", "plate lost mm", "lost cm3", "±", "lost kg", "power W", "±", "shoulder deg", "toe deg"}};
+      {"hours", "lifter mm", "left mm", "plate lost mm", "lost cm3", "±", "lost kg", "power W", "±", "shoulder deg", "toe deg"}};
   const auto angle = [](double value) { return std::isfinite(value) ? fmt::format("{:.1f}", value) : std::string("none"); };
   for (const Stage& s : found.stages) {
-    rows.push_back({fmt::format("{:.0f}", s.hours), fmt::format("{:.3g}", 1e3 * s.relief), fmt::format("{:.3g}", 1e3 * s.plate_lost),
-                    fmt::format("{:.4g}", 1e6 * s.volume), fmt::format("{:.2g}", 1e6 * s.volume_error), fmt::format("{:.4g}", s.mass),
-                    fmt::format("{:.4g}", s.power), fmt::format("{:.2g}", s.power_error), angle(s.shoulder), angle(s.toe)});
+    rows.push_back({fmt::format("{:.0f}", s.hours), fmt::format("{:.3g}", 1e3 * s.relief), fmt::format("{:.3g}", 1e3 * s.lifter_left),
+                    fmt::format("{:.3g}", 1e3 * s.plate_lost), fmt::format("{:.4g}", 1e6 * s.volume),
+                    fmt::format("{:.2g}", 1e6 * s.volume_error), fmt::format("{:.4g}", s.mass), fmt::format("{:.4g}", s.power),
+                    fmt::format("{:.2g}", s.power_error), angle(s.shoulder), angle(s.toe)});
   }
   std::string said = base::columns_to_left(rows);
   if (!found.stopped.empty()) said += "\nstopped: " + found.stopped + "\n";
@@ -234,9 +241,11 @@ void write(const Found& found, const Request& request) {
         Course{"lifter", "height of the lifters", "m", &Stage::relief, nullptr},
         Course{"shoulder", "shoulder", "deg", &Stage::shoulder, nullptr}, Course{"toe", "toe", "deg", &Stage::toe, nullptr}})
     draw_course(found, course, pictures);
+  for (std::size_t k = found.stages.size(); fs::remove(folder / fmt::format("liner_{:02d}.vtp", k)); ++k) {  // of an earlier, longer study
+  }
   for (std::size_t k = 0; k < found.stages.size(); ++k)
     write_liner(found.stages[k], found.stages.front().profile, folder / fmt::format("liner_{:02d}.vtp", k));
-  output::write_json(folder / "wear.json", json_of(found));
+  output::write_json(folder / "wear.json", json_of(found, request));
 }
 
 }  // namespace millscope::wear

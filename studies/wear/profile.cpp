@@ -18,7 +18,8 @@ using base::UserError;
 constexpr int kLook = 7200;  // directions in which the pitches are counted
 constexpr int kMostPitches = 120, kSmoothPitches = 60;
 constexpr double kFlat = 1e-3;                      // of the radius: relief of a shell without lifters
-constexpr double kAlike = 0.02;                     // of the relief: how well pitches repeat
+constexpr double kAlike = 0.02;                     // of the relief: less is the same place
+constexpr double kOddDirections = 0.04;             // upright faces may be seen at their foot or at their top
 constexpr double kBeside = 3e-4;                    // of a row, beside its middle: rows of vertices may stand there
 constexpr double kWholeFace = 0.9, kNoFace = 0.01;  // of the cross-section
 
@@ -39,18 +40,12 @@ std::vector<run::Facing> look_round(const Surface& s, const Interior& in, double
   return all;
 }
 
-/// Root mean square of r(θ + 2π/n) − r(θ).
-double unlike(const std::vector<run::Facing>& r, int n) {
-  const auto count = static_cast<double>(r.size());
-  double sum = 0;
-  for (std::size_t k = 0; k < r.size(); ++k) {
-    const double to = static_cast<double>(k) + count / n;
-    const auto low = static_cast<std::size_t>(to);
-    const double part = to - static_cast<double>(low);
-    const double there = (1 - part) * r[low % r.size()].distance + part * r[(low + 1) % r.size()].distance;
-    sum += (there - r[k].distance) * (there - r[k].distance);
-  }
-  return std::sqrt(sum / count);
+/// The share of directions in which two looks differ by more than a small part of the relief.
+double unlike(const std::vector<run::Facing>& a, const std::vector<run::Facing>& b, std::size_t turned, double relief) {
+  std::size_t off = 0;
+  for (std::size_t k = 0; k < a.size(); ++k)
+    off += std::fabs(a[k].distance - b[(k + turned) % b.size()].distance) > kAlike * relief ? 1 : 0;
+  return static_cast<double>(off) / static_cast<double>(a.size());
 }
 
 double relief_of(const std::vector<run::Facing>& r) {
@@ -58,20 +53,38 @@ double relief_of(const std::vector<run::Facing>& r) {
   return high->distance - low->distance;
 }
 
-int pitches_of(const std::vector<run::Facing>& r, double radius, int asked, const std::string& name) {
-  const double relief = relief_of(r);
+/// Looked at in a multiple of n directions, so that a pitch is a whole number of them.
+bool repeats(const Surface& s, const Interior& in, double z, int n, double relief) {
+  const int each = (kLook + n - 1) / n;
+  const std::vector<run::Facing> seen = run::faces_round(s, in, z, n * each);
+  return unlike(seen, seen, static_cast<std::size_t>(each), relief) <= kOddDirections;
+}
+
+int pitches_of(const Surface& s, const Interior& in, double z, int asked, const std::string& name) {
+  const double relief = relief_of(look_round(s, in, z, kLook, name));
+  const bool smooth = relief <= kFlat * in.radius;
   if (asked > 0) {
-    const double off = unlike(r, asked);
-    if (relief <= kFlat * radius || off <= kAlike * relief) return asked;
-    throw UserError(
-        fmt::format("geometry.{}: it does not repeat {} times in a turn: the pitches differ by {:.3g} mm; give another --pitches, or 1",
-                    name, asked, 1e3 * off));
+    if (smooth || repeats(s, in, z, asked, relief)) return asked;
+    throw UserError(fmt::format("geometry.{}: it does not repeat {} times in a turn; give another --pitches, or 1", name, asked));
   }
-  if (relief <= kFlat * radius) return kSmoothPitches;
+  if (smooth) return kSmoothPitches;
   for (int n = kMostPitches; n > 1; --n) {
-    if (unlike(r, n) <= kAlike * relief) return n;
+    if (repeats(s, in, z, n, relief)) return n;
   }
   return 1;
+}
+
+/// One row stands for all of the mill only where the liner is the same along it.
+void require_straight(const Surface& s, const Interior& in, const Profile& p, const std::string& name) {
+  if (p.rows > 1) return;
+  const auto look = [&](double share) { return look_round(s, in, p.low + share * (p.high - p.low), kLook, name); };
+  const std::vector<run::Facing> middle = look(0.5 + kBeside);
+  const double relief = std::max(relief_of(middle), kFlat * in.radius);
+  for (const double share : {0.2, 0.8}) {
+    if (unlike(middle, look(share + kBeside), 0, relief) <= kOddDirections) continue;
+    throw UserError(fmt::format(
+        "geometry.{}: it is not the same along the mill, as helical lifters and bolt holes are not; give --rows, e.g. 8", name));
+  }
 }
 
 /// The part of the cross-section that flat triangles close at the end `z`; `slot` gets theirs.
@@ -134,14 +147,18 @@ Profile profile_of(const Surface& surface, const Interior& in, const Resolution&
     p.high = std::max(p.high, surface.vertices[3 * v + 2]);
   }
   p.rows = resolution.rows;
+  p.periodic = resolution.period.has_value();
+  if (p.periodic) p.low = (*resolution.period)[0], p.high = (*resolution.period)[1];
   const auto middle_of = [&p](std::size_t row) { return p.low + (static_cast<double>(row) + 0.5 + kBeside) * p.row_length(); };
-  p.pitches = pitches_of(look_round(surface, in, middle_of(p.rows / 2), kLook, name), in.radius, resolution.pitches, name);
+  p.pitches = pitches_of(surface, in, middle_of(p.rows / 2), resolution.pitches, name);
+  require_straight(surface, in, p, name);
   p.columns = static_cast<std::size_t>(std::max(8.0, std::ceil(kTurn * in.radius / (p.pitches * resolution.cell))));
   p.radius.assign(p.rows * p.columns, 0.0);
   const int directions = 2 * p.pitches * static_cast<int>(p.columns);
   for (std::size_t row = 0; row < p.rows; ++row) add_row(p, row, look_round(surface, in, middle_of(row), directions, name), surface);
-  p.low_face = has_face(surface, p.low, p, p.face_material, name);
-  p.high_face = has_face(surface, p.high, p, p.face_material, name);
+  if (p.periodic) return p;
+  p.low_face = has_face(surface, p.low, p, p.face_material[0], name);
+  p.high_face = has_face(surface, p.high, p, p.face_material[1], name);
   return p;
 }
 

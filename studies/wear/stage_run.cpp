@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "kernel/base/error.hpp"
 #include "kernel/config/writer.hpp"
@@ -19,32 +19,23 @@ namespace fs = std::filesystem;
 using base::UserError;
 
 constexpr double kFrameEvery = 0.02;  // s: about half of the time in which a charge forgets its kinetic energy
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-/// Mean of what seeds say; NaN where one of them says nothing.
-struct Mean {
-  double value = 0, error = 0;
-};
-Mean mean_of(const std::vector<double>& values) {
-  Mean m;
-  const auto n = static_cast<double>(values.size());
-  for (const double v : values) m.value += v / n;
-  for (const double v : values) m.error += (v - m.value) * (v - m.value);
-  m.error = n > 1 ? std::sqrt(m.error / (n * (n - 1))) : 0;
-  return m;
-}
-
+/// What the charge of one run does; NaN: not told.
 struct Charge {
   double power = kNone, power_error = kNone, shoulder = kNone, toe = kNone;
+  std::string trouble;  ///< why shoulder and toe are not known
 };
 
-/// Power from the summary; shoulder and toe from charge_features, where the charge has them.
+double number_of(const nlohmann::ordered_json& json, const char* key) {
+  return json.is_object() && json.contains(key) && json[key].is_number() ? json[key].get<double>() : kNone;
+}
+
+/// Power from the summary; shoulder and toe from charge_features.
 Charge charge_of(const fs::path& run, const host::Registry& registry) {
   Charge c;
   const nlohmann::ordered_json summary = output::read_json(run / "summary.json");
-  if (summary.is_object() && summary.contains("power_W") && summary["power_W"].contains("torque")) {
-    c.power = summary["power_W"]["torque"].get<double>();
-    c.power_error = summary["power_W"].value("torque_sem", kNone);
+  if (summary.is_object() && summary.contains("power_W")) {
+    c.power = number_of(summary["power_W"], "torque");
+    c.power_error = number_of(summary["power_W"], "torque_sem");
   }
   analysis::AnalysisRequest request;
   request.path = run;
@@ -56,10 +47,23 @@ Charge charge_of(const fs::path& run, const host::Registry& registry) {
       if (result.name == "departure_shoulder") c.shoulder = result.value[0];
       if (result.name == "bulk_toe") c.toe = result.value[0];
     }
-  } catch (const UserError&) {
-    return c;  // too few frames, or a charge that does not turn
+  } catch (const UserError& e) {
+    c.trouble = e.what();
   }
   return c;
+}
+
+/// Means over the runs. The power's error is the larger one of what the runs say of themselves and of what they differ by.
+void add_charges(const std::vector<Charge>& charges, Told& told) {
+  const auto n = static_cast<double>(charges.size());
+  double between = 0, within = 0;
+  for (const Charge& c : charges) {
+    told.power += c.power / n, told.shoulder += c.shoulder / n, told.toe += c.toe / n;
+    within += c.power_error * c.power_error / (n * n);
+    if (!c.trouble.empty()) told.doubts.push_back("shoulder and toe are not known: " + c.trouble);
+  }
+  for (const Charge& c : charges) between += (c.power - told.power) * (c.power - told.power) / std::max(n * (n - 1), 1.0);
+  told.power_error = std::sqrt(std::fmax(within, between));
 }
 
 }  // namespace
@@ -70,7 +74,8 @@ fs::path Stages::write_case(int number, const Profile& p, const Stretches& s) co
   config::Case c = given_.c;
   c.name = fmt::format("{}, worn, stage {}", given_.c.name, number);
   c.fill.count = given_.bead_count;  // the charge stays the same though the mill gets wider
-  c.fill.filling.reset(), c.fill.mass.reset();
+  c.fill.filling.reset(), c.fill.mass.reset(), c.fill.file.clear(), c.fill.placed.clear();
+  if (!given_.c.fill.file.empty()) c.fill.settle = config::FillCase{}.settle;
   const Mesh mesh = mesh_of(p, s);
   const Surface surface = mesh.surface();
   run::put_mesh_in_place({surface, given_.geometries[body_].slots}, c.geometry[body_].plugin, c.domain, folder);
@@ -92,7 +97,7 @@ Told Stages::run(int number, const Profile& p, const Stretches& s) const {
   }
   const std::vector<campaign::Outcome> outcomes = campaign::run(simulations, request_.campaign);
   Told told;
-  std::vector<double> power, shoulder, toe;
+  std::vector<Charge> charges;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     if (outcomes[i].state == campaign::State::failed) {
       throw UserError(
@@ -100,15 +105,9 @@ Told Stages::run(int number, const Profile& p, const Stretches& s) const {
     }
     told.runs.push_back(outcomes[i].folder);
     told.losses.push_back(loss_of(run::read_wear(outcomes[i].folder / run::kWearFile, given_.c.geometry[body_].plugin.name), p, s));
-    const Charge charge = charge_of(outcomes[i].folder, registry_);
-    power.push_back(charge.power), shoulder.push_back(charge.shoulder), toe.push_back(charge.toe);
-    told.power_error = charge.power_error;
+    charges.push_back(charge_of(outcomes[i].folder, registry_));
   }
-  const Mean mean = mean_of(power);
-  told.power = mean.value;
-  if (power.size() > 1) told.power_error = mean.error;
-  told.shoulder = mean_of(shoulder).value;
-  told.toe = mean_of(toe).value;
+  add_charges(charges, told);
   return told;
 }
 

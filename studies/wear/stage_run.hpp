@@ -1,17 +1,22 @@
 // The simulations of one stage: the case with the worn liner, and what they say.
 #pragma once
 
+#include <limits>
+
 #include "kernel/run/assembly.hpp"
 #include "studies/wear/wear.hpp"
 #include "studies/wear/worn_mesh.hpp"
 
 namespace millscope::wear {
 
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  ///< not known
+
 /// What a stage's simulations tell.
 struct Told {
   std::vector<Loss> losses;  ///< of each seed
   double power = 0, power_error = 0, shoulder = 0, toe = 0;
   std::vector<std::filesystem::path> runs;
+  std::vector<std::string> doubts;
 };
 
 /// Plays the stages of one case.

@@ -20,14 +20,14 @@ struct Request {
   std::filesystem::path case_file;
   std::vector<std::string> settings;  ///< "path.to.key=value", as `--set`
   std::filesystem::path output;
-  double hours = 0;   ///< of running
-  int steps = 8;      ///< in which they pass
-  int seeds = 2;      ///< simulations of each stage, from other starts
-  int pitches = 0;    ///< 0: found out
-  int rows = 0;       ///< along the mill; 0: one for a slice, else about two beads long
-  double plate = 0;   ///< m of metal behind the shell; when it is through the study stops; 0: not known
-  double smooth = 0;  ///< m; 0: the largest bead's radius
-  std::vector<std::string> command_line = {};
+  double hours = 0;       ///< of running
+  int steps = 8;          ///< in which they pass
+  int seeds = 2;          ///< simulations of each stage, from other starts
+  std::string body = {};  ///< the geometry that wears; "": the one that turns
+  int pitches = 0;        ///< 0: found out
+  int rows = 0;           ///< along the mill; 0: one for a slice, else about two beads long
+  double plate = 0;       ///< m of metal behind the shell; when it is through the study stops; 0: not known
+  double smooth = 0;      ///< m; 0: the largest bead's radius
   campaign::Options campaign;
   std::function<void(const std::string&)> say = {};  ///< one line as each stage is done
 };
@@ -41,7 +41,8 @@ struct Stage {
   double volume_error = 0;            ///< its standard error, m³
   double law_volume = 0;              ///< what the laws said so far, m³, end faces left out
   double face_volume = 0;             ///< m³ from the end faces so far; they stay where they are
-  double relief = 0;                  ///< height of the lifters, m
+  double relief = 0;                  ///< from the lowest to the highest place, which lifts the charge, m
+  double lifter_left = 0;             ///< how far the lifters stand above the new shell, m
   double plate_lost = 0;              ///< how far its deepest place is beyond the deepest of the new liner, m
   double power = 0, power_error = 0;  ///< W, of the liner as it is
   double shoulder = 0, toe = 0;       ///< deg; NaN: there is none
@@ -50,7 +51,6 @@ struct Stage {
 
 struct Found {
   std::string name, body;
-  std::vector<std::string> slots;
   std::vector<Stage> stages;
   double smooth = 0;    ///< m
   std::string stopped;  ///< why before the last hour; "" where it was not

@@ -4,22 +4,27 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernel/base/error.hpp"
+
 namespace millscope::wear {
 namespace {
 
 constexpr int kSearches = 60;
-constexpr double kNear = 1e-6;  // of the volume of a row
+constexpr double kNear = 1e-6;     // of the volume of a row
+constexpr double kMostOff = 1e-3;  // of it
+constexpr double kRadial = 1e-6;   // of a line's length across a direction: it points to the axis
 
 /// The radius in every direction that the line from a to b crosses becomes at least that of the line: the metal on the way is gone.
 void reach(std::vector<double>& radius, double step, const Place& a, const Place& b) {
   const double first = std::atan2(a.y, a.x), last = first + std::remainder(std::atan2(b.y, b.x) - first, 2 * std::numbers::pi);
   const auto columns = static_cast<long>(radius.size());
   const double dx = b.x - a.x, dy = b.y - a.y, moment = a.x * b.y - a.y * b.x;
+  const double span = std::hypot(dx, dy), farther = std::max(std::hypot(a.x, a.y), std::hypot(b.x, b.y));
   for (auto k = static_cast<long>(std::ceil(std::min(first, last) / step)); static_cast<double>(k) * step <= std::max(first, last); ++k) {
     const double across = std::cos(static_cast<double>(k) * step) * dy - std::sin(static_cast<double>(k) * step) * dx;
-    if (across == 0) continue;
     double& r = radius[static_cast<std::size_t>((k % columns + columns) % columns)];
-    r = std::max(r, moment / across);
+    // Along the direction itself both are but rounding.
+    r = std::max(r, std::fabs(across) <= kRadial * span ? farther : std::min(moment / across, farther));
   }
 }
 
@@ -76,6 +81,9 @@ double wear_row(Profile& p, const Stretches& s, std::size_t row, const std::vect
     const double found = lost(factor);
     if (std::fabs(found - area) < kNear * area) break;
     (found < area ? low : high) = factor;
+  }
+  if (std::fabs(area_between(before, best, p.step()) - area) > kMostOff * area) {
+    throw base::UserError("wear: the liner cannot lose what the laws say in one step without a hole; give more --steps");
   }
   std::copy(best.begin(), best.end(), p.radius.begin() + static_cast<std::ptrdiff_t>(row * p.columns));
   return factor;

@@ -18,7 +18,9 @@ Profile at_borders(const Profile& p) {
   b.rows = p.rows + 1;
   b.radius.assign(b.rows * b.columns, 0.0);
   for (std::size_t j = 0; j < b.rows; ++j) {
-    const std::size_t below = j == 0 ? 0 : j - 1, above = std::min(j, p.rows - 1);
+    const bool inside = 0 < j && j < p.rows;
+    const std::size_t below = inside ? j - 1 : p.periodic || j > 0 ? p.rows - 1 : 0;
+    const std::size_t above = inside ? j : p.periodic || j == 0 ? 0 : p.rows - 1;
     for (std::size_t c = 0; c < p.columns; ++c) b.at(j, c) = 0.5 * (p.at(below, c) + p.at(above, c));
   }
   return b;
@@ -48,25 +50,49 @@ void add_face(Mesh& m, const Profile& p, std::size_t ring, std::size_t count, bo
   m.vertices.insert(m.vertices.end(), {0.0, 0.0, upper ? p.high : p.low});
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t here = ring + k, next = ring + (k + 1) % count;
-    upper ? add_triangle(m, centre, next, here, p.face_material) : add_triangle(m, centre, here, next, p.face_material);
+    upper ? add_triangle(m, centre, next, here, p.face_material[1]) : add_triangle(m, centre, here, next, p.face_material[0]);
   }
 }
 
-/// Spreads n numbers that stand at `place` in a period (0: none).
-void spread(std::vector<double>& values, const std::vector<double>& place, const std::vector<double>& length, double period,
-            double deviation) {
+/// Numbers that stand one behind the other: each at the middle of its length.
+struct Line {
+  std::vector<double> place, length;
+  double whole = 0;
+  bool closed;  ///< its end joins its beginning; else it ends there, and nothing leaves it
+};
+
+Line line_of(std::vector<double> length, bool closed) {
+  Line line{{}, std::move(length), 0, closed};
+  for (const double l : line.length) {
+    line.place.push_back(line.whole + 0.5 * l);
+    line.whole += l;
+  }
+  return line;
+}
+
+/// What reaches `to` from `from`, round the line as often as the Gaussian goes. At an end it comes back, so that an even loss stays even.
+double share_of(const Line& line, std::size_t from, std::size_t to, double deviation) {
+  const auto gaussian = [&](double away) {
+    return std::fabs(away) > kReach * deviation ? 0.0 : std::exp(-0.5 * away * away / (deviation * deviation));
+  };
+  const double a = line.place[from], b = line.place[to], period = line.closed ? line.whole : 2 * line.whole;
+  const auto times = static_cast<int>(std::ceil(kReach * deviation / period)) + 1;
+  double sum = 0;
+  for (int n = -times; n <= times; ++n) {
+    sum += gaussian(b - a + n * period);
+    if (!line.closed) sum += gaussian(a + b + n * period);
+  }
+  return line.length[to] * sum;
+}
+
+/// Spreads the numbers over the line; their sum stays.
+void spread(std::vector<double>& values, const Line& line, double deviation) {
   const std::size_t n = values.size();
   std::vector<double> out(n, 0.0), weight(n);
   for (std::size_t i = 0; i < n; ++i) {
     if (!(values[i] > 0)) continue;
     double sum = 0;
-    for (std::size_t j = 0; j < n; ++j) {
-      double away = std::fabs(place[j] - place[i]);
-      if (period > 0) away = std::min(away, period - away);
-      away /= deviation;
-      weight[j] = away > kReach ? 0.0 : length[j] * std::exp(-0.5 * away * away);
-      sum += weight[j];
-    }
+    for (std::size_t j = 0; j < n; ++j) sum += weight[j] = share_of(line, i, j, deviation);
     for (std::size_t j = 0; j < n; ++j) out[j] += values[i] * weight[j] / sum;
   }
   values = out;
@@ -161,24 +187,17 @@ Loss loss_of(const run::WornSurface& worn, const Profile& p, const Stretches& s)
 void smooth(std::vector<double>& loss, const Profile& p, const Stretches& s, double length) {
   const std::size_t n = s.count();
   for (std::size_t row = 0; row < p.rows; ++row) {
-    const std::vector<double> lengths = lengths_of(p, s, row);
-    std::vector<double> place(n),
-        values(loss.begin() + static_cast<std::ptrdiff_t>(row * n), loss.begin() + static_cast<std::ptrdiff_t>((row + 1) * n));
-    double at = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      place[k] = at + 0.5 * lengths[k];
-      at += lengths[k];
-    }
-    spread(values, place, lengths, at, length);
-    std::copy(values.begin(), values.end(), loss.begin() + static_cast<std::ptrdiff_t>(row * n));
+    const auto first = loss.begin() + static_cast<std::ptrdiff_t>(row * n);
+    std::vector<double> values(first, first + static_cast<std::ptrdiff_t>(n));
+    spread(values, line_of(lengths_of(p, s, row), true), length);
+    std::copy(values.begin(), values.end(), first);
   }
   if (p.rows == 1) return;
-  const std::vector<double> lengths(p.rows, p.row_length());
-  std::vector<double> place(p.rows), values(p.rows);
-  for (std::size_t row = 0; row < p.rows; ++row) place[row] = (static_cast<double>(row) + 0.5) * p.row_length();
+  const Line along = line_of(std::vector<double>(p.rows, p.row_length()), p.periodic);
+  std::vector<double> values(p.rows);
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t row = 0; row < p.rows; ++row) values[row] = loss[row * n + k];
-    spread(values, place, lengths, 0, length);
+    spread(values, along, length);
     for (std::size_t row = 0; row < p.rows; ++row) loss[row * n + k] = values[row];
   }
 }

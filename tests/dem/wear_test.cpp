@@ -75,6 +75,40 @@ TEST_CASE("a bead that slides until it rolls takes k m v0^2/(7 mu H) from the fl
   }
 }
 
+TEST_CASE("a bead that strikes and sticks hardly slides") {
+  Setup s = worn_floor("{rub: {kind: archard}}");
+  s.pairs = fmt::format("restitution: 0.6, static_friction: 0.9, wear_coefficient: {}, hardness: {} Pa", kCoefficient, kHardness);
+  Assembly a = assembled(s);
+  Bead b;
+  const double down = 2, along = 0.3;
+  b.position = {0, kRadius + 1e-4, 0};
+  b.velocity = {along, -down, 0};
+  start(a, {b});
+  advance(a, std::llround(2e-3 / a.time_step));
+  CHECK(velocity(a, 0)[1] > 1);
+  CHECK(told(a) < 0.15 * kCoefficient / kHardness * bead_mass() * 1.6 * down * along);  // were all of its motion sliding
+}
+
+TEST_CASE("an attraction that is not in the law's own force does not lessen what presses where friction counts it not") {
+  const auto slid = [](const char* interactions, const char* more) {
+    Setup s = worn_floor("{rub: {kind: archard}}");
+    s.pairs += more;
+    s.interactions = interactions;
+    s.body_forces = kWithGravity;
+    Assembly a = assembled(s);
+    Bead b;
+    b.position = {0, kRadius, 0};
+    b.velocity = {0.5, 0, 0};
+    start(a, {b});
+    advance(a, std::llround(0.02 / a.time_step));
+    // by how much friction has slowed it tells the pressing force: k F s/H, with F from the loss of speed
+    const double slide = 0.5 - velocity(a, 0)[0];
+    return told(a) / slide;
+  };
+  const double dry = slid("{}", "");
+  CHECK(slid("{glue: {kind: cohesion_sjkr}}", ", cohesion_energy_density: 2e4 J/m^3") == Approx(dry).epsilon(0.05));
+}
+
 TEST_CASE("what is worn before the analysis begins is not counted") {
   Setup s = worn_floor("{rub: {kind: archard}}", 1);
   s.body_forces = kWithGravity;

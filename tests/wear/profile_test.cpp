@@ -1,6 +1,8 @@
 // Profiles of liners: pitches, heights, ends; and back to triangles.
 #include <catch2/catch.hpp>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -48,6 +50,26 @@ TEST_CASE("a smooth shell has as many pitches as one likes, and ends are seen") 
   CHECK(p.low_face);
   CHECK(p.high_face);
   CHECK(p.rows == 4);
+}
+
+TEST_CASE("upright faces, and as many lifters as no round number of directions has, are counted too") {
+  for (const int lifters : {7, 14, 22}) {
+    INFO(lifters);
+    const Profile p =
+        profile(mill(fmt::format("lifters: {}, lifter_height: 8 mm, lifter_width: 12 mm, lifter_face_angle: 90 deg", lifters)));
+    CHECK(p.pitches == lifters);
+    CHECK(p.relief() == Approx(8e-3).epsilon(0.03));
+  }
+}
+
+TEST_CASE("of a liner longer than the slice only the slice counts") {
+  const Assembly a = mill("lifters: 10, lifter_height: 8 mm, lifter_width: 20 mm");
+  Resolution r{1e-3, 1, 0};
+  r.period = {0.01, 0.03};
+  const Profile p = profile(a, r);
+  CHECK(p.low == 0.01);
+  CHECK(p.row_length() == Approx(0.02));
+  CHECK(p.periodic);
 }
 
 TEST_CASE("a number of pitches that a liner has not is refused with what they differ by") {
@@ -101,6 +123,32 @@ TEST_CASE("what triangles have lost comes to the stretch and the row where they 
   CHECK(loss.faces == Approx(5.0 * 2 * static_cast<double>(ring) / 2));
   for (const std::vector<double>& pitch : loss.of_pitch) {
     for (std::size_t k = 0; k < pitch.size(); ++k) CHECK(pitch[k] == Approx(1.0 + static_cast<double>(k / s.count())));
+  }
+}
+
+TEST_CASE("an even loss stays even, at the ends of a closed mill and over the period of a slice") {
+  for (const bool periodic : {false, true}) {
+    Profile p = profile(mill("lifters: 0"), {1e-3, 12, 0});
+    p.periodic = periodic;
+    const Stretches s = stretches_of(p);
+    std::vector<double> loss = lengths_of(p, s, 0);
+    std::vector<double> all;
+    for (std::size_t row = 0; row < p.rows; ++row) all.insert(all.end(), loss.begin(), loss.end());
+    const std::vector<double> before = all;
+    smooth(all, p, s, 6e-3);
+    for (std::size_t k = 0; k < all.size(); ++k) CHECK(all[k] == Approx(before[k]).epsilon(2e-3));
+  }
+}
+
+TEST_CASE("the rows of a slice join over its period") {
+  Profile p = profile(mill("lifters: 0"), {1e-3, 2, 0});
+  p.periodic = true;
+  for (std::size_t c = 0; c < p.columns; ++c) p.at(1, c) += 1e-3;
+  const Mesh mesh = mesh_of(p, stretches_of(p));
+  const std::size_t ring = mesh.vertices.size() / 9;
+  for (std::size_t k = 0; k < ring; ++k) {
+    CHECK(mesh.vertices[3 * k] == mesh.vertices[3 * (2 * ring + k)]);
+    CHECK(mesh.vertices[3 * k + 1] == mesh.vertices[3 * (2 * ring + k) + 1]);
   }
 }
 

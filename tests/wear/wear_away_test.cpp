@@ -66,6 +66,25 @@ TEST_CASE("what goes from the profile is what the law said, also at edges and on
   }
 }
 
+TEST_CASE("a straight top whose normal points along a direction loses what it should") {
+  Profile p;
+  p.pitches = 20, p.columns = 38, p.low = 0, p.high = kLength;
+  for (std::size_t c = 0; c < p.columns; ++c) {  // flat lifter tops about direction 0, 20 mm high, in a shell of 300 mm
+    const double turn = static_cast<double>(c) * p.step(), away = std::min(turn, p.step() * static_cast<double>(p.columns) - turn);
+    p.radius.push_back(std::min(0.3, std::max(0.28 / std::cos(away), 0.28 + (away - 0.045) * 1.5)));
+    p.material.push_back(0);
+  }
+  for (const double depth : {2e-5, 1.46e-4, 4e-4, 1e-3}) {
+    INFO(depth);
+    Profile worn = p;
+    const Stretches s = stretches_of(worn);
+    const std::vector<double> volume = even(worn, s, depth);
+    wear_away(worn, s, volume);
+    CHECK(volume_between(p, worn) == Approx(sum(volume)).epsilon(1e-5));
+    for (std::size_t c = 0; c < p.columns; ++c) CHECK(worn.at(0, c) - p.at(0, c) < 6 * depth);  // the sides stand at 80 degrees
+  }
+}
+
 TEST_CASE("a face that alone loses goes back along its normal and stays straight") {
   Profile p = with_lifter(5e-3, 0.1, 600);
   const Profile before = p;

@@ -5,7 +5,7 @@
 
 namespace millscope {
 
-/// Contacts of beads with one wall in one step. Only touching ones come; their number is any.
+/// Contacts of beads with one wall in one step. With films and adhesion come gaps, too: nothing presses or slides there.
 struct WearBatch {
   std::int64_t count;
   double time_step;           ///< s

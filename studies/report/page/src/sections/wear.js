@@ -27,10 +27,11 @@ function slider(found, key) {
   const fresh = svg("path", { d: path(all[0]), fill: "none", stroke: theme().faint, "stroke-width": 1.5, "stroke-dasharray": "5 4", "vector-effect": "non-scaling-stroke" });
   const drawing = svg("svg", { viewBox: frame, role: "img", width: "100%", style: "max-height:16rem;color:inherit", "aria-label": "Cut across one pitch of the liner" }, metal, fresh);
   const label = element("output", null);
-  const input = element("input", { type: "range", min: 0, max: all.length - 1, step: 1, value: all.length - 1, id: `${key}-stage`, "aria-label": "stage", style: "width:100%", input: () => show(Number(input.value)) });
+  const input = element("input", { type: "range", min: 0, max: all.length - 1, step: 1, value: all.length - 1, id: `${key}-stage`, style: "width:100%", input: () => show(Number(input.value)) });
   const show = (index) => {
+    input.setAttribute("aria-valuetext", hours(found.stages[index]));
     metal.setAttribute("d", `${path(all[index])}L${wide} ${-low}L0 ${-low}Z`);
-    label.textContent = `after ${hours(found.stages[index])}: lifters ${quantity(found.stages[index].lifter_height_m, "m", 3)} high, power ${quantity(found.stages[index].power_W, "W", 4)}`;
+    label.textContent = `after ${hours(found.stages[index])}: lifters ${quantity(found.stages[index].lifter_height_m, "m", 3)} high (${quantity(found.stages[index].lifter_left_m, "m", 3)} above the new shell), power ${quantity(found.stages[index].power_W, "W", 4)}`;
   };
   show(all.length - 1);
   return element("div", null, drawing, element("label", { for: `${key}-stage` }, "hours "), input, label);
@@ -58,7 +59,7 @@ const COURSES = [{ name: "power_W", title: "Power", unit: "W", error: "power_err
   { name: "shoulder_deg", title: "Shoulder", unit: "deg" }, { name: "toe_deg", title: "Toe", unit: "deg" }];
 
 const stages = (found) => table({ caption: "The liner at each stage", rows: found.stages, columns: [{ label: "hours", header: true, number: true, value: (one) => number(one.hours, 5) },
-  { label: "height of the lifters", number: true, value: (one) => quantity(one.lifter_height_m, "m", 3) }, { label: "plate lost", number: true, value: (one) => quantity(one.plate_lost_m, "m", 3) },
+  { label: "height of the lifters", number: true, value: (one) => quantity(one.lifter_height_m, "m", 3) }, { label: "left of them", number: true, value: (one) => quantity(one.lifter_left_m, "m", 3) }, { label: "plate lost", number: true, value: (one) => quantity(one.plate_lost_m, "m", 3) },
   { label: "mass lost", number: true, value: (one) => quantity(one.mass_lost_kg, "kg", 3) }, { label: "volume lost", number: true, value: (one) => `${number(1e6 * one.volume_lost_m3, 3)} ± ${number(1e6 * one.volume_lost_error_m3, 2)}\u00a0cm³` },
   { label: "power", number: true, value: (one) => withError(one.power_W, one.power_error_W, "W") }, { label: "shoulder", number: true, value: (one) => quantity(one.shoulder_deg, "deg", 3) }, { label: "toe", number: true, value: (one) => quantity(one.toe_deg, "deg", 3) }] });
 
@@ -78,7 +79,7 @@ export function wear(section, key) {
       ["Mass lost", quantity(last.mass_lost_kg, "kg", 3)], ["Plate lost", quantity(last.plate_lost_m, "m", 3), "where it is deepest"]],
     blocks: [
       found.doubts?.length ? block(`${key}-doubts`, "Doubts", list(found.doubts)) : null,
-      block(`${key}-away`, "The liner wears away", figure("A cut across one pitch, the metal grey, the new liner dashed. Mean over all pitches and the mill's length. Move the slider.", slider(found, key)),
+      block(`${key}-away`, "The liner wears away", figure("A cut across one pitch, the metal grey, the new liner dashed; directions grow to the right, so a mill that turns counter-clockwise moves the lifter to the right. Mean over all pitches and the mill's length. Move the slider.", slider(found, key)),
         figure("All stages together.", profiles(found, key))),
       block(`${key}-course`, "What the mill does meanwhile", element("div", { class: "halves" }, COURSES.map((one) => course(found, key, one)))),
       block(`${key}-stages`, "Numbers", stages(found)),
