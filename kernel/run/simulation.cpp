@@ -367,8 +367,7 @@ Outcome resume_run(const host::Registry& registry, const RunOptions& options) {
     system.forget_wear();  // of another window
   }
   write_resolved(s, registry);
-  s.wall_before = archive.read_value<double>("wall_s");
-  s.first_step = system.step(), s.started = Clock::now();
+  s.wall_before = archive.read_value<double>("wall_s"), s.first_step = system.step(), s.started = Clock::now();
   return step_to_end(s, registry);
 }
 
