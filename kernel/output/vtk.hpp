@@ -26,7 +26,7 @@ struct MeshPicture {
   std::span<const std::uint32_t> materials;  ///< [T] slot of each triangle
   std::span<const double> impact_work;       ///< [T] J since the start, or empty
   std::span<const double> shear_work;        ///< [T] J since the start, or empty
-  std::span<const double> worn_volume;       ///< [T] m³ since the analysis began, or empty
+  std::span<const double> worn_volume = {};  ///< [T] m³ since the analysis began, or empty
 };
 
 /// Points with radius, velocity, speed, spin, id, material; whole or not at all. UserError when it cannot be written.

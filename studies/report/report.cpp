@@ -49,7 +49,7 @@ std::string_view before(std::string_view page, std::string_view mark, std::strin
 
 /// Kinds of sections in the order of an answer, what it rests on, and how it looks.
 constexpr std::array kAnswerOrder{"diagnosis",  "challenge", "calibration", "validation", "comparison",
-                                  "crosscheck", "analysis",  "campaign",    "run"};
+                                  "crosscheck", "wear",      "analysis",    "campaign",   "run"};
 
 std::size_t place_of(const nlohmann::ordered_json& section) {
   const auto kind = section.value("kind", std::string());
