@@ -6,6 +6,8 @@ lifts. The study does not say what x is on the falling side, nor whether v is a 
 """
 import argparse
 import json
+import math
+import statistics
 import sys
 from pathlib import Path
 
@@ -14,6 +16,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "python"))
 
 GRAVITY = 9.81
 LEAST_RADIUS = 1e-7  # m: a bead on the axis
+PARTS = 5            # of the time, for the errors
 EXACT, OF_SAMPLES = "M g ⟨x⟩ Ω, exact", "x, ⟨|ω|⟩"
 # name: (weight of a cell, its turning speed) of `Cells`
 READINGS = {
@@ -27,8 +30,11 @@ READINGS = {
     "x, ⟨|v|⟩/r_i": ("x", "mean_speed"),
     "|x|, ⟨|ω|⟩": ("width", "magnitude"),
     "|x|, |⟨ω⟩|": ("width", "of_mean"),
+    "|x|, |⟨v_θ⟩|/r_i": ("width", "of_mean_tangential"),
+    "|x|, ⟨|v_θ|⟩/r_i": ("width", "tangential"),
     "|x|, ⟨ω⟩ with its sign": ("width", "signed"),
     "|x|, ⟨|v|/r⟩": ("width", "speed"),
+    "|x|, ⟨|v|⟩/r_i": ("width", "mean_speed"),
     "|x|, Ω of the shell": ("width", "shell"),
     "|x − x̄|, ⟨|ω|⟩": ("width_about_centre", "magnitude"),
     "r, ⟨|ω|⟩": ("radius", "magnitude"),
@@ -87,17 +93,19 @@ def samples(run, start):
         raise SystemExit("power_readings: %s" % refused) from refused
     first = int((frames.time_s < start - 1e-9).sum())
     place, velocity = frames.position_m[first:].astype(float), frames.velocity_m_per_s[first:].astype(float)
-    if not len(place):
-        raise SystemExit("power_readings: %s has no frame from %g s on; give --from an earlier time" % (run, start))
     axes = [place[..., 0], place[..., 1], velocity[..., 0], velocity[..., 1]]
     return axes, float(frames.angular_velocity_rad_per_s[first:].mean()), float(frames.beads.mass_kg.sum()), float(opened.case["mill"]["diameter"]) / 2
 
 
 def readings(run, start):
-    """Reading → W of the run's whole charge."""
+    """Reading → W of the run's whole charge and its standard error, from PARTS spans of time."""
     axes, turning, mass, radius = samples(run, start)
-    cells = Cells(*(a.ravel() for a in axes), turning, radius)
-    return {name: mass * cells.specific_power(*parts) for name, parts in READINGS.items()}
+    spans = [slice(len(axes[0]) * part // PARTS, len(axes[0]) * (part + 1) // PARTS) for part in range(PARTS)]
+    if len(axes[0]) < PARTS:
+        raise SystemExit("power_readings: %s has %d frames from %g s on, fewer than %d; give --from an earlier time" % (run, len(axes[0]), start, PARTS))
+    whole, *parts = (Cells(*(a[span].ravel() for a in axes), turning, radius) for span in [slice(None)] + spans)
+    return {name: (mass * whole.specific_power(*how), mass * statistics.stdev([part.specific_power(*how) for part in parts]) / math.sqrt(PARTS))
+            for name, how in READINGS.items()}
 
 
 def bead_readings(run, start):
@@ -106,8 +114,8 @@ def bead_readings(run, start):
     found = {name: [] for name in READINGS}
     for bead in range(axes[0].shape[1]):
         cells = Cells(*(a[:, bead] for a in axes), turning, radius)
-        for name, parts in READINGS.items():
-            found[name].append(mass * cells.specific_power(*parts))
+        for name, how in READINGS.items():
+            found[name].append(mass * cells.specific_power(*how))
     return found
 
 
@@ -118,12 +126,12 @@ def main():
     parser.add_argument("--scale", type=float, default=1, help="length of the mill over that of the run: 13.5 for the study's slice")
     parser.add_argument("--json", action="store_true", help="as JSON")
     options = parser.parse_args()
-    found = {name: options.scale * watts for name, watts in readings(options.run, options.start).items()}
+    found = {name: tuple(options.scale * number for number in pair) for name, pair in readings(options.run, options.start).items()}
     if options.json:
-        print(json.dumps(found, indent=1, ensure_ascii=False))
+        print(json.dumps({name: {"power_W": watts, "sem_W": error} for name, (watts, error) in found.items()}, indent=1, ensure_ascii=False))
         return
-    for name, watts in found.items():
-        print("%-46s %8.3f W  %+6.1f %%" % (name, watts, 100 * (watts / found[EXACT] - 1)))
+    for name, (watts, error) in found.items():
+        print("%-46s %8.3f ± %.3f W  %+6.1f %%" % (name, watts, error, 100 * (watts / found[EXACT][0] - 1)))
 
 
 if __name__ == "__main__":

@@ -62,11 +62,11 @@ class OfARun(FolderTest):
         done = self.readings(run.path, "--from", "0.4", "--scale", "2", "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         found = json.loads(done.stdout)
-        self.assertAlmostEqual(found["x, ⟨|ω|⟩"] / float(numbers["power.power_bbosa"].value), 2, delta=0.002)
-        self.assertAlmostEqual(found["M g ⟨x⟩ Ω, exact"] / float(numbers["power.power_gravity"].value), 2, delta=0.01)
+        self.assertAlmostEqual(found["x, ⟨|ω|⟩"]["power_W"] / float(numbers["power.power_bbosa"].value), 2, delta=0.002)
+        self.assertAlmostEqual(found["M g ⟨x⟩ Ω, exact"]["power_W"] / float(numbers["power.power_gravity"].value), 2, delta=0.01)
         late = self.readings(run.path, "--from", "99")
         self.assertEqual((late.returncode, late.stderr.count("\n")), (1, 1), late.stderr)
-        self.assertIn("has no frame from 99 s on; give --from an earlier time", late.stderr)
+        self.assertIn("has 0 frames from 99 s on, fewer than 5; give --from an earlier time", late.stderr)
 
     def test_what_is_no_run_is_refused_in_a_line(self):
         done = self.readings(self.folder)
