@@ -9,7 +9,7 @@
 //   dissipation          P = Δ(energy lost)/Δt
 //
 // Bbosa's sum is an estimator with a bias; the last three agree in the steady state. With the shell's |Ω| for |ω|, Bbosa's sum is
-// `gravity`: of all readings this one gives the powers that Chagas 2015 prints (docs/analyzers.md).
+// `gravity`: of all readings it comes nearest to the powers that Chagas 2015 prints (docs/analyzers.md).
 #include <algorithm>
 #include <optional>
 #include <vector>
