@@ -93,6 +93,8 @@ def samples(run, start):
         raise SystemExit("power_readings: %s" % refused) from refused
     first = int((frames.time_s < start - 1e-9).sum())
     place, velocity = frames.position_m[first:].astype(float), frames.velocity_m_per_s[first:].astype(float)
+    if len(place) < PARTS:
+        raise SystemExit("power_readings: %s has %d frames from %g s on, fewer than %d; give --from an earlier time" % (run, len(place), start, PARTS))
     axes = [place[..., 0], place[..., 1], velocity[..., 0], velocity[..., 1]]
     return axes, float(frames.angular_velocity_rad_per_s[first:].mean()), float(frames.beads.mass_kg.sum()), float(opened.case["mill"]["diameter"]) / 2
 
@@ -101,8 +103,6 @@ def readings(run, start):
     """Reading → W of the run's whole charge and its standard error, from PARTS spans of time."""
     axes, turning, mass, radius = samples(run, start)
     spans = [slice(len(axes[0]) * part // PARTS, len(axes[0]) * (part + 1) // PARTS) for part in range(PARTS)]
-    if len(axes[0]) < PARTS:
-        raise SystemExit("power_readings: %s has %d frames from %g s on, fewer than %d; give --from an earlier time" % (run, len(axes[0]), start, PARTS))
     whole, *parts = (Cells(*(a[span].ravel() for a in axes), turning, radius) for span in [slice(None)] + spans)
     return {name: (mass * whole.specific_power(*how), mass * statistics.stdev([part.specific_power(*how) for part in parts]) / math.sqrt(PARTS))
             for name, how in READINGS.items()}
