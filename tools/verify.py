@@ -23,13 +23,13 @@ from verify_calibrate import calibrate
 from verify_camera import bbosa, camera, roundtrip
 from verify_compare import differences
 from verify_diagnose import doubts, ends, wet
+from verify_powers import SLICE_60S, powers
 from verify_real import drum, uct, worked
-from verify_rows import row, show
+from verify_rows import power, row, show, three_powers
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "validation.md"
 SLICE, PARAMETRIC, FULL = "configs/crosscheck/slice.yaml", "configs/crosscheck/slice_parametric.yaml", "configs/chagas2015/full_75.yaml"
-SLICE_75, SLICE_60S = "configs/chagas2015/slice_75.yaml", "configs/ergodicity/slice_60s.yaml"
 LINER = "configs/crosscheck/liner.stl"
 
 # An independent DEM code (LIGGGHTS 3.8) on the case of configs/crosscheck/slice.yaml; mean over t = 2.5 to 4 s.
@@ -108,16 +108,6 @@ class Bench:
         for f in files:
             total.update(f.read_bytes())
         return total.hexdigest()[:16]
-
-
-def power(summary, kind):
-    return summary["power_W"][kind], summary["power_W"][kind + "_sem"]
-
-
-def three_powers(s):
-    values = [s["power_W"][k] for k in ("torque", "com", "dissipation")]
-    spread = (max(values) - min(values)) / abs(sum(values) / 3)
-    return row("largest difference of the three powers", "%.2f %%" % (100 * spread), "< 0.5 %", spread < 0.005)
 
 
 def against(first, second, kind, unit="W"):
@@ -236,41 +226,6 @@ def ergodicity(bench):
     pull = flight["gravity_size"]["value"]
     rows.append(row("gravity from the slice's free flights", "%.4f m/s²" % pull, "9.81, within 0.01 %", abs(pull / 9.81 - 1) < 1e-4))
     return rows
-
-
-def powers(bench):
-    """The calibrated slice of Chagas 2015: its powers by every way, and by single beads"""
-    s = bench.run("slice_75", SLICE_75)
-    out = bench.folder / "slice_75-analysis"
-    bench.call("analyze", os.path.relpath(bench.folder / "slice_75", ROOT), "-o", os.path.relpath(out, ROOT), "--force", "--quiet", "--analyzers", "power", "--from", "2.5")
-    found = json.loads((out / "results.json").read_text())["numbers"]["power"]
-    torque = power(s, "torque")
-    scale = 270 / 20  # the whole mill's length over the slice's
-    rows = [row("power by torque", "%s; × 13.5: %.2f W" % (show(*torque, "W"), scale * torque[0]), "29.5 W (the study's DEM of the whole mill)")]
-    for key, name in (("power_gravity", "M g ⟨x⟩ Ω"), ("power_bbosa", "Bbosa, all beads")):
-        value, error = found[key]["value"], found[key]["sem"]
-        exact = key == "power_gravity"
-        rows.append(row("power by " + name, "%s (%+.2f %% of the torque's)" % (show(value, error, "W"), 100 * (value / torque[0] - 1)),
-                        "within 0.5 %" if exact else "a bias to know, see docs/analyzers.md", abs(value / torque[0] - 1) < 0.005 if exact else None))
-    rows.append(three_powers(s))
-    bench.run("ergodic", SLICE_60S)
-    tracks = single_beads(bench, bench.folder / "ergodic")
-    rows.append(row("power from single beads of a 60 s slice, one each", ", ".join("%.2f" % p for p in tracks["single"]) + " W; all beads %.2f W" % tracks["all"]))
-    rows.append(row("their spread", "%.1f %% ± %.1f %%" % (tracks["spread"], tracks["spread_error"]), "over an hour each, the study's three: 1.0, 3.4, 0.7 % from the whole charge's"))
-    return rows
-
-
-def single_beads(bench, run):
-    """M g ⟨x⟩ Ω as each followed bead alone gives it, and of the whole charge, W."""
-    found = []
-    for bead in ("", "100", "300", "500", "700"):  # the beads that the case follows
-        out = run.with_name("%s-power-%s" % (run.name, bead or "all"))
-        words = ("analyze", os.path.relpath(run, ROOT), "-o", os.path.relpath(out, ROOT), "--force", "--quiet", "--analyzers", "power")
-        bench.call(*words, *(("--tracer", bead) if bead else ()))
-        found.append(json.loads((out / "results.json").read_text())["numbers"]["power"]["power_gravity"]["value"])
-    every, single = found[0], found[1:]
-    spread = 100 * math.sqrt(sum((p / every - 1) ** 2 for p in single) / len(single))
-    return {"single": single, "all": every, "spread": spread, "spread_error": spread / math.sqrt(2 * len(single))}
 
 
 ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, worked, drum, uct)}

@@ -7,3 +7,13 @@ def row(what, found, wanted="", good=None):
 
 def show(value, error, unit):
     return "%.4g ± %.2g %s" % (value, error, unit)
+
+
+def power(summary, kind):
+    return summary["power_W"][kind], summary["power_W"][kind + "_sem"]
+
+
+def three_powers(s):
+    values = [s["power_W"][k] for k in ("torque", "com", "dissipation")]
+    spread = (max(values) - min(values)) / abs(sum(values) / 3)
+    return row("largest difference of the three powers", "%.2f %%" % (100 * spread), "< 0.5 %", spread < 0.005)

@@ -1,14 +1,15 @@
 // Power that the shell gives to the charge, from where the beads are and how they turn, and, when simulated, from the shell itself.
 //
 //   i cell of the x–y plane, l_i its share of the charge's time (by mass), x_i its middle, ω = (x v_y − y v_x)/r², s = sign Ω
-//   Bbosa et al. 2011    P = M g s Σ_i x_i l_i ⟨|ω|⟩_i          as Chagas 2015 uses it (Eq. 3.20)
+//   Bbosa et al. 2011    P = M g s Σ_i x_i l_i ⟨|ω|⟩_i          as Chagas 2015 prints it (Eq. 3.20)
 //     of the mean        P = M g s Σ_i x_i l_i |⟨ω⟩_i|          noise of a camera raises this one less
 //     signed             P = M g Σ_i x_i l_i ⟨ω⟩_i              the cascading layer counts against the rise
 //   gravity              P = M g ⟨x Ω⟩                          exact in the steady state without a fluid
 //   shell                P = Δ(work of the walls)/Δt,  torque = P/Ω
 //   dissipation          P = Δ(energy lost)/Δt
 //
-// Bbosa's sum is an estimator with a bias; the last three agree in the steady state.
+// Bbosa's sum is an estimator with a bias; the last three agree in the steady state. With the shell's |Ω| for |ω|, Bbosa's sum is
+// `gravity`: of all readings it comes nearest to the powers that Chagas 2015 prints (docs/analyzers.md).
 #include <algorithm>
 #include <optional>
 #include <vector>
