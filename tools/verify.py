@@ -23,6 +23,7 @@ from verify_calibrate import calibrate
 from verify_camera import bbosa, camera, roundtrip
 from verify_compare import differences
 from verify_diagnose import doubts, ends, wet
+from verify_drums import drums, granudrum
 from verify_real import drum, uct, worked
 from verify_rows import row, show
 
@@ -50,7 +51,7 @@ class Bench:
             raise Failure("%s does not exist; 'make verify' builds it" % self.binary)
         self.folder = build / "verify"
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.threads, self.fresh, self.commands = threads, fresh, []
+        self.threads, self.fresh, self.commands, self.below = threads, fresh, [], []
 
     def call(self, *arguments):
         """Runs the command from the root of the repository; returns what it printed and its peak memory in bytes."""
@@ -74,6 +75,10 @@ class Bench:
         if done.returncode != 0:
             raise Failure(done.stderr.strip() or "%s failed" % command[0])
         return json.loads(done.stdout)
+
+    def say(self, *paragraphs):
+        """What belongs below the item's table, as Markdown: a picture, what a case leaves out, where data come from."""
+        self.below += paragraphs
 
     def export_liner(self):
         self.call("geometry", "export", PARAMETRIC, "-o", LINER, "--force")
@@ -273,7 +278,7 @@ def single_beads(bench, run):
     return {"single": single, "all": every, "spread": spread, "spread_error": spread / math.sqrt(2 * len(single))}
 
 
-ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, worked, drum, uct)}
+ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, worked, drum, uct, drums, granudrum)}
 QUICK = ("crosscheck", "hashes", "memory")
 
 
@@ -300,6 +305,7 @@ def section(name, result):
         lines += ["    " + shell(c) for c in result["commands"]] + ["", "| what | found | wanted | |", "|---|---|---|---|"]
         verdict = {True: "✓", False: "**no**", None: ""}
         lines += ["| %s | %s | %s | %s |" % (r["what"], r["found"], r["wanted"], verdict[r["good"]]) for r in result["rows"]]
+        lines += ["\n" + paragraph for paragraph in result.get("below", [])]
         lines += ["", "%s, millscope %s, %s, %d cores." % (result["date"], result["commit"], result["processor"], result["cores"])]
     return "\n".join(lines) + "\n<!-- end %s -->\n" % name
 
@@ -341,7 +347,7 @@ def main():
             for r in rows:
                 print("    %-4s %s: %s %s" % ({True: "ok", False: "NO", None: ""}[r["good"]], r["what"], r["found"], "(wanted: %s)" % r["wanted"] if r["wanted"] else ""))
             result = {"rows": rows, "commands": bench.commands, "date": time.strftime("%Y-%m-%d"), "commit": commit(), "processor": processor(),
-                      "cores": os.cpu_count()}
+                      "cores": os.cpu_count(), "below": bench.below}
             (bench.folder / ("result_%s.json" % name)).write_text(json.dumps(result, indent=1))
             write_page(bench.folder)
     except Failure as e:
