@@ -73,8 +73,8 @@ def angles(path, grid, ours, measured):
         if rpm in measured:
             panel.line([(-0.03, measured[rpm]), (0.9, measured[rpm])], "#1b2733", "5 4")
         panels.append(panel)
-    legend = [(c, "line", "sliding %g" % s) for c, s in zip(COLOURS, slidings)] + [("#ffffff", "dot", "ours"), ("#1b2733", "dashes", "measured")]
-    save(path, "Surface angle of a drum: another group's runs (lines) and ours (dots)", panels, legend)
+    legend = [(c, "line", "sliding %g" % s) for c, s in zip(COLOURS, slidings)] + [("#ffffff", "dot", "ours")] * bool(ours) + [("#1b2733", "dashes", "measured")]
+    save(path, "Surface angle of a drum: another group's runs (lines)%s, measured beads (dashed)" % (", ours (dots)" if ours else ""), panels, legend)
 
 
 def free_surface(path, points, ours):

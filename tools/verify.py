@@ -23,7 +23,8 @@ from verify_calibrate import calibrate
 from verify_camera import bbosa, camera, roundtrip
 from verify_compare import differences
 from verify_diagnose import doubts, ends, wet
-from verify_drums import drums, granudrum
+from verify_drums import alizadeh, beads6000
+from verify_granudrum import cellulose, granudrum, rolling
 from verify_real import drum, uct, worked
 from verify_rows import row, show
 
@@ -278,7 +279,7 @@ def single_beads(bench, run):
     return {"single": single, "all": every, "spread": spread, "spread_error": spread / math.sqrt(2 * len(single))}
 
 
-ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, worked, drum, uct, drums, granudrum)}
+ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, worked, drum, uct, beads6000, alizadeh, granudrum, cellulose, rolling)}
 QUICK = ("crosscheck", "hashes", "memory")
 
 
