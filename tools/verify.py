@@ -26,7 +26,7 @@ from verify_diagnose import doubts, ends, wet
 from verify_drums import alizadeh, beads6000
 from verify_granudrum import cellulose, granudrum, rolling
 from verify_real import drum, uct, worked
-from verify_rows import row, show
+from verify_rows import NotRun, row, show
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "validation.md"
@@ -46,13 +46,13 @@ class Failure(Exception):
 class Bench:
     """Runs millscope and keeps what it found."""
 
-    def __init__(self, build, threads, fresh):
+    def __init__(self, build, threads, fresh, kept=False):
         self.binary = build / "bin" / "millscope"
         if not self.binary.exists():
             raise Failure("%s does not exist; 'make verify' builds it" % self.binary)
         self.folder = build / "verify"
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.threads, self.fresh, self.commands, self.below = threads, fresh, [], []
+        self.threads, self.fresh, self.kept, self.commands, self.below = threads, fresh, kept, [], []
 
     def call(self, *arguments):
         """Runs the command from the root of the repository; returns what it printed and its peak memory in bytes."""
@@ -96,6 +96,8 @@ class Bench:
         if same and (out / "summary.json").exists():
             self.commands.append(["millscope"] + wanted)
             return dict(json.loads((out / "summary.json").read_text()), peak_bytes=kept.get("peak_bytes"))
+        if self.kept:
+            raise NotRun(name)
         if same and (out / "checkpoint.h5").exists():
             _, peak = self.call("resume", os.path.relpath(out, ROOT))
             self.commands[-1] = ["millscope"] + wanted
@@ -333,6 +335,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="only " + ", ".join(QUICK))
     parser.add_argument("--threads", type=int, default=0, help="threads of each run (default: all cores)")
     parser.add_argument("--fresh", action="store_true", help="repeat runs that are complete")
+    parser.add_argument("--kept", action="store_true", help="use complete runs only, and say what was not run")
     options = parser.parse_args()
     names = options.items or (QUICK if options.quick else list(ITEMS))
     bad = 0
@@ -342,7 +345,7 @@ def main():
                 raise Failure("there is no item '%s'; known: %s" % (name, ", ".join(ITEMS)))
         for name in names:
             print(ITEMS[name].__doc__, flush=True)
-            bench = Bench(options.build.resolve(), options.threads, options.fresh)
+            bench = Bench(options.build.resolve(), options.threads, options.fresh, options.kept)
             rows = ITEMS[name](bench)
             bad += sum(r["good"] is False for r in rows)
             for r in rows:
@@ -353,6 +356,9 @@ def main():
             write_page(bench.folder)
     except Failure as e:
         print("verify: %s" % e, file=sys.stderr)
+        return 2
+    except NotRun as e:
+        print("verify: the run '%s' is not complete, and --kept forbids to run it; leave --kept out" % e, file=sys.stderr)
         return 2
     print("see docs/validation.md" if bad == 0 else "%d figures are not as wanted; see docs/validation.md" % bad)
     return 0 if bad == 0 else 1

@@ -3,7 +3,7 @@
 import math
 
 from verify_drums import DATA, HOW, ROOT, angle_of, lost, not_run, shown, sources, table
-from verify_rows import row
+from verify_rows import NotRun, row
 
 GRID = "granudrum/dem_grid_surface_angles.csv"
 GRANUDRUM, BORE = "configs/measured_drums/granudrum.yaml", 0.084  # m
@@ -25,6 +25,22 @@ def run_granudrum(bench, rpm, sliding, rolling, *more):
     return bench.run(name, GRANUDRUM, *settings, *more), angle_of(bench.folder / name, BORE)
 
 
+def complete(bench, wanted):
+    """name → (summary, surface) of the runs {name: arguments of run_granudrum()} that there are, and rows for the others (verify.py --kept)."""
+    runs, rows = {}, []
+    for name, arguments in wanted.items():
+        try:
+            runs[name] = run_granudrum(bench, *arguments)
+        except NotRun:
+            rows.append(row(words_of(arguments), "not run"))
+    return runs, rows
+
+
+def words_of(point):
+    """rpm, sliding, rolling and settings as words."""
+    return "%d rpm, sliding %g, rolling %g" % point[:3] + "".join(", " + setting for setting in point[3:] if setting != COARSE)
+
+
 def grid_of(column):
     """(rpm, sliding, rolling) → that column of the grid of their runs."""
     return {(int(r["rpm"]), float(r["sliding"]), float(r["rolling"])): float(r[column]) for r in table(DATA / GRID)}
@@ -35,14 +51,14 @@ def granudrum(bench):
     if not_run(GRID):
         return not_run(GRID)
     grid, covered = grid_of("angle_mid_half_deg"), grid_of("bright_fraction_of_disc")
-    runs = {point: run_granudrum(bench, *point, COARSE) for point in POINTS}
-    rows = []
-    for point in sorted(runs):
-        found = runs[point][1]
-        rows.append(row("%d rpm, sliding %g, rolling %g" % point, "%s, covers %.2f" % (shown(found), found["covered"]),
+    runs, rows = complete(bench, {point: (*point, COARSE) for point in sorted(POINTS)})
+    for point, (_, found) in runs.items():
+        rows.append(row(words_of(point), "%s, covers %.2f" % (shown(found), found["covered"]),
                         "%.1f° (theirs, ± 0.5), within 2; covers %.2f" % (grid[point], covered[point]), abs(found["angle"] - grid[point]) < 2))
     off = [found["angle"] - grid[point] for point, (_, found) in runs.items()]
-    rows.append(row("ours less theirs, twelve points", "mean %+.1f°, rms %.1f°, from %+.1f° to %+.1f°"
+    if not runs:
+        return rows
+    rows.append(row("ours less theirs, %d points" % len(runs), "mean %+.1f°, rms %.1f°, from %+.1f° to %+.1f°"
                     % (sum(off) / len(off), math.sqrt(sum(d * d for d in off) / len(off)), min(off), max(off))))
     centre = [found["centre"] - found["angle"] for _, found in runs.values()]
     rows.append(row("the angle of the charge's centre, as of bed_profile, less that of the line", "%+.1f to %+.1f°" % (min(centre), max(centre))))
@@ -58,9 +74,10 @@ def cellulose(bench):
     """Measured beads that are not round, at four speeds, with the frictions that their owners fitted to two of them"""
     if not_run("granudrum"):
         return not_run("granudrum")
-    rows = []
-    for rpm, angle in pictured_angles().items():
-        found = run_granudrum(bench, rpm, *FITTED, COARSE)[1]
+    measured = pictured_angles()
+    runs, rows = complete(bench, {rpm: (rpm, *FITTED, COARSE) for rpm in measured})
+    for rpm, (_, found) in runs.items():
+        angle = measured[rpm]
         rows.append(row("%d rpm (%s)" % (rpm, "used for their fit" if rpm in (15, 45) else "held out"),
                         "%s by density, %.1f ± %.1f° by silhouette" % (shown(found), found["outline"], found["outline_error"]),
                         "%.1f° (measured silhouette), within 2" % angle, abs(found["angle"] - angle) < 2))
@@ -79,12 +96,12 @@ def rolling(bench):
 
 def size_and_stiffness(bench, runs):
     """What beads of another size and stiffer ones change."""
-    rows = []
-    for point, settings, words in ((CORNER, (), "beads of 2.5 in the place of 3 mm"), (MIDDLE, (), "beads of 2.5 in the place of 3 mm"),
-                                   (MIDDLE, (COARSE, "stiffness_factor=0.4"), "four times as stiff")):
-        found = run_granudrum(bench, *point, *settings)[1]
-        change = found["angle"] - runs[point][1]["angle"]
-        rows.append(row("%s (%d rpm, sliding %g, rolling %g)" % ((words,) + point), "%s: %+.1f°" % (shown(found), change), "within 1.5", abs(change) < 1.5))
+    others, rows = complete(bench, {(CORNER, "beads of 2.5 in the place of 3 mm"): CORNER, (MIDDLE, "beads of 2.5 in the place of 3 mm"): MIDDLE,
+                                    (MIDDLE, "four times as stiff"): (*MIDDLE, COARSE, "stiffness_factor=0.4")})
+    for (point, words), (_, found) in others.items():
+        if point in runs:
+            change = found["angle"] - runs[point][1]["angle"]
+            rows.append(row("%s (%s)" % (words, words_of(point)), "%s: %+.1f°" % (shown(found), change), "within 1.5", abs(change) < 1.5))
     return rows
 
 
