@@ -23,9 +23,11 @@ from verify_calibrate import calibrate
 from verify_camera import bbosa, camera, roundtrip
 from verify_compare import differences
 from verify_diagnose import doubts, ends, wet
+from verify_drums import alizadeh, beads6000
+from verify_granudrum import cellulose, granudrum, rolling
 from verify_powers import SLICE_60S, powers
 from verify_real import drum, uct, worked
-from verify_rows import power, row, show, three_powers
+from verify_rows import NotRun, power, row, show, three_powers
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "validation.md"
@@ -44,13 +46,13 @@ class Failure(Exception):
 class Bench:
     """Runs millscope and keeps what it found."""
 
-    def __init__(self, build, threads, fresh):
+    def __init__(self, build, threads, fresh, kept=False):
         self.binary = build / "bin" / "millscope"
         if not self.binary.exists():
             raise Failure("%s does not exist; 'make verify' builds it" % self.binary)
         self.folder = build / "verify"
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.threads, self.fresh, self.commands = threads, fresh, []
+        self.threads, self.fresh, self.kept, self.commands, self.below = threads, fresh, kept, [], []
 
     def call(self, *arguments):
         """Runs the command from the root of the repository; returns what it printed and its peak memory in bytes."""
@@ -75,6 +77,10 @@ class Bench:
             raise Failure(done.stderr.strip() or "%s failed" % command[0])
         return json.loads(done.stdout)
 
+    def say(self, *paragraphs):
+        """What belongs below the item's table, as Markdown: a picture, what a case leaves out, where data come from."""
+        self.below += paragraphs
+
     def export_liner(self):
         self.call("geometry", "export", PARAMETRIC, "-o", LINER, "--force")
 
@@ -90,6 +96,8 @@ class Bench:
         if same and (out / "summary.json").exists():
             self.commands.append(["millscope"] + wanted)
             return dict(json.loads((out / "summary.json").read_text()), peak_bytes=kept.get("peak_bytes"))
+        if self.kept:
+            raise NotRun(name)
         if same and (out / "checkpoint.h5").exists():
             _, peak = self.call("resume", os.path.relpath(out, ROOT))
             self.commands[-1] = ["millscope"] + wanted
@@ -228,7 +236,7 @@ def ergodicity(bench):
     return rows
 
 
-ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, worked, drum, uct)}
+ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, worked, drum, uct, beads6000, alizadeh, granudrum, cellulose, rolling)}
 QUICK = ("crosscheck", "hashes", "memory")
 
 
@@ -255,6 +263,7 @@ def section(name, result):
         lines += ["    " + shell(c) for c in result["commands"]] + ["", "| what | found | wanted | |", "|---|---|---|---|"]
         verdict = {True: "✓", False: "**no**", None: ""}
         lines += ["| %s | %s | %s | %s |" % (r["what"], r["found"], r["wanted"], verdict[r["good"]]) for r in result["rows"]]
+        lines += ["\n" + paragraph for paragraph in result.get("below", [])]
         lines += ["", "%s, millscope %s, %s, %d cores." % (result["date"], result["commit"], result["processor"], result["cores"])]
     return "\n".join(lines) + "\n<!-- end %s -->\n" % name
 
@@ -281,6 +290,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="only " + ", ".join(QUICK))
     parser.add_argument("--threads", type=int, default=0, help="threads of each run (default: all cores)")
     parser.add_argument("--fresh", action="store_true", help="repeat runs that are complete")
+    parser.add_argument("--kept", action="store_true", help="use complete runs only, and say what was not run")
     options = parser.parse_args()
     names = options.items or (QUICK if options.quick else list(ITEMS))
     bad = 0
@@ -290,17 +300,20 @@ def main():
                 raise Failure("there is no item '%s'; known: %s" % (name, ", ".join(ITEMS)))
         for name in names:
             print(ITEMS[name].__doc__, flush=True)
-            bench = Bench(options.build.resolve(), options.threads, options.fresh)
+            bench = Bench(options.build.resolve(), options.threads, options.fresh, options.kept)
             rows = ITEMS[name](bench)
             bad += sum(r["good"] is False for r in rows)
             for r in rows:
                 print("    %-4s %s: %s %s" % ({True: "ok", False: "NO", None: ""}[r["good"]], r["what"], r["found"], "(wanted: %s)" % r["wanted"] if r["wanted"] else ""))
             result = {"rows": rows, "commands": bench.commands, "date": time.strftime("%Y-%m-%d"), "commit": commit(), "processor": processor(),
-                      "cores": os.cpu_count()}
+                      "cores": os.cpu_count(), "below": bench.below}
             (bench.folder / ("result_%s.json" % name)).write_text(json.dumps(result, indent=1))
             write_page(bench.folder)
     except Failure as e:
         print("verify: %s" % e, file=sys.stderr)
+        return 2
+    except NotRun as e:
+        print("verify: the run '%s' is not complete, and --kept forbids to run it; leave --kept out" % e, file=sys.stderr)
         return 2
     print("see docs/validation.md" if bad == 0 else "%d figures are not as wanted; see docs/validation.md" % bad)
     return 0 if bad == 0 else 1
