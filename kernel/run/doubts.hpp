@@ -53,9 +53,10 @@ struct Soundness {
   bool steady = true;
   Drift drift;                      ///< of the power
   std::optional<double> imbalance;  ///< energy that the window's book cannot account for, as part of the walls' work; nothing: they do none
-  double power_error = 0;           ///< standard error of the mean power, as part of it; 0: not known
-  double centre_error = 0;          ///< m, standard error of the mean place of the charge's centre of mass across the axis; 0: not known
-  double bead_radius = 0;           ///< m, mean by mass
+  std::optional<double> unaccounted;  ///< the same, as part of the larger one of the walls' work and the losses; nothing: neither is known
+  double power_error = 0;             ///< standard error of the mean power, as part of it; 0: not known
+  double centre_error = 0;            ///< m, standard error of the mean place of the charge's centre of mass across the axis; 0: not known
+  double bead_radius = 0;             ///< m, mean by mass
   std::optional<LifterGap> gap;
 };
 

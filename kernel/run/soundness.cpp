@@ -62,6 +62,18 @@ Drift drift_of(const Json& summary) {
   return most;
 }
 
+/// What of the window's energy nothing accounts for, as part of what goes through; nothing where nothing goes through.
+std::optional<double> unaccounted_in(const Json& summary) {
+  if (!summary.contains("energy")) return {};
+  const Json& energy = summary["energy"];
+  for (const char* key : {"wall_work_J", "dissipated_J", "imbalance_J"}) {
+    if (!energy.contains(key) || !energy[key].is_number()) return {};
+  }
+  const double through = std::max(std::abs(energy["wall_work_J"].get<double>()), std::abs(energy["dissipated_J"].get<double>()));
+  if (!(through > 0)) return {};
+  return std::abs(energy["imbalance_J"].get<double>()) / through;
+}
+
 }  // namespace
 
 Soundness soundness_of(const Assembly& a, const Json& summary) {
@@ -89,6 +101,7 @@ Soundness soundness_of_summary(const Json& summary, double speed) {
   if (!s.steady) s.drift = drift_of(summary);
   if (summary.contains("energy") && summary["energy"]["wall_work_J"].get<double>() != 0)
     s.imbalance = summary["energy"]["imbalance_fraction"].get<double>();
+  s.unaccounted = unaccounted_in(summary);
   if (!summary["power_W"].contains("com")) return s;
   const double power = summary["power_W"]["com"].get<double>(), error = summary["power_W"]["com_sem"].get<double>();
   if (power != 0 && std::isfinite(error)) s.power_error = error / std::abs(power);
