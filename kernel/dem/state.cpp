@@ -136,6 +136,7 @@ void Step::each_work(Self& self, int body, Visit& visit) {
       at + "impact", triangles, slabs, [body](auto& slab) -> auto& { return slab.impact[body]; });
   visit.parts(
       at + "shear", triangles, slabs, [body](auto& slab) -> auto& { return slab.shear[body]; });
+  if (slabs[0]->worn[body].empty()) return;  // no wear laws: as in checkpoints of before there were any
   visit.parts(
       at + "worn", triangles, slabs, [body](auto& slab) -> auto& { return slab.worn[body]; });
 }

@@ -29,10 +29,12 @@ void Step::prepare() {
   }
   empty.ledger.bodies.resize(walls_.bodies().size());
   empty.ledger.body_force_work.assign(body_forces_.size(), 0.0);
+  const auto& all = common_.physics.all();
+  const bool wears = std::any_of(all.begin(), all.end(), [](const PairPhysics& p) { return !p.wear.empty(); });
   for (const Body& body : walls_.bodies()) {
     empty.impact.emplace_back(body.per_triangle ? body.triangle_count : 0, 0.0);
     empty.shear.push_back(empty.impact.back());
-    empty.worn.push_back(empty.impact.back());
+    empty.worn.emplace_back(wears ? empty.impact.back().size() : 0, 0.0);
   }
   slabs_.assign(common_.slabs.count, empty);
   pushed_ = std::vector<std::atomic<std::int64_t>>(common_.slabs.count);
