@@ -24,6 +24,7 @@ from verify_camera import bbosa, camera, roundtrip
 from verify_compare import differences
 from verify_diagnose import doubts, ends, wet
 from verify_real import drum, uct, worked
+from verify_round_robin import round_robin
 from verify_rows import row, show
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -82,7 +83,7 @@ class Bench:
         """Summary of a run, from the cache where the same command has been completed."""
         out = self.folder / name
         wanted = ["run", case, "-o", os.path.relpath(out, ROOT)] + [w for s in settings for w in ("--set", s)] + list(options)
-        if "--threads" not in wanted and self.threads:
+        if "--threads" not in wanted and "--engine" not in wanted and self.threads:
             wanted += ["--threads", str(self.threads)]
         note = self.folder / (name + ".json")
         kept = json.loads(note.read_text()) if note.exists() else {}
@@ -90,7 +91,7 @@ class Bench:
         if same and (out / "summary.json").exists():
             self.commands.append(["millscope"] + wanted)
             return dict(json.loads((out / "summary.json").read_text()), peak_bytes=kept.get("peak_bytes"))
-        if same and (out / "checkpoint.h5").exists():
+        if same and ((out / "checkpoint.h5").exists() or (out / "engine").exists()):
             _, peak = self.call("resume", os.path.relpath(out, ROOT))
             self.commands[-1] = ["millscope"] + wanted
         else:
@@ -104,6 +105,7 @@ class Bench:
         """Hash of what a result depends on: the command, its plugins, the cases."""
         files = [self.binary] + sorted((self.binary.parent.parent / "lib" / "millscope").rglob("*.so"))
         files += sorted((ROOT / "configs").rglob("*.yaml")) + ([ROOT / LINER] if case == SLICE else [])
+        files += [] if case.startswith("configs/") else sorted(p for p in (ROOT / case).parent.iterdir() if p.is_file())
         total = hashlib.sha256()
         for f in files:
             total.update(f.read_bytes())
@@ -273,7 +275,7 @@ def single_beads(bench, run):
     return {"single": single, "all": every, "spread": spread, "spread_error": spread / math.sqrt(2 * len(single))}
 
 
-ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, worked, drum, uct)}
+ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, worked, drum, uct, round_robin)}
 QUICK = ("crosscheck", "hashes", "memory")
 
 
@@ -300,6 +302,8 @@ def section(name, result):
         lines += ["    " + shell(c) for c in result["commands"]] + ["", "| what | found | wanted | |", "|---|---|---|---|"]
         verdict = {True: "✓", False: "**no**", None: ""}
         lines += ["| %s | %s | %s | %s |" % (r["what"], r["found"], r["wanted"], verdict[r["good"]]) for r in result["rows"]]
+        picture = PAGE.with_name("validation_%s.svg" % name)
+        lines += ["", "![%s](%s)" % (ITEMS[name].__doc__, picture.name)] if picture.exists() else []
         lines += ["", "%s, millscope %s, %s, %d cores." % (result["date"], result["commit"], result["processor"], result["cores"])]
     return "\n".join(lines) + "\n<!-- end %s -->\n" % name
 
