@@ -63,12 +63,11 @@ def turned(x, y, z):
     return x, z, -y
 
 
-def beads(text, shift=0.0):
-    """The file that `fill: {file: …}` reads; `shift` moves the beads in turn by so many metres to the left and to the right."""
+def beads(text):
+    """The file that `fill: {file: …}` reads."""
     lines = ["x [m],y [m],z [m],radius [m],material"]
-    for k, (radius, *place) in enumerate(numbers(text, 4)):
-        x, y, z = turned(*place)
-        lines.append("%.12g,%.12g,%.12g,%g,%s" % (x + (shift if k % 2 else -shift), y, z, radius, MATERIAL[radius]))
+    for radius, *place in numbers(text, 4):
+        lines.append("%.12g,%.12g,%.12g,%g,%s" % (*turned(*place), radius, MATERIAL[radius]))
     return "\n".join(lines) + "\n"
 
 
@@ -81,11 +80,11 @@ def solid(text):
     return "\n".join(lines + ["endsolid drum", ""])
 
 
-def write(folder, out, shift=0.0):
+def write(folder, out):
     """beads.csv, drum.stl and case.yaml; returns the case."""
     out.mkdir(parents=True, exist_ok=True)
     case = "include: [%s]\nfill: {file: beads.csv}\ngeometry: {drum: {file: drum.stl}}\n" % os.path.relpath(COMMON, out)
-    texts = {"beads.csv": beads(text_of(folder, "PartCoordinates.txt"), shift), "drum.stl": solid(text_of(folder, "walls.txt")), "case.yaml": case}
+    texts = {"beads.csv": beads(text_of(folder, "PartCoordinates.txt")), "drum.stl": solid(text_of(folder, "walls.txt")), "case.yaml": case}
     for name, text in texts.items():
         if not (out / name).exists() or (out / name).read_text() != text:
             (out / name).write_text(text)
@@ -99,7 +98,7 @@ def main():
     try:
         folder = data_folder()
         if folder is None:
-            raise Failure("there is no folder %s beside or in MILLSCOPE_DATA; docs/cases.md says where it comes from" % NAME)
+            raise Failure("there is no folder %s beside or in MILLSCOPE_DATA; docs/engines.md says where it comes from" % NAME)
         print("wrote %s, beads.csv, drum.stl" % write(folder, options.output))
         return 0
     except Failure as e:

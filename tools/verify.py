@@ -19,6 +19,7 @@ import time
 from pathlib import Path
 
 sys.dont_write_bytecode = True
+import round_robin_files
 from verify_calibrate import calibrate
 from verify_camera import bbosa, camera, roundtrip
 from verify_compare import differences
@@ -348,7 +349,7 @@ def main():
                       "cores": os.cpu_count()}
             (bench.folder / ("result_%s.json" % name)).write_text(json.dumps(result, indent=1))
             write_page(bench.folder)
-    except Failure as e:
+    except (Failure, round_robin_files.Failure) as e:
         print("verify: %s" % e, file=sys.stderr)
         return 2
     print("see docs/validation.md" if bad == 0 else "%d figures are not as wanted; see docs/validation.md" % bad)
