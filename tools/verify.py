@@ -19,6 +19,7 @@ import time
 from pathlib import Path
 
 sys.dont_write_bytecode = True
+import round_robin_files
 from verify_calibrate import calibrate
 from verify_camera import bbosa, camera, roundtrip
 from verify_compare import differences
@@ -27,6 +28,7 @@ from verify_drums import alizadeh, beads6000
 from verify_granudrum import cellulose, granudrum, rolling
 from verify_powers import SLICE_60S, powers
 from verify_real import drum, uct, worked
+from verify_round_robin import round_robin
 from verify_rows import NotRun, power, row, show, three_powers
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -88,7 +90,7 @@ class Bench:
         """Summary of a run, from the cache where the same command has been completed."""
         out = self.folder / name
         wanted = ["run", case, "-o", os.path.relpath(out, ROOT)] + [w for s in settings for w in ("--set", s)] + list(options)
-        if "--threads" not in wanted and self.threads:
+        if "--threads" not in wanted and "--engine" not in wanted and self.threads:
             wanted += ["--threads", str(self.threads)]
         note = self.folder / (name + ".json")
         kept = json.loads(note.read_text()) if note.exists() else {}
@@ -98,7 +100,7 @@ class Bench:
             return dict(json.loads((out / "summary.json").read_text()), peak_bytes=kept.get("peak_bytes"))
         if self.kept:
             raise NotRun(name)
-        if same and (out / "checkpoint.h5").exists():
+        if same and ((out / "checkpoint.h5").exists() or (out / "engine").exists()):
             _, peak = self.call("resume", os.path.relpath(out, ROOT))
             self.commands[-1] = ["millscope"] + wanted
         else:
@@ -112,6 +114,7 @@ class Bench:
         """Hash of what a result depends on: the command, its plugins, the cases."""
         files = [self.binary] + sorted((self.binary.parent.parent / "lib" / "millscope").rglob("*.so"))
         files += sorted((ROOT / "configs").rglob("*.yaml")) + ([ROOT / LINER] if case == SLICE else [])
+        files += [] if case.startswith("configs/") else sorted(p for p in (ROOT / case).parent.iterdir() if p.is_file())
         total = hashlib.sha256()
         for f in files:
             total.update(f.read_bytes())
@@ -236,7 +239,7 @@ def ergodicity(bench):
     return rows
 
 
-ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, worked, drum, uct, beads6000, alizadeh, granudrum, cellulose, rolling)}
+ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, worked, drum, uct, beads6000, alizadeh, granudrum, cellulose, rolling, round_robin)}
 QUICK = ("crosscheck", "hashes", "memory")
 
 
@@ -264,6 +267,8 @@ def section(name, result):
         verdict = {True: "✓", False: "**no**", None: ""}
         lines += ["| %s | %s | %s | %s |" % (r["what"], r["found"], r["wanted"], verdict[r["good"]]) for r in result["rows"]]
         lines += ["\n" + paragraph for paragraph in result.get("below", [])]
+        picture = PAGE.with_name("validation_%s.svg" % name)
+        lines += ["", "![%s](%s)" % (ITEMS[name].__doc__, picture.name)] if picture.exists() else []
         lines += ["", "%s, millscope %s, %s, %d cores." % (result["date"], result["commit"], result["processor"], result["cores"])]
     return "\n".join(lines) + "\n<!-- end %s -->\n" % name
 
@@ -309,7 +314,7 @@ def main():
                       "cores": os.cpu_count(), "below": bench.below}
             (bench.folder / ("result_%s.json" % name)).write_text(json.dumps(result, indent=1))
             write_page(bench.folder)
-    except Failure as e:
+    except (Failure, round_robin_files.Failure) as e:
         print("verify: %s" % e, file=sys.stderr)
         return 2
     except NotRun as e:

@@ -60,7 +60,7 @@ GeometryObject open_geometry(const GeometryFile& what, const Registry& registry)
     throw UserError(fmt::format("{} {}: {} says its unit itself; leave {} out", what.unit_option, what.unit, what.file, what.unit_option));
   if (!units.empty() && std::find(units.begin(), units.end(), what.unit) == units.end())
     throw UserError(fmt::format("{} '{}' is not known; {}", what.unit_option, what.unit, base::suggestion(what.unit, units)));
-  nlohmann::json values = {{"file", what.file}};
+  nlohmann::json values = {{"file", std::filesystem::absolute(what.file).string()}};  // as a case's, it would count from its own folder
   if (!units.empty()) values["unit"] = what.unit;
   if (what.turned) values.update({{"axis", "auto"}, {"centre", true}});
   // JSON's quoting is also YAML's.

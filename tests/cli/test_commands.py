@@ -155,6 +155,11 @@ class Geometry(CliTest):
             self.succeed("geometry", "export", "case.yaml", "-o", name)
             self.assertIn("triangles", self.succeed("geometry", "report", name, "--unit", "m").stdout)
 
+    def test_a_file_in_another_folder_counts_from_here(self):
+        (self.folder / "below").mkdir()
+        self.succeed("geometry", "export", "case.yaml", "-o", "below/liner.stl")
+        self.assertIn("triangles", self.succeed("geometry", "report", "below/liner.stl", "--unit", "m").stdout)
+
     def test_refusals(self):
         self.succeed("geometry", "export", "case.yaml", "-o", "liner.stl")
         self.assert_one_line(self.millscope("geometry", "report", "liner.stl", "--unit", "furlong"), "--unit 'furlong'", "known: mm, m, cm, inch")
