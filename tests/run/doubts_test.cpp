@@ -126,12 +126,12 @@ TEST_CASE("contacts of fewer than ten steps are told") {
 
 TEST_CASE("energy that nothing accounts for is told, whether a run makes it or loses it") {
   Soundness s = sound();
-  s.unaccounted = 0.02;
+  s.unaccounted = 0.1;
   CHECK(doubts_of(s).empty());
   s.unaccounted = 0.93;
   const Doubt d = only(s);
   CHECK(d.name == "energy");
-  CHECK(d.finding == "93 % of the energy that goes through is not accounted for, over 2 %");
+  CHECK(d.finding == "93 % of the energy that goes through is not accounted for, over 10 %");
   CHECK_THAT(d.remedy, Contains("time.step_fraction"));
 }
 
