@@ -5,6 +5,8 @@ import { isNumber, number, quantity, scale, withError } from "../numbers.js";
 import { lines } from "../plots/lines.js";
 
 const RADIANS = Math.PI / 180;
+/** Long lives in thousands of hours, so that the numbers of an axis stay short. */
+const timeOf = (found) => (found.stages.at(-1).hours >= 10000 ? { factor: 1e-3, unit: "1000 h" } : { factor: 1, unit: "h" });
 const hours = (stage) => `${number(stage.hours, 5)}\u00a0h`;
 
 /** Places along the new shell and heights above it, mm, over one pitch and its first place again. */
@@ -46,12 +48,12 @@ const profiles = (found, key) => lines(`${key}-profiles`, {
 function course(found, key, { name, title, unit, error }) {
   const known = found.stages.filter((stage) => isNumber(stage[name]));
   if (known.length < 2) return null;
-  const by = scale(unit, known.map((stage) => stage[name]));
-  const points = known.map((stage) => [stage.hours, by.factor * stage[name]]);
-  const band = error ? known.map((stage) => [stage.hours, by.factor * (stage[name] - (stage[error] ?? 0)), by.factor * (stage[name] + (stage[error] ?? 0))]) : null;
+  const by = scale(unit, known.map((stage) => stage[name])), time = timeOf(found);
+  const points = known.map((stage) => [time.factor * stage.hours, by.factor * stage[name]]);
+  const band = error ? known.map((stage) => [time.factor * stage.hours, by.factor * (stage[name] - (stage[error] ?? 0)), by.factor * (stage[name] + (stage[error] ?? 0))]) : null;
   const values = (band ?? points).flatMap((point) => point.slice(1));
   const spread = Math.max(...values) - Math.min(...values) || Math.abs(values[0]) || 1;
-  return figure(title, lines(`${key}-${name}`, { label: `${title} against hours`, series: [{ name: "", points, band, colour: line(0), symbols: true }], x: { name: "time", unit: "h" },
+  return figure(title, lines(`${key}-${name}`, { label: `${title} against hours`, series: [{ name: "", points, band, colour: line(0), symbols: true }], x: { name: "time", unit: time.unit },
     y: { name: title.toLowerCase(), unit: by.unit, min: Math.min(...values) - 0.2 * spread, max: Math.max(...values) + 0.2 * spread }, height: 240 }));
 }
 
