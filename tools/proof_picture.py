@@ -15,7 +15,7 @@ from pathlib import Path
 
 LIMITS = {"power_percent": 1.0, "shoulder_deg": 1.5, "toe_deg": 1.5}  # of practice; docs/challenge.md
 BASE, CORRECTED, INK, FAINT = "#d55e00", "#0072b2", "#1b2733", "#8a97a3"
-LEFT, WIDTH, ROW, TOP = 330, 350, 26, 96
+LEFT, WIDTH, ROW, TOP = 362, 320, 26, 96
 
 
 def text(x, y, words, **attributes):
@@ -25,7 +25,8 @@ def text(x, y, words, **attributes):
 
 def rows_of(batch):
     """[(hidden, found, concealed, misfit of the base, misfit corrected)] of a batch that is open."""
-    concealment = json.loads((batch / "concealment.json").read_text())["sets"]
+    known = batch / "concealment.json"  # long runs, which may not be done yet: then nothing is marked
+    concealment = json.loads(known.read_text())["sets"] if known.exists() else {}
     found = []
     for file in sorted((batch / "answers").glob("set_*.json")):
         answer, diagnosis = json.loads(file.read_text()), json.loads((batch / file.stem / "diagnosis" / "diagnosis.json").read_text())
@@ -35,8 +36,8 @@ def rows_of(batch):
         if "corrected" not in misfits or "retuned to power" not in misfits:
             continue
         hidden = " + ".join(one["hypothesis"] for one in answer["effects"]).replace("_", " ")
-        kept = concealment[file.stem]
-        concealed = all(abs(kept[key]) <= limit for key, limit in LIMITS.items())
+        kept = concealment.get(file.stem)
+        concealed = kept is not None and all(abs(kept[key]) <= limit for key, limit in LIMITS.items())
         found.append((hidden, diagnosis["verdict"], concealed, misfits["retuned to power"], misfits["corrected"]))
     return found
 
