@@ -83,7 +83,7 @@ def solid(text):
 def write(folder, out):
     """beads.csv, drum.stl and case.yaml; returns the case."""
     out.mkdir(parents=True, exist_ok=True)
-    case = "include: [%s]\nfill: {file: beads.csv}\ngeometry: {drum: {file: drum.stl}}\n" % os.path.relpath(COMMON, out)
+    case = "schema_version: 1\ninclude: [%s]\nfill: {file: beads.csv}\ngeometry: {drum: {file: drum.stl}}\n" % os.path.relpath(COMMON, out)
     texts = {"beads.csv": beads(text_of(folder, "PartCoordinates.txt")), "drum.stl": solid(text_of(folder, "walls.txt")), "case.yaml": case}
     for name, text in texts.items():
         if not (out / name).exists() or (out / name).read_text() != text:
