@@ -21,11 +21,11 @@ double length_of(const Options& options, const char* name) {
 }  // namespace
 
 int wear_liner(const Arguments& arguments) {
-  Options options("wear CASE.yaml --hours H -o OUT",
-                  "Wears a mill's liner away: simulates it, takes from its profile what the case's wear laws say for some hundred hours, "
-                  "smooths it and "
-                  "goes on with what is left, until the hours are over or the lifters are gone. Stopped, it goes on where it was.",
-                  "millscope wear configs/wear/case.yaml --hours 4000 --steps 8 -o wear-out");
+  Options options(
+      "wear CASE.yaml --hours H -o OUT",
+      "Wears a mill's liner away: simulates it, takes from its profile what the case's wear laws say for some hundred hours, "
+      "smooths it and goes on with what is left, until the hours are over or the lifters are gone. Stopped, it goes on where it was.",
+      "millscope wear configs/wear/case.yaml --hours 4000 --steps 8 -o wear-out");
   options.positional("CASE.yaml", "the case, with wear laws below contact.wear");
   options.add()("output,o", po::value<std::string>()->value_name("OUT"), "directory for the stages and what they say");
   options.add()("hours", po::value<double>()->value_name("H"), "hours of running");

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """One picture of the proof: tools/proof_picture.py docs/proof/BATCH … -o docs/proof.svg
 
+    millscope challenge score docs/proof/BATCH …      # writes what this reads
+
 A row for each set with physics hidden that a diagnosis names, or lists in a class. On the speed that was held out it shows the misfit of the base whose
 friction was retuned to its power (the practice), and that of the corrected model. Below 1 nothing is left beyond chance. A star: practice sees nothing
 of it at the speed where it tuned.
@@ -13,7 +15,6 @@ import sys
 from html import escape
 from pathlib import Path
 
-LIMITS = {"power_percent": 1.0, "shoulder_deg": 1.5, "toe_deg": 1.5}  # of practice; docs/challenge.md
 BASE, CORRECTED, INK, FAINT = "#d55e00", "#0072b2", "#1b2733", "#8a97a3"
 LEFT, WIDTH, ROW, TOP = 362, 320, 26, 96
 
@@ -24,21 +25,18 @@ def text(x, y, words, **attributes):
 
 
 def rows_of(batch):
-    """[(hidden, found, concealed, misfit of the base, misfit corrected)] of a batch that is open."""
-    known = batch / "concealment.json"  # long runs, which may not be done yet: then nothing is marked
-    concealment = json.loads(known.read_text())["sets"] if known.exists() else {}
+    """[(hidden, verdict, concealed, misfit of the base, misfit corrected)] of a batch that is scored."""
     found = []
-    for file in sorted((batch / "answers").glob("set_*.json")):
-        answer, diagnosis = json.loads(file.read_text()), json.loads((batch / file.stem / "diagnosis" / "diagnosis.json").read_text())
-        if not answer["effects"] or not diagnosis.get("held_out") or diagnosis["verdict"] not in ("named", "ambiguous"):
+    for one in json.loads((batch / "score.json").read_text())["every_set"]:
+        diagnosis = json.loads((batch / one["set"] / "diagnosis" / "diagnosis.json").read_text())
+        effects = one["truth"] != "none" and not one["truth"].startswith(("decoy:", "outside:"))
+        if not effects or not diagnosis.get("held_out") or diagnosis["verdict"] not in ("named", "ambiguous"):
             continue
-        misfits = {one["model"]: one["misfit"] for one in diagnosis["held_out"][0]["models"]}
+        misfits = {model["model"]: model["misfit"] for model in diagnosis["held_out"][0]["models"]}
         if "corrected" not in misfits or "retuned to power" not in misfits:
             continue
-        hidden = " + ".join(one["hypothesis"] for one in answer["effects"]).replace("_", " ")
-        kept = concealment.get(file.stem)
-        concealed = kept is not None and all(abs(kept[key]) <= limit for key, limit in LIMITS.items())
-        found.append((hidden, diagnosis["verdict"], concealed, misfits["retuned to power"], misfits["corrected"]))
+        concealed = (one.get("concealment") or {}).get("unsuspicious", False)  # without long runs not known: then nothing is marked
+        found.append((one["truth"].replace("_", " "), diagnosis["verdict"], concealed, misfits["retuned to power"], misfits["corrected"]))
     return found
 
 
@@ -68,13 +66,13 @@ def picture(rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("batches", type=Path, nargs="+", help="folders below docs/proof that are open")
+    parser.add_argument("batches", type=Path, nargs="+", help="folders below docs/proof that are scored")
     parser.add_argument("-o", "--output", type=Path, required=True, help="the SVG file")
     arguments = parser.parse_args()
     try:
         rows = [row for batch in arguments.batches for row in rows_of(batch)]
     except FileNotFoundError as missing:
-        sys.exit("proof_picture: %s is missing; give a batch whose answers are open" % missing.filename)
+        sys.exit("proof_picture: %s is missing; run 'millscope challenge score' on these batches first" % missing.filename)
     if not rows:
         sys.exit("proof_picture: no set of these batches has something hidden that was found; give another batch")
     arguments.output.write_text(picture(rows))

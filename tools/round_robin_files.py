@@ -16,7 +16,8 @@ import os
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+from public_data import DATA, ROOT
+
 COMMON = ROOT / "configs" / "round_robin" / "common.yaml"
 NAME = "round_robin_drum"
 # sha256 of the files that the results in docs/validation.md are of; the first unpacked, for gzip's own bytes vary.
@@ -30,8 +31,7 @@ class Failure(Exception):
 
 def data_folder():
     """Where the authors' files lie, or None."""
-    data = Path(os.environ.get("MILLSCOPE_DATA") or ROOT.parent / "shared" / "public_cases" / "data")
-    for folder in (data / NAME, data.parent / NAME):
+    for folder in (DATA / NAME, DATA.parent / NAME):
         if folder.is_dir():
             return folder
     return None

@@ -3,15 +3,12 @@
 import csv
 import hashlib
 import math
-import os
 import sys
-from pathlib import Path
 
+from public_data import DATA, ROOT
 from verify_rows import row
 
-ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "python"))
-DATA = Path(os.environ.get("MILLSCOPE_DATA", ROOT.parent / "shared" / "public_cases" / "data"))
 SOURCES = {  # in DATA: where they are public, and their licence
     "granudrum/dem_grid_surface_angles.csv": "read off the pictures of github.com/anicusan/InteractiveGranuDrumCalibration, GPL-3.0",
     **{"granudrum/gd_nature_%drpm_averaged.bmp" % rpm: "github.com/uob-positron-imaging-centre/ACCES-GranuDrum-Calibration, GPL-3.0" for rpm in (10, 15, 30, 45)},

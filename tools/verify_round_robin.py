@@ -4,13 +4,12 @@ import math
 import os
 import shutil
 import subprocess
-from pathlib import Path
 
 import round_robin_files
+from public_data import ROOT
 from round_robin_picture import picture
 from verify_rows import row
 
-ROOT = Path(__file__).resolve().parent.parent
 PICTURE = ROOT / "docs" / "validation_round_robin.svg"
 OURS, THEIRS, HALF, STIFF = "millscope", "LIGGGHTS", "half the step", "true stiffness"
 STEP = 1.5e-5  # s, of configs/round_robin/common.yaml
@@ -154,6 +153,6 @@ def round_robin(bench):
     round_robin_files.write(data, bench.folder / "round_robin")
     folders = {name: one_run(bench, name) for name in RUNS}
     found = {name: Counts(folder) for name, folder in folders.items()}
-    PICTURE.write_text(picture({name: (c.time, c.of) for name, c in found.items()}))
+    picture(PICTURE, {name: (c.time, c.of) for name, c in found.items()})
     rows = table(found) + agreement(found) + softening(found)
     return rows + cost(bench, folders[OURS] / "frames.h5")

@@ -14,25 +14,41 @@ constexpr std::int64_t kBeadsPerQuery = kBatch / kMaxWallContacts;
 
 constexpr double kSlides = 0.02;  // of the surfaces' speed: less is what turning and the spring's own motion take, not sliding
 
-/// What slides of the surfaces' motion, m/s: what friction and damping take, over the tangential force. Damping counts with friction only:
-/// a spring that sticks is damped, too. Laws without a channel `friction` say it by all of their tangential channels.
-double sliding_speed(const PairTermInfo& law, const WallBatch& b, std::int64_t k, double shear, double surfaces) {
-  double friction = 0, damping = 0;
-  bool has_friction = false;
+/// Where a law books what sliding takes: bit k is channel k. Laws without a channel `friction` say it by all of their tangential losses.
+struct SlidingChannels {
+  unsigned friction = 0, damping = 0;
+};
+
+SlidingChannels sliding_channels(const PairTermInfo& law) {
+  SlidingChannels found;
   for (std::size_t c = 0; c < law.channel_count; ++c) {
     if (law.channels[c].part != ChannelPart::tangential || law.channels[c].nature != ChannelNature::dissipative) continue;
-    const bool is_friction = std::strcmp(law.channels[c].name, "friction") == 0;
-    has_friction = has_friction || is_friction;
-    (is_friction ? friction : damping) += b.power[c][k];
+    (std::strcmp(law.channels[c].name, "friction") == 0 ? found.friction : found.damping) |= 1U << c;
   }
-  if (!(shear > 0) || (has_friction && friction < kSlides * shear * surfaces)) return 0;
-  return std::min((friction + damping) / shear, surfaces);
+  return found;
+}
+
+double power_of(unsigned channels, const WallBatch& b, std::int64_t k) {
+  double power = 0;
+  for (int c = 0; channels != 0; ++c, channels >>= 1) {
+    if ((channels & 1U) != 0) power += b.power[c][k];
+  }
+  return power;
+}
+
+/// What slides of the surfaces' motion, m/s: what friction and damping take, over the tangential force. Damping counts with friction only:
+/// a spring that sticks is damped, too.
+double sliding_speed(const SlidingChannels& channels, const WallBatch& b, std::int64_t k, double shear, double surfaces) {
+  const double friction = power_of(channels.friction, b, k);
+  if (!(shear > 0) || (channels.friction != 0 && friction < kSlides * shear * surfaces)) return 0;
+  return std::min((friction + power_of(channels.damping, b, k)) / shear, surfaces);
 }
 
 /// First touches, pressing force and sliding speed. Within the reach of a film or an adhesion a contact is fresh before it touches: then it
 /// is the first that was a gap a step ago. What presses is the law's own force, with what is added to Coulomb's cap.
 void note_rubbing(const PairPhysics& physics, double time_step, std::int64_t count, const WallBatch& b) {
   const bool has_added = physics.has_pre();
+  const SlidingChannels channels = sliding_channels(physics.law.table->info);
   for (std::int64_t k = 0; k < count; ++k) {
     double along = 0, force2 = 0, parting = 0, speed2 = 0;
     for (int a = 0; a < 3; ++a) {
@@ -46,7 +62,7 @@ void note_rubbing(const PairPhysics& physics, double time_step, std::int64_t cou
     const double shear = std::sqrt(std::max(force2 - along * along, 0.0));
     const double surfaces = std::sqrt(std::max(speed2 - parting * parting, 0.0));
     b.pressing[k] = std::max(has_added ? along - b.added_force[k] + b.added_cap[k] : along, 0.0);
-    b.sliding[k] = sliding_speed(physics.law.table->info, b, k, shear, surfaces);
+    b.sliding[k] = sliding_speed(channels, b, k, shear, surfaces);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <ctime>
 #include <fstream>
+#include <limits>
 #include <thread>
 
 #include "kernel/base/program.hpp"
@@ -55,6 +56,11 @@ nlohmann::ordered_json provenance(std::span<const std::string> command_line, std
                                {"code_hash", plugin.code_hash}});
   }
   return json;
+}
+
+double number_in(const nlohmann::ordered_json& json, const char* key) {
+  return json.is_object() && json.contains(key) && json[key].is_number() ? json[key].get<double>()
+                                                                         : std::numeric_limits<double>::quiet_NaN();
 }
 
 nlohmann::ordered_json read_json(const std::filesystem::path& path) {

@@ -22,6 +22,9 @@ nlohmann::ordered_json provenance(std::span<const std::string> command_line, std
 /// What a file holds as JSON; `is_discarded()` where it cannot be read or holds none.
 nlohmann::ordered_json read_json(const std::filesystem::path& path);
 
+/// The number below a key; NaN where there is none.
+double number_in(const nlohmann::ordered_json& json, const char* key);
+
 /// Writes `json` indented, whole or not at all. NaN and infinity become null. UserError when it cannot be written.
 void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json);
 

@@ -4,14 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace millscope::run {
 namespace {
 
 using Point = std::array<double, 2>;
 
-constexpr double kWholeTurn = 2 * std::numbers::pi;
 constexpr double kRadial = 1e-6;    // of a segment's length across the direction: it points to the axis
 constexpr double kRounding = 1e-9;  // of a step between directions: an end that two triangles share is seen in both
 
@@ -31,8 +29,8 @@ bool cut(const Surface& s, std::uint64_t triangle, const Interior& in, double z,
 /// Takes the segment in every direction in which it is the nearest so far.
 void look_at(const std::array<Point, 2>& ends, std::uint64_t triangle, std::vector<Facing>& nearest) {
   const auto directions = static_cast<int>(nearest.size());
-  const double first = std::atan2(ends[0][1], ends[0][0]), sweep = std::remainder(std::atan2(ends[1][1], ends[1][0]) - first, kWholeTurn);
-  const double step = kWholeTurn / directions, low = std::min(first, first + sweep) / step, high = std::max(first, first + sweep) / step;
+  const double first = std::atan2(ends[0][1], ends[0][0]), sweep = std::remainder(std::atan2(ends[1][1], ends[1][0]) - first, kTurn);
+  const double step = kTurn / directions, low = std::min(first, first + sweep) / step, high = std::max(first, first + sweep) / step;
   const double span = std::hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]);
   const double nearer = std::min(std::hypot(ends[0][0], ends[0][1]), std::hypot(ends[1][0], ends[1][1]));
   const double moment = ends[0][0] * ends[1][1] - ends[0][1] * ends[1][0];

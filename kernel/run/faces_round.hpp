@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "millscope/geometry.hpp"
 
 namespace millscope::run {
+
+inline constexpr double kTurn = 2 * std::numbers::pi;  ///< rad
 
 struct Facing {
   double distance;         ///< from the axis, m; infinity: no wall there

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace millscope::run {
@@ -13,7 +12,6 @@ namespace {
 constexpr int kDirections = 7200;      // 0.05°: 0.13 mm on the shell of a mill of 300 mm
 constexpr double kLeastOfMill = 0.01;  // of the radius: what is lower is a mesh's unevenness, no lifter
 constexpr double kLeastOfBead = 0.2;   // of a bead's radius: the bead rolls over it as up a slope of 37°, cos⁻¹ (1 − 0.2)
-constexpr double kTurn = 2 * std::numbers::pi;
 
 /// The shortest run of directions in which the surface is farther than `level`, between two in which it is nearer; 0: fewer than two.
 int shortest_gap(const std::vector<double>& nearest, double level) {

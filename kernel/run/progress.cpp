@@ -13,10 +13,8 @@ Progress::Progress(const Assembly& a, bool quiet, bool terminal)
              a.time_step, 100 * a.time_step / a.rayleigh_time, a.system->threads(), a.c.stiffness_factor);
 }
 
-double Progress::elapsed() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
 std::string Progress::text(std::int64_t step, std::int64_t first_step) const {
-  const double wall = elapsed(), done = static_cast<double>(step - first_step), left = static_cast<double>(a_.end_step - step);
+  const double wall = seconds_since(start_), done = static_cast<double>(step - first_step), left = static_cast<double>(a_.end_step - step);
   const double rate = done / wall;
   const double time = static_cast<double>(step) * a_.time_step;
   return fmt::format("{} {:.3f} of {:.3f} s, {:.1f} M particle-steps/s, {:.1f} s per simulated s, ETA {}",
@@ -25,11 +23,11 @@ std::string Progress::text(std::int64_t step, std::int64_t first_step) const {
 }
 
 void Progress::update(std::int64_t step, std::int64_t first_step) {
-  if (quiet_ || elapsed() < next_ || step <= first_step) return;
+  if (quiet_ || seconds_since(start_) < next_ || step <= first_step) return;
   const std::string now = text(step, first_step);
   if (terminal_) {
     line_.draw(now);
-    next_ = elapsed() + 0.5;
+    next_ = seconds_since(start_) + 0.5;
   } else {
     fmt::print(stderr, "{}\n", now);
     next_ = next_ == 0 ? 5 : next_ * 1.5;

@@ -9,6 +9,10 @@
 
 namespace millscope::run {
 
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 class Progress {
  public:
   Progress(const Assembly& a, bool quiet, bool terminal);
@@ -18,7 +22,6 @@ class Progress {
 
  private:
   std::string text(std::int64_t step, std::int64_t first_step) const;
-  double elapsed() const;
 
   const Assembly& a_;
   bool quiet_, terminal_;

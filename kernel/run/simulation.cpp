@@ -13,6 +13,7 @@
 #include "kernel/output/directory.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
+#include "kernel/run/estimate.hpp"
 #include "kernel/run/progress.hpp"
 #include "kernel/run/recorder.hpp"
 #include "kernel/run/soundness.hpp"
@@ -27,8 +28,6 @@ using Clock = std::chrono::steady_clock;
 
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 constexpr const char* kSummary = "summary.json";
 constexpr int kMostHalvings = 2;  // of the time step, where beads run away before the analysis begins
@@ -77,6 +76,16 @@ dem::Ledger load_ledger(const output::ArchiveReader& archive, const dem::Ledger&
 }
 
 static_assert(sizeof(Sample) % sizeof(double) == 0);
+
+/// What the checkpoint had counted of the analysis' window; nothing where the window is another one.
+void restore_window(Session& s, const output::ArchiveReader& archive) {
+  dem::System& system = *s.assembly.system;
+  if (archive.read_value<std::int64_t>("analyze_step") != s.assembly.analyze_step) return system.forget_wear();
+  const std::vector<double> numbers = archive.read<double>("window/samples");
+  s.recorder->samples().resize(numbers.size() * sizeof(double) / sizeof(Sample));
+  if (!numbers.empty()) std::memcpy(static_cast<void*>(s.recorder->samples().data()), numbers.data(), numbers.size() * sizeof(double));
+  if (archive.read_value<std::int64_t>("window/started")) s.recorder->set_window_start(load_ledger(archive, system.ledger()));
+}
 
 /// Of all that a resumed run must share with the run that wrote the checkpoint: the resolved case without what `--set` may change, and
 /// the surfaces, whose files may have been replaced.
@@ -231,21 +240,6 @@ Outcome step_to_end(Session& s, const host::Registry& registry) {
   return Outcome::finished;
 }
 
-std::uint64_t disk_estimate(const Assembly& a) {
-  const config::OutputCase& o = a.c.output;
-  double bytes = 4e6 + 2.0 * static_cast<double>(a.bead_count) * 500;  // two checkpoints
-  const double end = a.c.time.end;
-  if (o.frames) bytes += (end - o.frames->from) / o.frames->every * static_cast<double>(output::frame_bytes(a.bead_count));
-  if (o.tracks) bytes += end / o.tracks->every * 32.0 * static_cast<double>(o.tracks->count);
-  if (o.series) bytes += end / o.series->every * 280;
-  if (o.vtk) {
-    double triangles = 0;
-    for (const GeometryUse& g : a.geometries) triangles += static_cast<double>(g.surface.triangle_count);
-    bytes += end / o.vtk->every * (static_cast<double>(a.bead_count) * 72 + triangles * 60);
-  }
-  return static_cast<std::uint64_t>(std::min(bytes, 1e18));
-}
-
 void write_resolved(const Session& s, const host::Registry& registry) {
   output::write_file(s.directory / output::kResolvedCase, config::resolved_yaml(s.assembly.c, registry.descriptors()));
 }
@@ -358,42 +352,12 @@ Outcome resume_run(const host::Registry& registry, const RunOptions& options) {
   // A damaged newest checkpoint must not become the previous one, which is now the only one.
   if (damaged) std::filesystem::rename(output::previous_checkpoint_path(options.output), output::checkpoint_path(options.output));
   std::filesystem::remove(summary);  // is there when, and only when, the run has reached its end
-  if (archive.read_value<std::int64_t>("analyze_step") == s.assembly.analyze_step) {
-    const std::vector<double> numbers = archive.read<double>("window/samples");
-    s.recorder->samples().resize(numbers.size() * sizeof(double) / sizeof(Sample));
-    if (!numbers.empty()) std::memcpy(static_cast<void*>(s.recorder->samples().data()), numbers.data(), numbers.size() * sizeof(double));
-    if (archive.read_value<std::int64_t>("window/started")) s.recorder->set_window_start(load_ledger(archive, system.ledger()));
-  } else {
-    system.forget_wear();  // of another window
-  }
+  restore_window(s, archive);
   write_resolved(s, registry);
-  s.wall_before = archive.read_value<double>("wall_s"), s.first_step = system.step(), s.started = Clock::now();
+  s.wall_before = archive.read_value<double>("wall_s");
+  s.first_step = system.step();
+  s.started = Clock::now();
   return step_to_end(s, registry);
-}
-
-Estimate estimate(const std::string& case_file, const host::Registry& registry, const RunOptions& options) {
-  Assembly a = assemble(config::read_case(case_file, options.overrides), registry, {options.threads, options.instruction_set});
-  Recorder::check(a);
-  insert_beads(a);
-  begin(a);
-  Estimate e;
-  e.beads = a.bead_count, e.time_step = a.time_step;
-  e.rayleigh_fraction = a.time_step / a.rayleigh_time;
-  e.contact_steps = a.hertz_contact_time / a.time_step;
-  e.steps = a.end_step - a.first_step;
-  e.partitions = a.system->settings().partitions;
-  // A trial of this very case: half a second of stepping, the first rebuilds left out. A settling bed is as dense as a developed one.
-  const Clock::time_point warm = Clock::now();
-  while (seconds_since(warm) < 0.2) a.system->advance();
-  const Clock::time_point start = Clock::now();
-  std::int64_t steps = 0;
-  for (; seconds_since(start) < 0.6; ++steps) a.system->advance();
-  const double rate = static_cast<double>(steps) / seconds_since(start);
-  e.particle_steps_per_s = rate * static_cast<double>(a.bead_count);
-  e.wall_seconds = static_cast<double>(e.steps) / rate;
-  e.memory_bytes = a.system->memory_bytes() + (40U << 20);
-  e.disk_bytes = disk_estimate(a);
-  return e;
 }
 
 }  // namespace millscope::run

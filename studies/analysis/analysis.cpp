@@ -109,6 +109,14 @@ std::vector<output::PluginRecord> used_plugins(const host::Registry& registry, c
 
 }  // namespace
 
+AnalysisRequest request_of_means(const std::filesystem::path& path, std::vector<std::string> only) {
+  AnalysisRequest request;
+  request.path = path;
+  request.only = std::move(only);
+  request.overrides = {"resampling.draws=20"};
+  return request;
+}
+
 ResultSet analyze(const AnalysisRequest& request, const host::Registry& registry) {
   const config::Node settings = load_settings(request);
   const SourceRequest source = source_request(request, settings);

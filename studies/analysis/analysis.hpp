@@ -30,6 +30,9 @@ struct AnalysisRequest {
   std::function<void(const char* doing, double fraction)> progress;
 };
 
+/// Of these analyzers the means alone: their errors are resampled as little as may be.
+AnalysisRequest request_of_means(const std::filesystem::path& path, std::vector<std::string> only);
+
 /// Throws base::UserError.
 ResultSet analyze(const AnalysisRequest& request, const host::Registry& registry);
 

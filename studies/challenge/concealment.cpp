@@ -36,11 +36,7 @@ const std::vector<double>& values_of(const analysis::ResultSet& results, const s
 }
 
 Look look_at(const fs::path& run, const host::Registry& registry) {
-  analysis::AnalysisRequest request;
-  request.path = run;
-  request.only = {"charge_features", "distributions"};
-  request.overrides = {"resampling.draws=20"};  // errors are not asked for
-  const analysis::ResultSet results = analysis::analyze(request, registry);
+  const analysis::ResultSet results = analysis::analyze(analysis::request_of_means(run, {"charge_features", "distributions"}), registry);
   const auto angle = [&](const std::string& name) { return values_of(results, "charge_features", name).at(0); };
   const auto histogram = [&](const std::string& axis) {
     return calibrate::Histogram{

@@ -7,14 +7,12 @@
 
 #include "kernel/config/writer.hpp"
 #include "kernel/output/file.hpp"
-#include "kernel/run/mesh_case.hpp"
+#include "kernel/run/derived_case.hpp"
 
 namespace millscope::crosscheck {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kFrameEvery = 0.02;  // s: about half of the time in which a charge forgets its kinetic energy
 
 /// Throws where the beads would be put elsewhere than into the geometries of the case.
 void require_same_inside(const run::Assembly& given, const run::Assembly& common) {
@@ -33,15 +31,13 @@ void require_same_inside(const run::Assembly& given, const run::Assembly& common
 
 fs::path write_common_case(const run::Assembly& a, const host::Registry& registry, const fs::path& folder) {
   config::Case c = a.c;
-  c.fill.count = a.bead_count;
-  c.fill.filling.reset(), c.fill.mass.reset(), c.fill.file.clear();
+  run::fill_by_count(c, a.bead_count);
   for (std::size_t g = 0; g < c.geometry.size(); ++g) {
     if (c.geometry[g].plugin.kind != "mesh")
       run::put_mesh_in_place({a.geometries[g].surface, a.geometries[g].slots}, c.geometry[g].plugin, c.domain, folder);
   }
-  c.output.series.emplace(), c.output.frames.emplace();
-  c.output.frames->every = kFrameEvery, c.output.frames->from = c.time.analyze_from;
-  c.output.tracks.reset(), c.output.vtk.reset();
+  c.output.series.emplace();
+  run::write_frames_for_means(c);
   c.run.engine.clear(), c.run.ranks = 1;
   const fs::path file = folder / "case.yaml";
   output::write_file(file, config::resolved_yaml(c, registry.descriptors()));

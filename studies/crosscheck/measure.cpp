@@ -111,15 +111,11 @@ std::vector<Quantity> of_frames(const fs::path& run, const host::Registry& regis
   return means.quantities();
 }
 
-double number_in(const nlohmann::ordered_json& json, const char* key) {
-  return json.is_object() && json.contains(key) && json[key].is_number() ? json[key].get<double>()
-                                                                         : std::numeric_limits<double>::quiet_NaN();
-}
-
 std::vector<Quantity> of_summary(const fs::path& run) {
   const nlohmann::ordered_json summary = output::read_json(run / "summary.json");
   const nlohmann::ordered_json none, &power = summary.is_object() && summary.contains("power_W") ? summary["power_W"] : none;
-  std::vector<Quantity> all{{kPowerByTorque, "W", number_in(power, "torque")}, {kPowerByCentre, "W", number_in(power, "com")}};
+  std::vector<Quantity> all{{kPowerByTorque, "W", output::number_in(power, "torque")},
+                            {kPowerByCentre, "W", output::number_in(power, "com")}};
   for (std::size_t axis = 0; axis < std::size(kCentre); ++axis) {
     const bool known = summary.is_object() && summary.contains("com_m") && summary["com_m"].is_array() && axis < summary["com_m"].size() &&
                        summary["com_m"][axis].is_number();
@@ -130,10 +126,7 @@ std::vector<Quantity> of_summary(const fs::path& run) {
 
 /// The single numbers of charge_features: shoulder, toes, centre of circulation, …
 std::vector<Quantity> of_charge(const fs::path& run, const host::Registry& registry) {
-  analysis::AnalysisRequest request;
-  request.path = run;
-  request.only = {"charge_features"};
-  request.overrides = {"resampling.draws=20"};  // the errors are those between seeds
+  analysis::AnalysisRequest request = analysis::request_of_means(run, {"charge_features"});  // the errors are those between seeds
   request.threads = 1;
   std::vector<Quantity> all;
   analysis::ResultSet results;

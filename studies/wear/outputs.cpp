@@ -99,8 +99,7 @@ Json json_of(const Found& found, const Request& r) {
 std::string csv_of(const Found& found) {
   std::string csv =
       "hours,lifter_height_m,lifter_left_m,plate_lost_m,volume_lost_m3,volume_lost_error_m3,mass_lost_kg,volume_lost_by_faces_m3,power_W,"
-      "power_error_W,"
-      "shoulder_deg,toe_deg\n";
+      "power_error_W,shoulder_deg,toe_deg\n";
   for (const Stage& s : found.stages) {
     csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", cell(s.hours), cell(s.relief), cell(s.lifter_left), cell(s.plate_lost),
                        cell(s.volume), cell(s.volume_error), cell(s.mass), cell(s.face_volume), cell(s.power), cell(s.power_error),
@@ -183,30 +182,24 @@ void draw_course(const Found& found, const Course& course, const fs::path& folde
   picture::draw_curves(picture, folder / course.file);
 }
 
+/// Area of a triangle as it is seen from the axis, m².
+double seen_from_axis(const std::vector<double>& vertices, const std::uint32_t* corners) {
+  const double *v = &vertices[std::size_t{3} * corners[0]], *u = &vertices[std::size_t{3} * corners[1]],
+               *w = &vertices[std::size_t{3} * corners[2]];
+  const double x = v[0] + u[0] + w[0], y = v[1] + u[1] + w[1];
+  const double a[3] = {u[0] - v[0], u[1] - v[1], u[2] - v[2]}, b[3] = {w[0] - v[0], w[1] - v[1], w[2] - v[2]};
+  return 0.5 * std::fabs((a[1] * b[2] - a[2] * b[1]) * x + (a[2] * b[0] - a[0] * b[2]) * y) / std::hypot(x, y);
+}
+
 /// The liner with its loss so far: worn_volume_per_area is the depth along the normal, m.
 void write_liner(const Stage& s, const Profile& first, const fs::path& file) {
-  const Stretches stretches = stretches_of(s.profile);
-  const Mesh mesh = mesh_of(s.profile, stretches);
+  const Mesh mesh = mesh_of(s.profile, stretches_of(s.profile));
   std::vector<double> lost;
   for (std::size_t t = 0; t < mesh.materials.size(); ++t) {
-    const double* v[3];
-    double x = 0, y = 0, z = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      v[k] = mesh.vertices.data() + std::size_t{3} * mesh.triangles[3 * t + k];
-      x += v[k][0] / 3, y += v[k][1] / 3, z += v[k][2] / 3;
-    }
-    double angle = std::atan2(y, x);
-    if (angle < 0) angle += 2 * std::numbers::pi;
-    const std::size_t column = static_cast<std::size_t>(angle / s.profile.step()) % s.profile.columns;
-    const std::size_t row = std::min(static_cast<std::size_t>(std::max(0.0, (z - first.low) / first.row_length())), first.rows - 1);
-    const double depth =
-        0.5 * (s.profile.at(row, column) + s.profile.at(row, column + 1) - first.at(row, column) - first.at(row, column + 1));
-    const double a[3] = {v[1][0] - v[0][0], v[1][1] - v[0][1], v[1][2] - v[0][2]},
-                 b[3] = {v[2][0] - v[0][0], v[2][1] - v[0][1], v[2][2] - v[0][2]};
-    const double radial = std::fabs((a[1] * b[2] - a[2] * b[1]) * x + (a[2] * b[0] - a[0] * b[2]) * y) /
-                          std::hypot(x, y);  // twice the area, seen from the axis
-    const bool face = v[0][2] == v[1][2] && v[1][2] == v[2][2];
-    lost.push_back(face ? 0 : 0.5 * radial * depth);
+    const std::uint32_t* corners = &mesh.triangles[3 * t];
+    const Spot at = spot_of(mesh.vertices, corners, s.profile);
+    const auto radius = [&](const Profile& p) { return 0.5 * (p.at(at.row, at.column) + p.at(at.row, at.column + 1)); };
+    lost.push_back(at.on_face ? 0 : seen_from_axis(mesh.vertices, corners) * (radius(s.profile) - radius(first)));
   }
   output::write_mesh_vtp(file, {mesh.vertices, mesh.triangles, mesh.materials, {}, {}, lost});
 }

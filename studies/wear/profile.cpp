@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "kernel/base/error.hpp"
-#include "kernel/run/faces_round.hpp"
 
 namespace millscope::wear {
 namespace {

@@ -6,16 +6,16 @@
 
 #include <array>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "kernel/run/faces_round.hpp"
 #include "millscope/geometry.hpp"
 
 namespace millscope::wear {
 
-inline constexpr double kTurn = 2 * std::numbers::pi;  ///< rad
+using run::kTurn;
 
 struct Profile {
   int pitches = 1;
@@ -45,8 +45,7 @@ struct Resolution {
 };
 
 /// Takes the profile of a surface, the mean over its pitches. Throws UserError with `name` where the surface is no mill's: another axis, a
-/// hole, an end that is half open, pitches that are not alike,
-/// one row where the liner changes along the mill.
+/// hole, an end that is half open, pitches that are not alike, one row where the liner changes along the mill.
 Profile profile_of(const Surface& surface, const Interior& interior, const Resolution& resolution, const std::string& name);
 
 }  // namespace millscope::wear

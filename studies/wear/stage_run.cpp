@@ -9,7 +9,7 @@
 #include "kernel/config/writer.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
-#include "kernel/run/mesh_case.hpp"
+#include "kernel/run/derived_case.hpp"
 #include "studies/analysis/analysis.hpp"
 
 namespace millscope::wear {
@@ -18,29 +18,21 @@ namespace {
 namespace fs = std::filesystem;
 using base::UserError;
 
-constexpr double kFrameEvery = 0.02;  // s: about half of the time in which a charge forgets its kinetic energy
 /// What the charge of one run does; NaN: not told.
 struct Charge {
   double power = kNone, power_error = kNone, shoulder = kNone, toe = kNone;
   std::string trouble;  ///< why shoulder and toe are not known
 };
 
-double number_of(const nlohmann::ordered_json& json, const char* key) {
-  return json.is_object() && json.contains(key) && json[key].is_number() ? json[key].get<double>() : kNone;
-}
-
 /// Power from the summary; shoulder and toe from charge_features.
 Charge charge_of(const fs::path& run, const host::Registry& registry) {
   Charge c;
   const nlohmann::ordered_json summary = output::read_json(run / "summary.json");
   if (summary.is_object() && summary.contains("power_W")) {
-    c.power = number_of(summary["power_W"], "torque");
-    c.power_error = number_of(summary["power_W"], "torque_sem");
+    c.power = output::number_in(summary["power_W"], "torque");
+    c.power_error = output::number_in(summary["power_W"], "torque_sem");
   }
-  analysis::AnalysisRequest request;
-  request.path = run;
-  request.only = {"charge_features"};
-  request.overrides = {"resampling.draws=20"};  // the errors are those between seeds
+  analysis::AnalysisRequest request = analysis::request_of_means(run, {"charge_features"});  // the errors are those between seeds
   request.threads = 1;
   try {
     for (const analysis::ResultArray& result : analysis::analyze(request, registry).arrays) {
@@ -73,15 +65,12 @@ fs::path Stages::write_case(int number, const Profile& p, const Stretches& s) co
   fs::create_directories(folder);
   config::Case c = given_.c;
   c.name = fmt::format("{}, worn, stage {}", given_.c.name, number);
-  c.fill.count = given_.bead_count;  // the charge stays the same though the mill gets wider
-  c.fill.filling.reset(), c.fill.mass.reset(), c.fill.file.clear(), c.fill.placed.clear();
+  run::fill_by_count(c, given_.bead_count);  // the charge stays the same though the mill gets wider
   if (!given_.c.fill.file.empty()) c.fill.settle = config::FillCase{}.settle;
   const Mesh mesh = mesh_of(p, s);
   const Surface surface = mesh.surface();
   run::put_mesh_in_place({surface, given_.geometries[body_].slots}, c.geometry[body_].plugin, c.domain, folder);
-  c.output.frames.emplace();
-  c.output.frames->every = kFrameEvery, c.output.frames->from = c.time.analyze_from;
-  c.output.tracks.reset(), c.output.vtk.reset();
+  run::write_frames_for_means(c);
   const fs::path file = folder / "case.yaml";
   output::write_file(file, config::resolved_yaml(c, registry_.descriptors()));
   return file;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "kernel/base/error.hpp"
 #include "kernel/run/assembly.hpp"
@@ -61,11 +62,7 @@ std::size_t body_of(const Request& r, const run::Assembly& a) {
                               fmt::join(names, ", ")));
 }
 
-double sum_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return sum;
-}
+double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 /// What is lost, m³/s of all pitches together, with its standard error; NaN where one pitch of one run tells none. Pitches of one run share
 /// its charge, so the error is the larger one of that between pitches and that between runs.
@@ -135,17 +132,11 @@ double lifter_left(const Profile& first, const Profile& now) {
   return std::max(0.0, *std::max_element(then.begin(), then.end()) - *std::min_element(mean.begin(), mean.end()));
 }
 
+/// `density`: of each slot, kg/m³.
 double mass_between(const Profile& before, const Profile& after, const std::vector<double>& density) {
+  const std::vector<double> volumes = volumes_between(before, after);
   double mass = 0;
-  for (std::size_t slot = 0; slot < density.size(); ++slot) {
-    for (std::size_t c = 0; c < before.columns; ++c) {
-      if (before.material[c] != slot) continue;
-      double area = 0;
-      for (std::size_t row = 0; row < before.rows; ++row)
-        area += after.at(row, c) * after.at(row, c + 1) - before.at(row, c) * before.at(row, c + 1);
-      mass += density[slot] * 0.5 * std::sin(before.step()) * area * before.row_length() * before.pitches;
-    }
-  }
+  for (std::size_t c = 0; c < volumes.size(); ++c) mass += density[before.material[c]] * volumes[c];
   return mass;
 }
 
@@ -207,7 +198,7 @@ double go_on(Stage& now, const Rate& rate, const Stretches& s, double hours) {
   const double moved = wear_away(now.profile, s, volume);
   add_errors(now.error, before, s, rate, seconds);
   now.hours += hours;
-  now.volume += volume_between(before, now.profile);
+  now.volume += sum_of(volumes_between(before, now.profile));
   now.law_volume += sum_of(volume);
   now.face_volume += rate.faces * seconds;
   now.volume_error = std::hypot(now.volume_error, rate.sum_error * seconds);

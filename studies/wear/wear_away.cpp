@@ -1,8 +1,8 @@
 #include "studies/wear/wear_away.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
 
 #include "kernel/base/error.hpp"
 
@@ -16,7 +16,7 @@ constexpr double kRadial = 1e-6;   // of a line's length across a direction: it 
 
 /// The radius in every direction that the line from a to b crosses becomes at least that of the line: the metal on the way is gone.
 void reach(std::vector<double>& radius, double step, const Place& a, const Place& b) {
-  const double first = std::atan2(a.y, a.x), last = first + std::remainder(std::atan2(b.y, b.x) - first, 2 * std::numbers::pi);
+  const double first = std::atan2(a.y, a.x), last = first + std::remainder(std::atan2(b.y, b.x) - first, kTurn);
   const auto columns = static_cast<long>(radius.size());
   const double dx = b.x - a.x, dy = b.y - a.y, moment = a.x * b.y - a.y * b.x;
   const double span = std::hypot(dx, dy), farther = std::max(std::hypot(a.x, a.y), std::hypot(b.x, b.y));
@@ -56,12 +56,17 @@ std::vector<double> moved(const Profile& p, const Stretches& s, std::size_t row,
   return radius;
 }
 
+/// m² between two chords from a direction to the next, each given by its radii, m.
+double area_between(const std::array<double, 2>& before, const std::array<double, 2>& after, double step) {
+  return 0.5 * std::sin(step) * (after[0] * after[1] - before[0] * before[1]);
+}
+
 /// m² between two rows, of one pitch.
 double area_between(const double* before, const std::vector<double>& after, double step) {
   double area = 0;
   const std::size_t n = after.size();
-  for (std::size_t c = 0; c < n; ++c) area += after[c] * after[(c + 1) % n] - before[c] * before[(c + 1) % n];
-  return 0.5 * std::sin(step) * area;
+  for (std::size_t c = 0; c < n; ++c) area += area_between({before[c], before[(c + 1) % n]}, {after[c], after[(c + 1) % n]}, step);
+  return area;
 }
 
 /// Moves one row until it has lost `area`, m²; returns the factor on the depths.
@@ -110,14 +115,15 @@ double wear_away(Profile& p, const Stretches& s, const std::vector<double>& volu
   return greatest;
 }
 
-double volume_between(const Profile& before, const Profile& after) {
-  double sum = 0;
+std::vector<double> volumes_between(const Profile& before, const Profile& after) {
+  std::vector<double> volumes(before.columns, 0.0);
+  const double of_area = before.row_length() * before.pitches;
   for (std::size_t row = 0; row < before.rows; ++row) {
-    const auto first = after.radius.begin() + static_cast<std::ptrdiff_t>(row * after.columns);
-    sum += area_between(before.radius.data() + row * before.columns, {first, first + static_cast<std::ptrdiff_t>(after.columns)},
-                        before.step());
+    for (std::size_t c = 0; c < before.columns; ++c)
+      volumes[c] +=
+          of_area * area_between({before.at(row, c), before.at(row, c + 1)}, {after.at(row, c), after.at(row, c + 1)}, before.step());
   }
-  return sum * before.row_length() * before.pitches;
+  return volumes;
 }
 
 }  // namespace millscope::wear

@@ -12,7 +12,7 @@ namespace millscope::wear {
 /// until the row has lost what the law said. Returns the greatest distance moved along a normal, m.
 double wear_away(Profile& p, const Stretches& s, const std::vector<double>& volume);
 
-/// m³ of metal between an earlier profile and a later one.
-double volume_between(const Profile& before, const Profile& after);
+/// m³ of metal between an earlier profile and a later one, between each direction and the next.
+std::vector<double> volumes_between(const Profile& before, const Profile& after);
 
 }  // namespace millscope::wear

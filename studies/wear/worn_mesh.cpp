@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace millscope::wear {
 namespace {
@@ -154,32 +153,36 @@ Mesh mesh_of(const Profile& p, const Stretches& s) {
   return m;
 }
 
+Spot spot_of(std::span<const double> vertices, const std::uint32_t* corners, const Profile& p) {
+  double centre[3] = {0, 0, 0}, lowest = p.high, highest = p.low;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double* v = vertices.data() + std::size_t{3} * corners[k];
+    for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] += v[axis] / 3;
+    lowest = std::min(lowest, v[2]), highest = std::max(highest, v[2]);
+  }
+  if (highest - lowest < 1e-3 * p.row_length()) return {.on_face = true};
+  const auto index_in = [](double place, std::size_t count) { return std::min(static_cast<std::size_t>(std::max(place, 0.0)), count - 1); };
+  const double turned = std::atan2(centre[1], centre[0]), pitch_angle = kTurn / p.pitches, angle = turned < 0 ? turned + kTurn : turned;
+  const std::size_t pitch = index_in(angle / pitch_angle, static_cast<std::size_t>(p.pitches));
+  const double across = (angle - static_cast<double>(pitch) * pitch_angle) / p.step();
+  const std::size_t column = index_in(across, p.columns);
+  return {false, pitch, index_in((centre[2] - p.low) / p.row_length(), p.rows), column,
+          std::clamp(across - static_cast<double>(column), 0.0, 1.0)};
+}
+
 Loss loss_of(const run::WornSurface& worn, const Profile& p, const Stretches& s) {
   Loss loss;
   loss.of_pitch.assign(static_cast<std::size_t>(p.pitches), std::vector<double>(p.rows * s.count(), 0.0));
-  const double pitch_angle = kTurn / p.pitches;
   for (std::size_t t = 0; t < worn.worn.size(); ++t) {
-    double centre[3] = {0, 0, 0}, lowest = p.high, highest = p.low;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double* v = worn.vertices.data() + std::size_t{3} * worn.triangles[3 * t + k];
-      for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] += v[axis] / 3;
-      lowest = std::min(lowest, v[2]), highest = std::max(highest, v[2]);
-    }
     const double rate = worn.worn[t] / worn.time;
-    if (highest - lowest < 1e-3 * p.row_length()) {
+    const Spot at = spot_of(worn.vertices, &worn.triangles[3 * t], p);
+    if (at.on_face) {
       loss.faces += rate;
       continue;
     }
-    double angle = std::atan2(centre[1], centre[0]);
-    if (angle < 0) angle += kTurn;
-    const auto pitch = std::min(static_cast<std::size_t>(angle / pitch_angle), loss.of_pitch.size() - 1);
-    const double across = (angle - static_cast<double>(pitch) * pitch_angle) / p.step();
-    const std::size_t column = std::min(static_cast<std::size_t>(std::max(across, 0.0)), p.columns - 1);
-    const double share = std::clamp(across - static_cast<double>(column), 0.0, 1.0);
-    const std::size_t part = std::min(static_cast<std::size_t>(share * static_cast<double>(s.parts[column])), s.parts[column] - 1);
-    const double up = (centre[2] - p.low) / p.row_length();
-    const std::size_t row = std::min(static_cast<std::size_t>(std::max(up, 0.0)), p.rows - 1);
-    loss.of_pitch[pitch][row * s.count() + s.first[column] + part] += rate;
+    const std::size_t parts = s.parts[at.column];
+    const std::size_t part = std::min(static_cast<std::size_t>(at.share * static_cast<double>(parts)), parts - 1);
+    loss.of_pitch[at.pitch][at.row * s.count() + s.first[at.column] + part] += rate;
   }
   return loss;
 }

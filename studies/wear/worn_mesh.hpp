@@ -1,6 +1,7 @@
 // A profile as triangles, and what each stretch of the profile has lost.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "kernel/run/wear.hpp"
@@ -31,6 +32,15 @@ struct Mesh {
   Surface surface() const;
 };
 Mesh mesh_of(const Profile& p, const Stretches& s);
+
+/// Where a triangle of the mill lies on the profile.
+struct Spot {
+  bool on_face = false;  ///< of an end; then the rest means nothing
+  std::size_t pitch = 0, row = 0, column = 0;
+  double share = 0;  ///< of the way from the column's direction to the next, 0…1
+};
+/// `vertices`: x, y, z of each, m; `corners`: the triangle's three.
+Spot spot_of(std::span<const double> vertices, const std::uint32_t* corners, const Profile& p);
 
 /// What a run took away, m³/s.
 struct Loss {

@@ -11,12 +11,6 @@ using namespace dem_test;
 
 namespace {
 
-/// Overlap at which Hertz carries the sphere on a plane inclined by `slope`.
-double resting_overlap(double stiffness_factor, double slope = 0) {
-  const double weight = bead_mass() * kGravity * std::cos(slope);
-  return std::pow(0.75 * weight / (effective_young(stiffness_factor) * std::sqrt(kRadius)), 2.0 / 3.0);
-}
-
 /// A sphere that rests on the floor; gravity is turned by `slope`, so that +x leads downhill.
 Assembly on_slope(Setup s, double friction, double slope, const Vector& velocity = {}, const Vector& spin = {}) {
   s.pairs = fmt::format("restitution: 0.5, static_friction: {}, rolling_friction: 0.02", friction);

@@ -199,4 +199,9 @@ Book shaken_box(Setup s) {
   return {last.wall_work - first.wall_work, last.dissipated - first.dissipated, last.stored() - first.stored()};
 }
 
+double resting_overlap(double stiffness_factor, double slope) {
+  const double weight = bead_mass() * kGravity * std::cos(slope);
+  return std::pow(0.75 * weight / (effective_young(stiffness_factor) * std::sqrt(kRadius)), 2.0 / 3.0);
+}
+
 }  // namespace dem_test

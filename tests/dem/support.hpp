@@ -100,5 +100,7 @@ Vector cross(const Vector& a, const Vector& b);
 /// E* of bead and wall (or bead and bead) of the test's glass, Pa.
 double effective_young(double stiffness_factor);
 double bead_mass(double radius = kRadius, double density = kDensity);
+/// Overlap at which Hertz carries the sphere on a plane inclined by `slope`, m.
+double resting_overlap(double stiffness_factor, double slope = 0);
 
 }  // namespace dem_test

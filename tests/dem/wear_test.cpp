@@ -66,7 +66,7 @@ TEST_CASE("a bead that slides until it rolls takes k m v0^2/(7 mu H) from the fl
     Assembly a = assembled(s);
     const double v0 = 0.5, mu = 0.2;
     Bead b;
-    b.position = {0, kRadius - std::pow(0.75 * bead_mass() * kGravity / (effective_young(1e-3) * std::sqrt(kRadius)), 2.0 / 3.0), 0};
+    b.position = {0, kRadius - resting_overlap(s.stiffness_factor), 0};
     b.velocity = {v0, 0, 0};
     start(a, {b});
     advance(a, std::llround(2 * 2 * v0 / (7 * mu * kGravity) / a.time_step));  // twice as long as it slides
@@ -127,7 +127,7 @@ TEST_CASE("a bead at rest takes nothing from the floor") {
   s.body_forces = kWithGravity;
   Assembly a = assembled(s);
   Bead b;
-  b.position = {0, kRadius - std::pow(0.75 * bead_mass() * kGravity / (effective_young(1e-3) * std::sqrt(kRadius)), 2.0 / 3.0), 0};
+  b.position = {0, kRadius - resting_overlap(s.stiffness_factor), 0};
   start(a, {b});
   advance(a, 2000);
   CHECK(told(a) < 1e-9 * kCoefficient * bead_mass() / kHardness);  // of a slide at 1 m/s

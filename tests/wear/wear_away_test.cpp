@@ -48,7 +48,7 @@ TEST_CASE("a smooth shell that loses evenly gets wider by the depth") {
   const double moved = wear_away(p, s, volume);
   CHECK(moved == Approx(1e-4).epsilon(2e-3));  // a wider shell has more area: 1e-4/0.2 less deep
   for (const double r : p.radius) CHECK(r - kShell == Approx(moved).epsilon(1e-3));
-  CHECK(volume_between(before, p) == Approx(sum(volume)).epsilon(1e-5));
+  CHECK(sum(volumes_between(before, p)) == Approx(sum(volume)).epsilon(1e-5));
 }
 
 TEST_CASE("what goes from the profile is what the law said, also at edges and on upright faces") {
@@ -60,7 +60,7 @@ TEST_CASE("what goes from the profile is what the law said, also at edges and on
       const Stretches s = stretches_of(p);
       const std::vector<double> volume = even(p, s, depth);
       wear_away(p, s, volume);
-      CHECK(volume_between(before, p) == Approx(sum(volume)).epsilon(1e-5));
+      CHECK(sum(volumes_between(before, p)) == Approx(sum(volume)).epsilon(1e-5));
       for (std::size_t c = 0; c < p.columns; ++c) CHECK(p.at(0, c) >= before.at(0, c));
     }
   }
@@ -80,7 +80,7 @@ TEST_CASE("a straight top whose normal points along a direction loses what it sh
     const Stretches s = stretches_of(worn);
     const std::vector<double> volume = even(worn, s, depth);
     wear_away(worn, s, volume);
-    CHECK(volume_between(p, worn) == Approx(sum(volume)).epsilon(1e-5));
+    CHECK(sum(volumes_between(p, worn)) == Approx(sum(volume)).epsilon(1e-5));
     for (std::size_t c = 0; c < p.columns; ++c) CHECK(worn.at(0, c) - p.at(0, c) < 6 * depth);  // the sides stand at 80 degrees
   }
 }

@@ -1,4 +1,4 @@
-#include "kernel/run/mesh_case.hpp"
+#include "kernel/run/derived_case.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSame = 1e-6;  // of the period
+constexpr double kSame = 1e-6;        // of the period
+constexpr double kFrameEvery = 0.02;  // s
 
 /// A node as a file would have it; JSON is also YAML.
 config::Node node_of(const nlohmann::json& values, const fs::path& file) { return config::parse_document(values.dump(), file.string()); }
@@ -36,6 +37,17 @@ void put_mesh_in_place(const Triangles& triangles, config::PluginInstance& plugi
   if (goes_on(triangles.surface, domain)) values["period"] = domain.box.high[2] - domain.box.low[2];
   plugin.kind = "mesh";
   plugin.node = node_of(values, folder / "case.yaml");
+}
+
+void fill_by_count(config::Case& c, std::uint64_t beads) {
+  c.fill.count = beads;
+  c.fill.filling.reset(), c.fill.mass.reset(), c.fill.file.clear(), c.fill.placed.clear();
+}
+
+void write_frames_for_means(config::Case& c) {
+  c.output.frames.emplace();
+  c.output.frames->every = kFrameEvery, c.output.frames->from = c.time.analyze_from;
+  c.output.tracks.reset(), c.output.vtk.reset();
 }
 
 }  // namespace millscope::run

@@ -1,4 +1,4 @@
-// A case whose liner is triangles in place of what the user wrote.
+// Cases that a study derives from the user's: triangles for a liner, a charge by its count, output for means.
 #pragma once
 
 #include <filesystem>
@@ -20,5 +20,11 @@ struct Triangles {
 /// the mesh goes on there. UserError when the file cannot be written.
 void put_mesh_in_place(const Triangles& triangles, config::PluginInstance& plugin, const config::DomainCase& domain,
                        const std::filesystem::path& folder);
+
+/// That many beads are filled in, however the case said it.
+void fill_by_count(config::Case& c, std::uint64_t beads);
+
+/// Of beads and walls only frames from the start of the analysis on, half as far apart as a charge takes to forget its kinetic energy.
+void write_frames_for_means(config::Case& c);
 
 }  // namespace millscope::run
