@@ -3,7 +3,10 @@
 // Time levels (velocity Verlet in its leapfrog form, second order also for forces that depend on velocity):
 //   x, predicted v and ω: step n;  half v and ω: step n − ½;  acceleration: step n − 1.
 // The prediction is v(n−½) + ½ Δt (2 a(n−1) − a(n−2)). With a(n−1) alone it would lag by half a step's change of force, which always
-// has the sign that makes damping look larger than it is: 2 % of the ledger at 14 steps per contact.
+// has the sign that makes damping look larger than it is: 2 % of the ledger at 14 steps per contact. But a bead in a bed is damped through
+// all its contacts at once. With the sum Σc of their damping coefficients, a prediction that far ahead swings from step to step, and grows,
+// where Σc Δt > m/2 (Σc R² Δt > I/2 in rotation, which comes first). So a bead whose acceleration has turned round in both of the last two
+// steps is given v(n−½) itself, which bears Σc Δt < 2 m. A smooth contact turns round once at a time and keeps its second order.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +28,8 @@ struct alignas(64) ForceLine {
   double f[3], unused_f, t[3], unused_t;
 };
 
-/// 32 bytes: linear (m/s²) and angular (rad/s²) acceleration of the last step. It only enters the prediction, in the second order of
-/// the step: single precision is ample.
+/// 32 bytes: linear (m/s²) and angular (rad/s²) acceleration of the last step. The fourth lane of `linear` is that step's a·a₋ + R² α·α₋
+/// with the step before it: below 0, the bead had turned round. They only enter the prediction: single precision is ample.
 struct alignas(32) AccelerationLine {
   float linear[4], angular[4];
 };

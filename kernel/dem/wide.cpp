@@ -231,34 +231,66 @@ std::int64_t scatter(const ScatterContext& s, PairListView& list, std::int64_t c
   return noted;
 }
 
-/// Kick, drift and predict of one bead. Returns its step in x, y, z and in the fourth lane nothing of use; `moved` is the same since the
-/// last rebuild.
-inline Four move_bead(const IntegrateContext& c, std::int64_t i, Four& moved) {
+/// What a step makes of one bead.
+struct Moved {
+  Four step, since_rebuild;  ///< x, y, z (m); the fourth lanes are of no use
+  Four along;                ///< lanes whose sum over x, y, z is a·a₋ + R² α·α₋; the fourth: that sum of the step before
+};
+
+/// Kick, drift and predict of one bead.
+inline Moved move_bead(const IntegrateContext& c, std::int64_t i) {
   const Four dt = four(c.time_step), half_dt = four(0.5 * c.time_step);
   const Four g = {c.acceleration[0], c.acceleration[1], c.acceleration[2], 0.0};
-  const Four keep = {1.0, 1.0, 1.0, 0.0};
+  const Four keep = {1.0, 1.0, 1.0, 0.0}, fourth = {0.0, 0.0, 0.0, 1.0};
   MotionLine& motion = c.motion[i];
   MotionLine& half = c.half[i];
   ForceLine& force = c.force[i];
-  const Four a = (load4(force.f) * four(motion.inverse_mass) + g) * keep;
-  const Four alpha = load4(force.t) * four(motion.inverse_inertia) * keep;
   AccelerationLine& last = c.last[i];
-  const Four next_a = a + (a - load4_single(last.linear)), next_alpha = alpha + (alpha - load4_single(last.angular));
-  store4_single(last.linear, a);
-  store4_single(last.angular, alpha);
+  const Four a = (load4(force.f) * four(motion.inverse_mass) + g) * keep, last_a = load4_single(last.linear);
+  const Four alpha = load4(force.t) * four(motion.inverse_inertia) * keep, last_alpha = load4_single(last.angular);
   const Four v = load4(half.v) + dt * a;
   const Four w = load4(half.w) + dt * alpha;
-  const Four step = dt * v * keep;
-  const Four x = load4(&c.position[i]) + step;
-  moved = x - load4_single(c.reference[i].centre);
+  const Four position = load4(&c.position[i]), step = dt * v * keep, x = position + step;
+  store4_single(last.linear, a);
+  store4_single(last.angular, alpha);
   store4(half.v, v);
   store4(half.w, w);
-  store4(motion.v, v + half_dt * next_a);
-  store4(motion.w, w + half_dt * next_alpha);
+  store4(motion.v, v + half_dt * (a + (a - last_a)) * keep);
+  store4(motion.w, w + half_dt * (alpha + (alpha - last_alpha)));
   store4(&c.position[i], x);
   store4(force.f, four(0.0));
   store4(force.t, four(0.0));
-  return step;
+  const double square = c.position[i].radius * c.position[i].radius;
+  return {step, x - load4_single(c.reference[i].centre), (a + fourth) * last_a + four(square) * (alpha * last_alpha)};
+}
+
+/// Takes back what a bead was predicted to gain on its half step, the more the more it has turned round in both of the last two steps.
+/// Steadily: a switch would make chaos of rounding.
+void hold_back(const IntegrateContext& c, std::int64_t i, double along, double along_before) {
+  constexpr double kSoon = 32;  // all is taken back even where accelerations grow threefold from step to step
+  const Four a = load4_single(c.last[i].linear), alpha = load4_single(c.last[i].angular);
+  const double square = c.position[i].radius * c.position[i].radius;
+  const Four squares = a * a + four(square) * (alpha * alpha);
+  const double largest = (squares[0] + squares[1] + squares[2]) / -kSoon;
+  const auto turned = [&](double sum) { return sum > largest ? sum / largest : 1.0; };
+  const Four used = four(1.0 - turned(along) * turned(along_before));
+  const MotionLine& half = c.half[i];
+  MotionLine& motion = c.motion[i];
+  store4(motion.v, load4(half.v) + used * (load4(motion.v) - load4(half.v)));
+  store4(motion.w, load4(half.w) + used * (load4(motion.w) - load4(half.w)));
+}
+
+/// Notes for the next step how far four beads, or the first `count` of them, have gone on or turned round, and holds back those that
+/// turned twice.
+inline void judge_prediction(const IntegrateContext& c, std::int64_t i, Four (&along)[4], int count) {
+  transpose(along[0], along[1], along[2], along[3]);
+  const Four sum = along[0] + along[1] + along[2];
+  for (int k = 0; k < count; ++k) c.last[i + k].linear[3] = static_cast<float>(sum[k]);
+  const int twice = bits_of((sum < four(0.0)) & (along[3] < four(0.0)));
+  if (twice == 0) return;
+  for (int k = 0; k < count; ++k) {
+    if (twice >> k & 1) hold_back(c, i + k, sum[k], along[3][k]);
+  }
 }
 
 IntegrateResult integrate(const IntegrateContext& context) {
@@ -271,13 +303,15 @@ IntegrateResult integrate(const IntegrateContext& context) {
   };
   std::int64_t i = c.begin;
   for (; i + 4 <= c.end; i += 4) {
-    Four step[4], moved[4];
+    Four step[4], moved[4], along[4];
     for (int k = 0; k < 4; ++k) {
       __builtin_prefetch(c.half + i + k + kFetchAhead, 1, 2);
       __builtin_prefetch(c.last + i + k + kFetchAhead, 1, 2);
       __builtin_prefetch(c.reference + i + k + kFetchAhead, 0, 2);
-      step[k] = move_bead(c, i + k, moved[k]);
+      const Moved bead = move_bead(c, i + k);
+      step[k] = bead.step, moved[k] = bead.since_rebuild, along[k] = bead.along;
     }
+    judge_prediction(c, i, along, 4);
     transpose(step[0], step[1], step[2], step[3]);
     transpose(moved[0], moved[1], moved[2], moved[3]);
     const Four step2 = step[0] * step[0] + step[1] * step[1] + step[2] * step[2];
@@ -288,8 +322,10 @@ IntegrateResult integrate(const IntegrateContext& context) {
     for (int k = 0; k < 4; ++k) judge(i + k, step2[k], moved2[k], allowed2[k]);
   }
   for (; i < c.end; ++i) {
-    Four moved;
-    const Four step = move_bead(c, i, moved), step2 = step * step, moved2 = moved * moved;
+    const Moved bead = move_bead(c, i);
+    const Four step2 = bead.step * bead.step, moved2 = bead.since_rebuild * bead.since_rebuild;
+    Four along[4] = {bead.along};
+    judge_prediction(c, i, along, 1);
     judge(i, step2[0] + step2[1] + step2[2], moved2[0] + moved2[1] + moved2[2], static_cast<double>(c.reference[i].allowed2));
   }
   return result;
