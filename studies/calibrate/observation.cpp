@@ -12,7 +12,7 @@ namespace millscope::calibrate {
 namespace {
 
 /// In the order of ObservableKind.
-constexpr std::array kKindNames{"power", "centre", "x", "y", "speed", "occupancy", "region_speed", "term", "profile", "frame"};
+constexpr std::array kKindNames{"power", "centre", "x", "y", "speed", "occupancy", "region_speed", "term", "profile", "outline", "frame"};
 static_assert(kKindNames.size() == static_cast<std::size_t>(ObservableKind::frame) + 1);
 
 }  // namespace

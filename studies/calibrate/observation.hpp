@@ -21,6 +21,7 @@ enum class ObservableKind {
   region_speed,  ///< mean speed in a region
   term,          ///< a number of an analyzer that the study asks for
   profile,       ///< velocity at a place of a measured profile
+  outline,       ///< of the bed in a picture, or the angle of its surface
   frame          ///< how the recording's camera stands, by its own beads
 };
 /// As `objective: {without: […]}` has it.
@@ -46,7 +47,7 @@ struct Histogram {
 struct PowerFigure {
   double value = 0, sem = 0;                           ///< W
   std::string how;                                     ///< "measured", "whole charge, scaled by mass 11.3", …
-  bool known() const { return std::isfinite(value); }  ///< a velocity profile tells none
+  bool known() const { return std::isfinite(value); }  ///< a figure tells none
   bool operator==(const PowerFigure&) const = default;
 };
 

@@ -122,7 +122,7 @@ struct Observer::Impl {
   fs::path cache;
   Recordings recordings;
   std::vector<RecordedCondition> recorded = {};
-  std::vector<camera::Camera> camera = {};  ///< of each condition; of a profile: none
+  std::vector<camera::Camera> camera = {};  ///< of each condition; of a figure: none
   std::vector<AnalyzerContext> mill = {};   ///< of the study's case in each condition
 
   /// A slice is scaled to the recorded mill; a run whose filling is varied keeps what that does to the power, one of another length does
@@ -147,8 +147,8 @@ struct Observer::Impl {
   }
 
   /// The charge as a whole, without a camera.
-  Observation profile(const RecordedCondition& r, const fs::path& run) const {
-    Observation o = summarise(profile_of_run(run, r, how), r.summaries);
+  Observation figure(const RecordedCondition& r, const fs::path& run) const {
+    Observation o = summarise(figure_of_run(run, r, how), r.summaries);
     o.power = whole_charge_power(run, 1);
     return o;
   }
@@ -156,7 +156,7 @@ struct Observer::Impl {
   Observation simulated(std::size_t condition, const Look& look) const {
     const RecordedCondition& r = recorded[condition];
     const fs::path& run = look.run.folder;
-    if (!r.analyzers.empty()) return profile(r, run);
+    if (!r.analyzers.empty()) return figure(r, run);
     const BeadPaths paths(run, how.study.observing.beads, r.place, how.registry);
     const analysis::ResultSet results = seen(condition, paths, look, how);
     Observation o = summarise(results, r.summaries);

@@ -116,7 +116,7 @@ analysis::ResultSet results_of_recording(const Recorded& recorded, const Recorde
 
 RecordedCondition look_at_recording(std::size_t condition, const Recorded& recorded, const Processing& how,
                                     const std::filesystem::path& cache) {
-  if (!recorded.of_tracks()) return look_at_profile(recorded.profile(), condition, how);
+  if (!recorded.of_tracks()) return look_at_figure(recorded.figure(), condition, how);
   const std::string id = identity_of(recorded.tracks(), how, condition);
   const std::filesystem::path file = cache / ("recording-" + id + ".json");
   if (auto known = read_cached<RecordedCondition>(file)) return *std::move(known);

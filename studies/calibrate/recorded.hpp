@@ -17,7 +17,7 @@ class Recorded;
 struct RecordedCondition {
   Observation observation;
   std::vector<Summary> summaries;
-  std::string analyzers;  ///< of a velocity profile: what simulations are asked for; empty: tracks were recorded
+  std::string analyzers;  ///< of a figure: what simulations are asked for; empty: tracks were recorded
   std::string camera;     ///< text of the camera file
   Smoothing smoothing;
   AxialPlace place;  ///< of the recorded mill

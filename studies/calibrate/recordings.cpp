@@ -33,10 +33,8 @@ void compare(const Study& study, const Condition& condition, const Shared& s) {
 
 void check_recorded(const Study& study, const Condition& condition, const Recorded& recorded, const host::Registry& registry) {
   if (!recorded.of_tracks() && study.objective.kind == ObjectiveKind::chagas2015)
-    throw UserError(condition.where,
-                    fmt::format("condition '{}': {} is a velocity profile, and chagas2015 compares tracks; take 'objective: "
-                                "likelihood'",
-                                condition.name, condition.recording.string()));
+    throw UserError(condition.where, fmt::format("condition '{}': {} is {}, and chagas2015 compares tracks; take 'objective: likelihood'",
+                                                 condition.name, condition.recording.string(), recorded.figure().what()));
   const AnalyzerContext c = analysis::read_mill_of_case(study.base, registry, condition.settings).context;
   const recording::Condition& stated = recorded.stated();
   constexpr double kRpm = 30 / std::numbers::pi;
@@ -54,7 +52,7 @@ const inspect::MillMotion& Recorded::motion() const {
 }
 
 std::shared_ptr<const Recorded> read_recorded(const std::filesystem::path& recording) {
-  if (auto profile = read_profile(recording)) return std::make_shared<const Recorded>(*std::move(profile));
+  if (auto figure = read_figure(recording)) return std::make_shared<const Recorded>(std::move(figure));
   return std::make_shared<const Recorded>(recording::read_recording(recording));
 }
 

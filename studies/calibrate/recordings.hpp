@@ -7,29 +7,29 @@
 #include <vector>
 
 #include "studies/calibrate/study.hpp"
-#include "studies/calibrate/velocity_profile.hpp"
+#include "studies/calibrate/figure.hpp"
 #include "studies/inspect/mill_motion.hpp"
 #include "studies/recording/recording.hpp"
 
 namespace millscope::calibrate {
 
-/// What was recorded in a condition: tracks, or a velocity profile. May be looked at by several threads.
+/// What was recorded in a condition: tracks, or a figure. May be looked at by several threads.
 class Recorded {
  public:
   explicit Recorded(recording::Recording tracks) : tracks_(std::move(tracks)) {}
-  explicit Recorded(VelocityProfile profile) : profile_(std::move(profile)) {}
+  explicit Recorded(std::unique_ptr<const Figure> figure) : figure_(std::move(figure)) {}
 
   bool of_tracks() const { return tracks_.has_value(); }
   const recording::Recording& tracks() const { return tracks_.value(); }
-  const VelocityProfile& profile() const { return profile_.value(); }
+  const Figure& figure() const { return *figure_; }
   /// What is stated of the mill.
-  const recording::Condition& stated() const { return tracks_ ? tracks_->condition : profile_->condition; }
+  const recording::Condition& stated() const { return tracks_ ? tracks_->condition : figure_->condition; }
   /// Where the axis stands and how the mill turns, by the tracks; estimated when it is asked for first.
   const inspect::MillMotion& motion() const;
 
  private:
   std::optional<recording::Recording> tracks_;
-  std::optional<VelocityProfile> profile_;
+  std::unique_ptr<const Figure> figure_;
   mutable std::once_flag motion_asked_;
   mutable inspect::MillMotion motion_;
 };

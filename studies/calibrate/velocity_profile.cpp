@@ -9,16 +9,8 @@
 #include <numeric>
 
 #include "kernel/base/table.hpp"
-#include "kernel/config/case.hpp"
 #include "kernel/config/existing_file.hpp"
 #include "kernel/config/units.hpp"
-#include "kernel/output/directory.hpp"
-#include "kernel/output/frame_reader.hpp"
-#include "studies/analysis/engine.hpp"
-#include "studies/analysis/frames_source.hpp"
-#include "studies/analysis/open_source.hpp"
-#include "studies/calibrate/recorded_identity.hpp"
-#include "studies/recording/description.hpp"
 
 namespace millscope::calibrate {
 namespace {
@@ -31,12 +23,6 @@ constexpr std::size_t kMostValues = 12;
 constexpr std::size_t kFewestPoints = 4;
 constexpr std::size_t kNeighbours = 2;  // points on either side of a group that its slope is taken from, too
 constexpr int kPlaces = 81;             // of bed_profile, from shell to shell
-constexpr double kAsStated = 1e4;       // blocks behind errors that are stated, not estimated
-
-bool is_profile(const fs::path& file) {
-  const std::string ending = file.extension().string();
-  return (ending == ".yaml" || ending == ".yml") && config::load_document(file.string()).has("profile");
-}
 
 /// One column in SI.
 std::vector<double> column(const Node& node, const base::Table& table, const char* unit) {
@@ -64,39 +50,6 @@ void keep(VelocityProfile& profile, double from, double to) {
   std::vector<double> position, velocity;
   for (const std::size_t i : order) position.push_back(profile.position[i]), velocity.push_back(profile.velocity[i]);
   profile.position = std::move(position), profile.velocity = std::move(velocity);
-}
-
-VelocityProfile read_section(const Node& section) {
-  section.expect({"file", "position", "velocity", "position_error", "velocity_error", "origin_error", "from", "to", "z"});
-  VelocityProfile profile;
-  const Node file = section.at("file", "the table of points, e.g. points.csv");
-  profile.points = config::existing_file(file);
-  const base::Table table = base::Table::read(profile.points);
-  profile.position = column(section.at("position", "{column: NAME, unit: mm}"), table, "m");
-  profile.velocity = column(section.at("velocity", "{column: NAME, unit: m/s}"), table, "m/s");
-  const auto error = [&](const char* key, const char* example, const char* unit) {
-    return config::read_number(section.at(key, example), unit, config::positive("it is the standard error of a point"));
-  };
-  profile.position_error = error("position_error", "e.g. 1 mm", "m");
-  profile.velocity_error = error("velocity_error", "e.g. 0.01 m/s", "m/s");
-  if (const auto node = section.find("origin_error"))
-    profile.origin_error = config::read_number(*node, "m", config::between(0, 1, "it is the standard error of all positions together"));
-  const auto place = [&](const char* key, double otherwise) {
-    const auto node = section.find(key);
-    return node ? config::read_number(*node, "m") : otherwise;
-  };
-  constexpr double kAll = std::numeric_limits<double>::infinity();
-  keep(profile, place("from", -kAll), place("to", kAll));
-  if (profile.position.size() < kFewestPoints)
-    file.fail(fmt::format("has {} points between 'from' and 'to', and fewer than {} are no profile; widen the range",
-                          profile.position.size(), kFewestPoints));
-  if (const auto z = section.find("z")) {
-    const auto ends = z->items();
-    if (ends.size() != 2) z->fail("wants two lengths, e.g. [0 mm, 360 mm]");
-    profile.z_low = config::read_number(ends[0], "m"), profile.z_high = config::read_number(ends[1], "m");
-    if (!(*profile.z_high > *profile.z_low)) z->fail("must rise");
-  }
-  return profile;
 }
 
 /// Neighbouring points as one: where they lie, their mean velocity, the slope there.
@@ -160,76 +113,63 @@ std::string range_text(const VelocityProfile& p, const Condition& c, const analy
   return fmt::format(", z_from: {:.9g}, z_to: {:.9g}", *p.z_low, *p.z_high);
 }
 
-std::string identity(const VelocityProfile& profile, const Processing& how, std::size_t condition) {
-  const Condition& c = how.study.conditions[condition];
-  std::vector<std::string> parts{observing_program(), std::to_string(how.study.observing.draws), content_of_base(how, condition),
-                                 analysis::file_hash(c.recording), analysis::file_hash(profile.points)};
-  for (const host::PluginRecord& r : how.registry.records()) {
-    if (r.kind == "analyzer") parts.push_back(r.name + r.code_hash);
-  }
-  return hash_of(parts);
-}
-
 }  // namespace
 
-std::optional<VelocityProfile> read_profile(const fs::path& recording) {
-  if (!is_profile(recording)) return std::nullopt;
-  const Node root = config::load_document(recording.string());
-  root.expect({"profile", "condition"});
-  VelocityProfile profile = read_section(root.at("profile"));
-  if (const auto node = root.find("condition")) profile.condition = recording::read_condition(*node);
-  root.finish();
+VelocityProfile VelocityProfile::read(const Node& section) {
+  section.expect({"file", "position", "velocity", "position_error", "velocity_error", "origin_error", "from", "to", "z"});
+  VelocityProfile profile;
+  const Node file = section.at("file", "the table of points, e.g. points.csv");
+  profile.files = {config::existing_file(file)};
+  const base::Table table = base::Table::read(profile.files.front());
+  profile.position = column(section.at("position", "{column: NAME, unit: mm}"), table, "m");
+  profile.velocity = column(section.at("velocity", "{column: NAME, unit: m/s}"), table, "m/s");
+  const auto error = [&](const char* key, const char* example, const char* unit) {
+    return config::read_number(section.at(key, example), unit, config::positive("it is the standard error of a point"));
+  };
+  profile.position_error = error("position_error", "e.g. 1 mm", "m");
+  profile.velocity_error = error("velocity_error", "e.g. 0.01 m/s", "m/s");
+  if (const auto node = section.find("origin_error"))
+    profile.origin_error = config::read_number(*node, "m", config::between(0, 1, "it is the standard error of all positions together"));
+  const auto place = [&](const char* key, double otherwise) {
+    const auto node = section.find(key);
+    return node ? config::read_number(*node, "m") : otherwise;
+  };
+  constexpr double kAll = std::numeric_limits<double>::infinity();
+  keep(profile, place("from", -kAll), place("to", kAll));
+  if (profile.position.size() < kFewestPoints)
+    file.fail(fmt::format("has {} points between 'from' and 'to', and fewer than {} are no profile; widen the range",
+                          profile.position.size(), kFewestPoints));
+  if (const auto z = section.find("z")) {
+    const auto ends = z->items();
+    if (ends.size() != 2) z->fail("wants two lengths, e.g. [0 mm, 360 mm]");
+    profile.z_low = config::read_number(ends[0], "m"), profile.z_high = config::read_number(ends[1], "m");
+    if (!(*profile.z_high > *profile.z_low)) z->fail("must rise");
+  }
   return profile;
 }
 
-RecordedCondition look_at_profile(const VelocityProfile& profile, std::size_t condition, const Processing& how) {
-  const Condition& c = how.study.conditions[condition];
-  const analysis::MillOfCase mill = analysis::read_mill_of_case(how.study.base, how.registry, c.settings);
-  const double radius = mill.context.mill_radius, farthest = std::max(-profile.position.front(), profile.position.back());
+void VelocityProfile::measure(const FigureOf& of, RecordedCondition& r) const {
+  const Condition& c = of.condition;
+  const double radius = of.mill.context.mill_radius, farthest = std::max(-position.front(), position.back());
   if (farthest >= radius)
     throw UserError(c.where,
                     fmt::format("condition '{}': {} has a point {:.4g} mm from the axis, but the mill of {} has a radius of {:.4g} mm; "
                                 "correct one of them, or narrow 'from' and 'to'",
-                                c.name, c.recording.string(), 1e3 * farthest, how.study.base.string(), 1e3 * radius));
-  const std::vector<Value> values = values_of(profile);
-  RecordedCondition r;
-  r.omega = mill.context.omega;
-  r.identity = identity(profile, how, condition);
+                                c.name, c.recording.string(), 1e3 * farthest, of.study.base.string(), 1e3 * radius));
+  const std::vector<Value> values = values_of(*this);
   Observation& o = r.observation;
-  r.analyzers = fmt::format("analyzers:\n  {}: {}\n  bed_profile: {{points: {}{}}}\n", kDistributions.plugin, kDistributions.parameters,
-                            kPlaces, range_text(profile, c, mill, o));
+  r.analyzers = fmt::format("  bed_profile: {{points: {}{}}}\n", kPlaces, range_text(*this, c, of.mill, o));
   o.value.resize(static_cast<Eigen::Index>(values.size()));
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::vector<double>& at = values[i].places;
     const double middle = std::accumulate(at.begin(), at.end(), 0.0) / static_cast<double>(at.size());
     const Observable what{fmt::format("velocity at {:.1f} mm", 1e3 * middle), "m/s", ObservableKind::profile};
     r.summaries.push_back({what, Summary::along, "bed_profile", "velocity", "", {}, 1, at});
-    o.observables.push_back(what);
     o.value[static_cast<Eigen::Index>(i)] = values[i].velocity;
   }
-  o.covariance = covariance_of(profile, values);
-  o.blocks = kAsStated;
-  o.power = {std::numeric_limits<double>::quiet_NaN(), 0, "a velocity profile tells no power"};
-  o.notes.push_back(fmt::format("{} points of {} as {} values, with the errors that are stated", profile.position.size(),
-                                profile.points.filename().string(), values.size()));
-  if (profile.condition.power || !how.study.objective.terms.empty())
-    o.notes.push_back("the profile alone is compared: a measured power and terms of the objective are left out");
-  return r;
-}
-
-analysis::ResultSet profile_of_run(const fs::path& run, const RecordedCondition& recorded, const Processing& how) {
-  const fs::path case_file = run / output::kResolvedCase;
-  const analysis::MillOfCase mill = analysis::read_mill_of_case(case_file, how.registry);
-  analysis::FramesSource source(output::FrameReader(run / "frames.h5"), mill.context,
-                                config::read_case(case_file.string()).time.analyze_from, std::nullopt);
-  analysis::EngineOptions engine;
-  engine.draws = how.study.observing.draws;
-  engine.threads = 1;  // several runs are looked at at once
-  const std::vector<analysis::AskedAnalyzer> analyzers = analyzers_of(recorded.analyzers, how.registry);
-  analysis::ResultSet results = analysis::run_analyzers(source, analysis::create_analyzers(analyzers, source.context()).instances, engine);
-  results.meta.context = source.context();
-  results.meta.description = run.string();
-  return results;
+  o.covariance = covariance_of(*this, values);
+  o.notes.push_back(fmt::format("{} points of {} as {} values, with the errors that are stated", position.size(),
+                                files.front().filename().string(), values.size()));
 }
 
 }  // namespace millscope::calibrate

@@ -16,30 +16,23 @@
 // Simulations are compared by the analyzer `bed_profile` over all their beads, without a camera.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <vector>
 
-#include "studies/calibrate/recorded.hpp"
+#include "studies/calibrate/figure.hpp"
 
 namespace millscope::calibrate {
 
-/// Points by position, SI.
-struct VelocityProfile {
-  std::filesystem::path points;  ///< the file of numbers
-  recording::Condition condition;
+/// Points by position, SI. Neighbouring ones are taken together, as at most twelve values.
+struct VelocityProfile : Figure {
   std::vector<double> position, velocity;
   double position_error = 0, velocity_error = 0, origin_error = 0;
   std::optional<double> z_low, z_high;
+
+  /// The section `profile` of a recording.yaml. Throws base::UserError with file:line.
+  static VelocityProfile read(const config::Node& section);
+  const char* what() const override { return "a velocity profile"; }
+  void measure(const FigureOf& of, RecordedCondition& r) const override;
 };
-
-/// The profile that a recording.yaml tells of; nothing where it tells of tracks. Throws base::UserError with file:line.
-std::optional<VelocityProfile> read_profile(const std::filesystem::path& recording);
-
-/// Neighbouring points together, at most twelve values. Throws base::UserError where the case's mill is too small for them.
-RecordedCondition look_at_profile(const VelocityProfile& profile, std::size_t condition, const Processing& how);
-
-/// What a finished run shows of it.
-analysis::ResultSet profile_of_run(const std::filesystem::path& run, const RecordedCondition& recorded, const Processing& how);
 
 }  // namespace millscope::calibrate

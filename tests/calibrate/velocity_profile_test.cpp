@@ -43,8 +43,11 @@ struct Drum {
                                                "parameters: {pairs.glass~glass.static_friction: {range: [0.1, 0.8]}}\n" +
                                                    more));
   }
-  std::optional<calibrate::VelocityProfile> profile() const { return calibrate::read_profile(study.conditions[0].recording); }
-  RecordedCondition look() const { return calibrate::look_at_profile(*profile(), 0, {study, registry(), 1}); }
+  std::shared_ptr<const calibrate::VelocityProfile> profile() const {
+    return std::dynamic_pointer_cast<const calibrate::VelocityProfile>(
+        std::shared_ptr<const calibrate::Figure>(calibrate::read_figure(study.conditions[0].recording)));
+  }
+  RecordedCondition look() const { return calibrate::look_at_figure(*profile(), 0, {study, registry(), 1}); }
 };
 
 /// Beads of a segment, seen six times, that move along its surface as fast as their depth says; gravity's side is down.
@@ -103,7 +106,7 @@ TEST_CASE("a simulation is seen between the analyzer's places, where the measure
   const Drum drum(kRecording, points);
   write_run(drum.folder, flow);
   const RecordedCondition r = drum.look();
-  const auto seen = calibrate::summarise(calibrate::profile_of_run(drum.folder.path, r, {drum.study, registry(), 1}), r.summaries);
+  const auto seen = calibrate::summarise(calibrate::figure_of_run(drum.folder.path, r, {drum.study, registry(), 1}), r.summaries);
   REQUIRE(seen.value.size() == r.observation.value.size());
   for (Eigen::Index i = 0; i < seen.value.size(); ++i) CHECK_THAT(seen.value[i], WithinAbs(r.observation.value[i], 0.002));
 }
@@ -150,15 +153,15 @@ TEST_CASE("a simulation without enough beads where a point was measured says so"
   write_run(drum.folder, [](double) { return 0.1; });
   const RecordedCondition r = drum.look();
   const std::string said = testing::message_of([&] {
-    calibrate::summarise(calibrate::profile_of_run(drum.folder.path, r, {drum.study, registry(), 1}), r.summaries);
+    calibrate::summarise(calibrate::figure_of_run(drum.folder.path, r, {drum.study, registry(), 1}), r.summaries);
   });
   CHECK(said.find("'velocity at 20.0 mm' is undefined") != std::string::npos);
 }
 
 TEST_CASE("a recording of tracks is no profile") {
   const testing::Folder folder;
-  CHECK_FALSE(calibrate::read_profile(folder.write("r.yaml", "files: [a.a]\n")));
-  CHECK_FALSE(calibrate::read_profile(folder.write("r.a", "1 2 3\n")));
+  CHECK_FALSE(calibrate::read_figure(folder.write("r.yaml", "files: [a.a]\n")));
+  CHECK_FALSE(calibrate::read_figure(folder.write("r.a", "1 2 3\n")));
 }
 
 TEST_CASE("what is wrong with a profile is said with its place") {

@@ -49,8 +49,8 @@ void check_recorded_frames(const Question& question, const calibrate::Observer& 
     for (std::size_t c = 0; c < question.study.conditions.size(); ++c) {
       const calibrate::Condition& condition = question.study.conditions[c];
       if (!observer.recorded(c).of_tracks())
-        throw base::UserError(n.where, fmt::format("nuisance '{}': no camera saw {}, it is a velocity profile; leave the nuisance out",
-                                                   n.name, condition.recording.string()));
+        throw base::UserError(n.where, fmt::format("nuisance '{}': no camera followed a bead in {}; leave the nuisance out", n.name,
+                                                   condition.recording.string()));
       if (observer.turns_other_way(c))
         throw base::UserError(n.where, fmt::format("nuisance '{}' would change its sign in condition '{}': {} turns the other way than the "
                                                    "recording; give its mill.direction as recorded",

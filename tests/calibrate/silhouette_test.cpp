@@ -1,0 +1,185 @@
+// A picture of the bed, or the angle of its surface, in the place of a recording.
+#include "studies/calibrate/silhouette.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "kernel/output/frames.hpp"
+#include "millscope/silhouette.hpp"
+#include "studies/calibrate/observe.hpp"
+#include "studies/calibrate/validate.hpp"
+#include "tests/calibrate/made_up_mill.hpp"
+#include "tests/plugins.hpp"
+
+using namespace millscope;
+using calibrate::RecordedCondition;
+using Catch::WithinAbs;
+using testing::registry;
+
+namespace {
+
+constexpr double kRadius = 0.1, kDegree = std::numbers::pi / 180;
+const std::string kDrum = testing::drum_case(10, 1);
+
+/// A bed with a flat surface that slopes by `angle` and lies `depth` (in radii) beneath the axis; it rises to the right.
+struct Bed {
+  double angle = 35, depth = 0.1;
+  bool covers(double x, double y) const { return x * std::sin(angle * kDegree) - y * std::cos(angle * kDegree) > depth; }
+};
+
+/// A PGM of `size` pixels with the drum in its middle, `margin` pixels from its sides.
+void write_picture(const std::filesystem::path& file, const Bed& bed, int size, int margin, bool mirrored, int covered = 30,
+                   int free = 240) {
+  std::ofstream out(file, std::ios::binary);
+  out << "P5\n" << size << ' ' << size << "\n255\n";
+  const double radius = 0.5 * size - margin;
+  for (int j = 0; j < size; ++j) {
+    for (int i = 0; i < size; ++i) {
+      const double x = (mirrored ? -1 : 1) * (i + 0.5 - 0.5 * size) / radius, y = -(j + 0.5 - 0.5 * size) / radius;
+      out.put(static_cast<char>(std::hypot(x, y) > 1 ? 255 : bed.covers(x, y) ? covered : free));
+    }
+  }
+}
+
+struct Drum {
+  testing::Folder folder;
+  calibrate::Study study;
+
+  explicit Drum(const std::string& recording = "silhouette: {file: bed.pgm}\n", const std::string& more = "") {
+    folder.write("drum.yaml", kDrum);
+    write_picture(folder.path / "bed.pgm", Bed(), 400, 0, false);
+    folder.write("r.yaml", recording);
+    study = calibrate::read_study(folder.write("study.yaml",
+                                               "base: drum.yaml\nconditions: {dry: {recording: r.yaml, role: fit}}\n"
+                                               "parameters: {pairs.glass~glass.static_friction: {range: [0.1, 0.8]}}\n" +
+                                                   more));
+  }
+  std::unique_ptr<const calibrate::Figure> figure() const { return calibrate::read_figure(study.conditions[0].recording); }
+  RecordedCondition look() const { return calibrate::look_at_figure(*figure(), 0, {study, registry(), 1}); }
+};
+
+/// Small beads all over the bed, seen six times.
+void write_run(const testing::Folder& folder, const Bed& bed, double omega) {
+  folder.write("case.resolved.yaml", kDrum);
+  std::vector<double> position;
+  for (double x = -kRadius; x <= kRadius; x += 0.0005) {
+    for (double y = -kRadius; y <= kRadius; y += 0.0005) {
+      if (std::hypot(x, y) <= kRadius && bed.covers((omega < 0 ? -1 : 1) * x / kRadius, y / kRadius))
+        position.insert(position.end(), {x, y, 0.025});
+    }
+  }
+  const std::size_t n = position.size() / 3;
+  std::vector<std::uint32_t> id(n), material(n, 0);
+  for (std::size_t i = 0; i < n; ++i) id[i] = static_cast<std::uint32_t>(i);
+  const std::vector<double> radius(n, 0.0005), mass(n, 1e-4), still(3 * n, 0.0), work{0.0};
+  auto writer = output::FrameWriter::create(folder.path / "frames.h5", {id, radius, mass, material, {"glass"}, {"shell"}, {}});
+  for (int f = 0; f < 6; ++f) writer.append({0.01 * f, 0.02 * f, omega, work, {}, {}, position, still, still});
+  writer.close();
+}
+
+calibrate::Observation seen(const Drum& drum, const RecordedCondition& r) {
+  return calibrate::summarise(calibrate::figure_of_run(drum.folder.path, r, {drum.study, registry(), 1}), r.summaries);
+}
+
+}  // namespace
+
+TEST_CASE("the rings of a flat bed are what geometry says") {
+  constexpr int n = 400;
+  const Bed bed;
+  std::vector<double> covered;
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) covered.push_back(bed.covers((i + 0.5) * 2 / n - 1, (j + 0.5) * 2 / n - 1) ? 1 : 0);
+  }
+  const SilhouetteShape shape = silhouette_shape(covered.data(), n);
+  CHECK_THAT(std::atan(shape.slope) / kDegree, WithinAbs(bed.angle, 0.1));
+  CHECK_THAT(shape.area, WithinAbs((std::acos(0.1) - 0.1 * std::sqrt(1 - 0.01)) / std::numbers::pi, 1e-3));
+  REQUIRE(shape.rings.size() == kSilhouetteRings);
+  for (const SilhouetteRing& ring : shape.rings) {
+    const double r = 0.5 * (ring.inner + ring.outer);
+    CHECK_THAT(ring.share, WithinAbs(std::acos(bed.depth / r) / std::numbers::pi, 0.006));  // the ring is 0.1 wide
+    CHECK_THAT(ring.direction / kDegree, WithinAbs(bed.angle, 0.5));
+    CHECK(ring.edge == 0);
+  }
+}
+
+TEST_CASE("a blurred edge is as wide as it is") {
+  constexpr int n = 400;
+  constexpr double kWidth = 0.06;  // from wholly covered to free, linearly: 4 P (1 − P) has a mean of 2/3
+  std::vector<double> covered;
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) covered.push_back(std::clamp(0.5 - ((j + 0.5) * 2 / n - 1) / kWidth, 0.0, 1.0));
+  }
+  const SilhouetteShape shape = silhouette_shape(covered.data(), n);
+  CHECK_THAT(shape.rings.back().edge, WithinAbs(2.0 / 3 * kWidth, 0.002));
+}
+
+TEST_CASE("a picture and simulated beads of the same bed are measured alike, whichever way they lean") {
+  for (const double omega : {2.0, -2.0}) {
+    for (const bool mirrored : {false, true}) {
+      const Drum drum("silhouette: {file: p.pgm, drum: {centre: [230, 230], diameter: 440}}\n");
+      write_picture(drum.folder.path / "p.pgm", Bed(), 460, 10, mirrored);
+      write_run(drum.folder, Bed(), omega);
+      const RecordedCondition r = drum.look();
+      REQUIRE(r.observation.value.size() == 2 * kSilhouetteRings);
+      const calibrate::Observation simulated = seen(drum, r);
+      for (Eigen::Index i = 0; i < r.observation.value.size(); ++i) {
+        INFO(r.observation.observables[i].name);
+        CHECK_THAT(simulated.value[i] * (omega < 0 && i % 2 == 1 ? -1 : 1), WithinAbs(r.observation.value[i], 0.5));
+      }
+    }
+  }
+}
+
+TEST_CASE("light beads on a dark ground are covered where they are light") {
+  const Drum drum("silhouette: {file: p.pgm}\n");
+  write_picture(drum.folder.path / "p.pgm", Bed(), 400, 0, false, 220, 40);
+  const RecordedCondition light = drum.look(), dark = Drum().look();
+  CHECK((light.observation.value - dark.observation.value).cwiseAbs().maxCoeff() < 1e-9);
+}
+
+TEST_CASE("the camera's stand is one error of all directions, the outline's place one of all shares") {
+  const RecordedCondition r = Drum("silhouette: {file: bed.pgm, angle_error: 2 deg, edge_error: 1 mm}\n").look();
+  const Eigen::MatrixXd& c = r.observation.covariance;
+  CHECK_THAT(c(1, 3), WithinAbs(4, 1e-9));
+  CHECK_THAT(std::sqrt(c(1, 1)), WithinAbs(2, 0.1));  // the edge is sharp but for the cells: little is its own
+  CHECK_THAT(std::sqrt(c(0, 2)), WithinAbs(100 * 2 * 0.001 / (2 * std::numbers::pi * kRadius * std::sqrt(0.2 * 0.3)), 0.02));
+  CHECK(c(0, 1) == 0);
+}
+
+TEST_CASE("the angle of the surface alone may be compared") {
+  const Drum drum("surface_angle: {value: 35 deg, error: 0.5 deg}\n");
+  write_run(drum.folder, Bed(), 2);
+  const RecordedCondition r = drum.look();
+  REQUIRE(r.observation.value.size() == 1);
+  CHECK_THAT(r.observation.value[0], WithinAbs(35, 1e-9));
+  CHECK_THAT(r.observation.covariance(0, 0), WithinAbs(0.25, 1e-9));
+  CHECK_THAT(seen(drum, r).value[0], WithinAbs(35, 0.3));
+}
+
+TEST_CASE("what is wrong with a silhouette is said with its place") {
+  const auto said = [](const std::string& text) {
+    const Drum drum(text);
+    drum.folder.write("notes.txt", "no picture\n");
+    write_picture(drum.folder.path / "pale.pgm", Bed(), 400, 0, false, 120, 130);
+    write_picture(drum.folder.path / "small.pgm", Bed(), 60, 0, false);
+    return testing::message_of([&] { drum.figure(); });
+  };
+  CHECK(said("silhouette: {file: gone.png}\n").find("r.yaml:1") != std::string::npos);
+  CHECK(said("silhouette: {file: notes.txt}\n").find("no picture that can be read") != std::string::npos);
+  CHECK(said("silhouette: {file: pale.pgm}\n").find("as grey where the drum is covered (120) as where it is free (130)") !=
+        std::string::npos);
+  CHECK(said("silhouette: {file: small.pgm}\n").find("60 pixels wide") != std::string::npos);
+  CHECK(said("silhouette: {file: bed.pgm, drum: {centre: [10, 10], diameter: 300}}\n").find("partly outside") != std::string::npos);
+  CHECK(said("silhouette: {file: bed.pgm, drum: {centre: [10], diameter: 300}}\n").find("wants two numbers") != std::string::npos);
+  CHECK(said("silhouette: {file: bed.pgm, angle_error: 0 deg}\n").find("standard error") != std::string::npos);
+  CHECK(said("silhouette: {file: bed.pgm, blur: 1}\n").find("unknown key 'blur'") != std::string::npos);
+  CHECK(said("surface_angle: {value: 100 deg, error: 1 deg}\n").find("r.yaml:1") != std::string::npos);
+  CHECK(said("surface_angle: {value: 30 deg}\n").find("error") != std::string::npos);
+  const Drum tracks("silhouette: {file: bed.pgm}\n", "objective: chagas2015\n");
+  CHECK(testing::message_of([&] {
+          calibrate::check_recordings(tracks.study, calibrate::read_recordings(tracks.study), registry());
+        }).find("is a silhouette, and chagas2015 compares tracks") != std::string::npos);
+}
