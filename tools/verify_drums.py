@@ -18,7 +18,6 @@ SOURCES = {  # in DATA: where they are public, and their licence
 
 DEPTH = 0.006  # two beads: how deep the surface of Alizadeh's drum is looked at, m
 HOW = "Angles are of a straight line through the middle half of the drum, where the density along the axis is half that of the bed."
-SHORTER = ("time.end_s=1.6", "time.analyze_from_s=0.9", "output.frames.from_s=0.9")  # the drum has turned by 63 deg when it is first looked at
 SCATTER = 0.1  # of the points of its free surface, of their greatest speed
 
 
@@ -100,7 +99,7 @@ def alizadeh(bench):
     import drum_surface
     import numpy
     points = [(float(r["x_over_R"]), float(r["vx_over_vmax"])) for r in table(DATA / file)]
-    s = bench.run("alizadeh", "configs/measured_drums/alizadeh.yaml", *SHORTER)
+    s = bench.run("alizadeh", "configs/measured_drums/alizadeh.yaml")
     found = angle_of(bench.folder / "alizadeh", bore)
     positions, velocities, radii, speed = frames_of(bench.folder / "alizadeh")
     rows = [row("surface angle", "%.1f ± %.1f°" % (found["angle"], found["error"]), "27° (measured), within 1.5", abs(found["angle"] - 27) < 1.5),

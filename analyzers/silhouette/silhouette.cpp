@@ -14,6 +14,8 @@
 namespace millscope::analyzers {
 namespace {
 
+constexpr double kNoDirection = 0.01;  // share of a ring that has no middle, or whose complement has none
+
 constexpr Parameter kParameters[] = {
     integer_parameter("cells", 160, 20, 1000, "Cells from shell to shell, in both directions."),
     kAxialFrom,
@@ -54,21 +56,24 @@ class Silhouette {
 
   void finish(const double* const* sums, Results& results) const {
     const auto n = as_size(n_), rings = as_size(std::int64_t{kSilhouetteRings});
-    std::vector<double> map(n * n), share, direction, edge, border{kSilhouetteInner};
+    std::vector<double> map(n * n), share, direction, edge, area, border{kSilhouetteInner};
     for (std::size_t c = 0; c < map.size(); ++c) map[c] = ratio(sums[0][c], sums[1][0]);
     const SilhouetteShape shape = silhouette_shape(map.data(), n_);
     for (const SilhouetteRing& ring : shape.rings) {
       border.push_back(ring.outer);
+      area.push_back(ring.outer * ring.outer - ring.inner * ring.inner);
       share.push_back(100 * ring.share);
-      direction.push_back(kDegrees * sense_ * ring.direction);
+      direction.push_back(ring.share > kNoDirection && ring.share < 1 - kNoDirection ? kDegrees * sense_ * ring.direction : kNaN);
       edge.push_back(radius_ * ring.edge);
     }
-    results.add("x", "m", cells_.edges().data(), {n + 1}, "Cell edges.");
-    results.add("y", "m", cells_.edges().data(), {n + 1}, "Cell edges.");
-    results.add("covered", "1", map.data(), {n, n}, "Share of the time that beads cover the cell.", {"y", "x"}, kShare);
+    results.add("x_edges", "m", cells_.edges().data(), {n + 1}, "Edges of the cells along x.", {}, kAlongX);
+    results.add("y_edges", "m", cells_.edges().data(), {n + 1}, "Edges of the cells along y.");
+    results.add("covered", "1", map.data(), {n, n}, "Share of the time that beads cover the cell.", {"y_edges", "x_edges"}, kShare);
     results.add("ring", "1", border.data(), {rings + 1}, "Edges of the rings, in radii of the shell.");
-    results.add("share", "%", share.data(), {rings}, "Share of the ring that the bed covers.", {"ring"}, kNotNegative);
-    results.add("direction", "deg", direction.data(), {rings}, "Middle of what it covers, from 6 o'clock in the turning sense.", {"ring"});
+    results.add("ring_area", "1", area.data(), {rings}, "Area of the rings, parts of the cross-section.", {"ring"}, kNotNegative);
+    results.add("share", "%", share.data(), {rings}, "Share of the ring that the bed covers.", {"ring"}, kShare);
+    results.add("direction", "deg", direction.data(), {rings},
+                "Middle of what it covers, from 6 o'clock in the turning sense; NaN: nearly free, or nearly full.", {"ring"});
     results.add("edge", "m", edge.data(), {rings}, "Width of the blurred edge along the ring.", {"ring"}, kNotNegative);
     results.add("area", "%", 100 * shape.area, "Share of the mill's cross-section that the bed covers.");
     results.add("surface_angle", "deg", kDegrees * std::atan(sense_ * shape.slope),

@@ -6,7 +6,8 @@
 // has the sign that makes damping look larger than it is: 2 % of the ledger at 14 steps per contact. But a bead in a bed is damped through
 // all its contacts at once. With the sum Σc of their damping coefficients, a prediction that far ahead swings from step to step, and grows,
 // where Σc Δt > m/2 (Σc R² Δt > I/2 in rotation, which comes first). So a bead whose acceleration has turned round in both of the last two
-// steps is given v(n−½) itself, which bears Σc Δt < 2 m. A smooth contact turns round once at a time and keeps its second order.
+// steps is given v(n−½) itself, which bears Σc Δt < 2 m. Translation and rotation are judged together: a swing of the one below what is
+// steady in the other is let go on until it is not. A smooth contact turns round once at a time and keeps its second order.
 #pragma once
 
 #include <cstdint>

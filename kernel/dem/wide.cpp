@@ -268,16 +268,18 @@ inline Moved move_bead(const IntegrateContext& c, std::int64_t i) {
 /// Steadily: a switch would make chaos of rounding.
 void hold_back(const IntegrateContext& c, std::int64_t i, double along, double along_before) {
   constexpr double kSoon = 32;  // all is taken back even where accelerations grow threefold from step to step
-  const Four a = load4_single(c.last[i].linear), alpha = load4_single(c.last[i].angular);
+  const MotionLine& half = c.half[i];
+  MotionLine& motion = c.motion[i];
+  const Four ahead = load4(motion.v) - load4(half.v), ahead_w = load4(motion.w) - load4(half.w);  // ½ Δt (2a − a₋)
+  const Four a = load4_single(c.last[i].linear), alpha = load4_single(c.last[i].angular), per_time = four(2 / c.time_step);
+  const Four last_a = a + a - per_time * ahead, last_alpha = alpha + alpha - per_time * ahead_w;
   const double square = c.position[i].radius * c.position[i].radius;
-  const Four squares = a * a + four(square) * (alpha * alpha);
+  const Four squares = a * a + last_a * last_a + four(square) * (alpha * alpha + last_alpha * last_alpha);
   const double largest = (squares[0] + squares[1] + squares[2]) / -kSoon;
   const auto turned = [&](double sum) { return sum > largest ? sum / largest : 1.0; };
   const Four used = four(1.0 - turned(along) * turned(along_before));
-  const MotionLine& half = c.half[i];
-  MotionLine& motion = c.motion[i];
-  store4(motion.v, load4(half.v) + used * (load4(motion.v) - load4(half.v)));
-  store4(motion.w, load4(half.w) + used * (load4(motion.w) - load4(half.w)));
+  store4(motion.v, load4(half.v) + used * ahead);
+  store4(motion.w, load4(half.w) + used * ahead_w);
 }
 
 /// Notes for the next step how far four beads, or the first `count` of them, have gone on or turned round, and holds back those that

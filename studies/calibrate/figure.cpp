@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -67,6 +68,11 @@ std::unique_ptr<const Figure> read_figure(const fs::path& recording) {
 RecordedCondition look_at_figure(const Figure& figure, std::size_t condition, const Processing& how) {
   const Condition& c = how.study.conditions[condition];
   const analysis::MillOfCase mill = analysis::read_mill_of_case(how.study.base, how.registry, c.settings);
+  if (!(mill.context.mill_radius > 0) || mill.context.omega == 0)
+    throw base::UserError(
+        c.where, fmt::format("condition '{}': {} is compared in a mill that turns, with a shell of known radius; {} has none: give its "
+                             "'mill' a diameter and a speed",
+                             c.name, figure.what(), how.study.base.string()));
   RecordedCondition r;
   r.omega = mill.context.omega;
   r.identity = identity(figure, how, condition);
@@ -89,6 +95,10 @@ analysis::ResultSet figure_of_run(const fs::path& run, const RecordedCondition& 
   analysis::EngineOptions engine;
   engine.draws = how.study.observing.draws;
   engine.threads = 1;  // several runs are looked at at once
+  engine.uncertain = [&](const std::string& analyzer, const std::string& result) {
+    const auto is_read = [&](const Summary& s) { return s.analyzer == analyzer && (s.result == result || s.weight == result); };
+    return becomes_summary(analyzer, result, {}) || std::any_of(recorded.summaries.begin(), recorded.summaries.end(), is_read);
+  };
   const std::vector<analysis::AskedAnalyzer> analyzers = analyzers_of(recorded.analyzers, how.registry);
   analysis::ResultSet results = analysis::run_analyzers(source, analysis::create_analyzers(analyzers, source.context()).instances, engine);
   results.meta.context = source.context();

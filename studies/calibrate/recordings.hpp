@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "studies/calibrate/study.hpp"
 #include "studies/calibrate/figure.hpp"
+#include "studies/calibrate/study.hpp"
 #include "studies/inspect/mill_motion.hpp"
 #include "studies/recording/recording.hpp"
 

@@ -16,15 +16,15 @@
 namespace millscope::calibrate {
 namespace {
 
-using base::UserError;
 using config::Node;
 using recording::GreyPicture;
 
 constexpr double kDegrees = 180 / std::numbers::pi, kDefaultAngleError = 0.5 / kDegrees;
-constexpr double kFewestGreys = 20;    // between what is covered and what is free, of 255
-constexpr double kFewestPixels = 100;  // from shell to shell
-constexpr double kNoDirection = 0.05;  // share of a ring below which, or above its complement, an arc has no middle
-constexpr double kOwnPart = 0.25;      // of the blur: by how much each end of an arc may be off by itself
+constexpr double kFewestGreys = 20;                    // between what is covered and what is free, of 255
+constexpr double kFewestPixels = 100;                  // from shell to shell
+constexpr double kNoDirection = 0.05;                  // share of a ring below which, or above its complement, an arc has no middle
+constexpr double kOwnPart = 0.25;                      // of the blur: by how much each end of an arc may be off by itself
+constexpr double kLeastBlur = 2.0 / kSilhouetteCells;  // parts of the radius: no picture is sharper than a cell
 
 /// Where the drum is, in pixels.
 struct Drum {
@@ -65,18 +65,18 @@ double grey_of_end(const GreyPicture& picture, const Drum& drum, double side) {
   return base::quantile(greys, 0.5);
 }
 
-/// The mean over each cell of the share that its grey tells.
+/// The share that the mean grey of each cell tells. Noise averages out before shares end at 0 and 1.
 std::vector<double> covered_cells(const GreyPicture& picture, const Drum& drum, double covered, double free) {
   constexpr int n = kSilhouetteCells, kSamples = 4;
   std::vector<double> cells(static_cast<std::size_t>(n) * n);
   for (int j = 0; j < n * kSamples; ++j) {
     for (int i = 0; i < n * kSamples; ++i) {
       const auto place = [](int k) { return (k + 0.5) * 2 / (n * kSamples) - 1; };
-      const double share = (grey_at(picture, drum, place(i), place(j)) - free) / (covered - free);
       cells[static_cast<std::size_t>(j / kSamples) * n + static_cast<std::size_t>(i / kSamples)] +=
-          std::clamp(share, 0.0, 1.0) / (kSamples * kSamples);
+          grey_at(picture, drum, place(i), place(j));
     }
   }
+  for (double& cell : cells) cell = std::clamp((cell / (kSamples * kSamples) - free) / (covered - free), 0.0, 1.0);
   return cells;
 }
 
@@ -87,21 +87,19 @@ struct Number {
 };
 
 /// Shares and directions of the rings. The bed leans to the side that goes up, whichever that is in the picture.
-std::vector<Number> numbers_of(const Silhouette& s, double radius) {
-  const SilhouetteShape shape = silhouette_shape(s.covered.data(), kSilhouetteCells);
-  double lean = 0;
-  for (const SilhouetteRing& ring : shape.rings) lean += ring.direction;
-  const double sense = lean < 0 ? -1 : 1;
+std::vector<Number> numbers_of(const Silhouette& s, const SilhouetteShape& shape, double radius) {
+  const double sense = shape.lean < 0 ? -1 : 1;
   std::vector<Number> out;
   std::size_t k = 0;
   for (const SilhouetteRing& ring : shape.rings) {
-    const double r = 0.5 * radius * (ring.inner + ring.outer), blur = radius * ring.edge, off = s.edge_error.value_or(0.5 * blur);
+    const double r = 0.5 * radius * (ring.inner + ring.outer), blur = radius * std::max(ring.edge, kLeastBlur);
+    const double off = s.edge_error.value_or(0.5 * blur), per_length = 100 / (2 * std::numbers::pi * r);  // %/m of the circle
+    // Means over one cell: a simulation whose ring has no direction leaves it undefined.
     const auto number = [&](const char* what, const char* result, const char* unit) {
       const Observable observable{fmt::format("{} of the ring {:.2f}–{:.2f} R", what, ring.inner, ring.outer), unit,
                                   ObservableKind::outline};
-      return Summary{observable, Summary::sum, "silhouette", result, "", {k}, 1};
+      return Summary{observable, Summary::mean, "silhouette", result, "ring_area", {k}, 1};
     };
-    const double per_length = 100 / (2 * std::numbers::pi * r);  // %/m of the circle
     out.push_back(
         {number("share", "share", "%"), 100 * ring.share, std::numbers::sqrt2 * kOwnPart * blur * per_length, 2 * off * per_length, 0});
     if (ring.share > kNoDirection && ring.share < 1 - kNoDirection)
@@ -118,6 +116,14 @@ double read_error(const Node& node, const char* unit) {
   return config::read_number(node, unit, config::positive("it is a standard error"));
 }
 
+/// The analyzer of either figure.
+std::string silhouette_line(const FigureOf& of, RecordedCondition& r) {
+  if (of.mill.period > 0)
+    r.observation.notes.push_back(fmt::format(
+        "the case is periodic along z: its silhouette is that of a mill {:.4g} mm deep, without end faces", 1e3 * of.mill.period));
+  return fmt::format("  silhouette: {{cells: {}}}\n", kSilhouetteCells);
+}
+
 }  // namespace
 
 Silhouette Silhouette::read(const Node& section) {
@@ -125,31 +131,38 @@ Silhouette Silhouette::read(const Node& section) {
   Silhouette s;
   const Node file = section.at("file", "a picture averaged over time, e.g. drum.png");
   s.files = {config::existing_file(file)};
-  const GreyPicture picture = recording::read_grey_picture(s.files.front());
-  const Drum drum = drum_in(section, picture);
+  const std::optional<GreyPicture> picture = recording::read_grey_picture(s.files.front());
+  if (!picture) file.fail("is no picture that can be read; wanted is PNG, BMP, JPEG or binary PGM");
+  const Drum drum = drum_in(section, *picture);
   if (drum.diameter < kFewestPixels)
     file.fail(fmt::format("shows the drum {:.4g} pixels wide; take a picture of {:.4g} and more", drum.diameter, kFewestPixels));
-  s.covered_grey = grey_of_end(picture, drum, -1), s.free_grey = grey_of_end(picture, drum, 1);
-  if (const auto greys = section.find("greys")) {
+  s.covered_grey = grey_of_end(*picture, drum, -1);
+  s.free_grey = grey_of_end(*picture, drum, 1);
+  const auto greys = section.find("greys");
+  if (greys) {
     greys->expect({"covered", "free"});
-    s.covered_grey = config::read_number(greys->at("covered", "0 … 255"), "1"),
-    s.free_grey = config::read_number(greys->at("free", "0 … 255"), "1");
+    const auto grey = [&](const char* key) {
+      return config::read_number(greys->at(key, "0 … 255"), "1", config::between(0, 255, "it is a grey, 0 black and 255 white"));
+    };
+    s.covered_grey = grey("covered"), s.free_grey = grey("free");
   }
   if (std::fabs(s.covered_grey - s.free_grey) < kFewestGreys)
-    file.fail(
-        fmt::format("is as grey where the drum is covered ({:.3g}) as where it is free ({:.3g}); give 'drum' and 'greys', or take a "
-                    "picture with more contrast",
-                    s.covered_grey, s.free_grey));
-  s.covered = covered_cells(picture, drum, s.covered_grey, s.free_grey);
-  const auto angle = section.find("angle_error");
+    (greys ? *greys : file)
+        .fail(
+            fmt::format("is as grey where the drum is covered ({:.3g}) as where it is free ({:.3g}); correct 'drum' or 'greys', or take a "
+                        "picture with more contrast",
+                        s.covered_grey, s.free_grey));
+  s.covered = covered_cells(*picture, drum, s.covered_grey, s.free_grey);
+  const auto angle = section.find("angle_error"), edge = section.find("edge_error");
   s.angle_error = angle ? read_error(*angle, "rad") : kDefaultAngleError;
-  if (const auto edge = section.find("edge_error")) s.edge_error = read_error(*edge, "m");
+  if (edge) s.edge_error = read_error(*edge, "m");
   return s;
 }
 
 void Silhouette::measure(const FigureOf& of, RecordedCondition& r) const {
-  const std::vector<Number> numbers = numbers_of(*this, of.mill.context.mill_radius);
-  r.analyzers = fmt::format("  silhouette: {{cells: {}}}\n", kSilhouetteCells);
+  const SilhouetteShape shape = silhouette_shape(covered.data(), kSilhouetteCells);
+  const std::vector<Number> numbers = numbers_of(*this, shape, of.mill.context.mill_radius);
+  r.analyzers = silhouette_line(of, r);
   Observation& o = r.observation;
   const auto n = static_cast<Eigen::Index>(numbers.size());
   o.value.resize(n), o.covariance.resize(n, n);
@@ -160,7 +173,6 @@ void Silhouette::measure(const FigureOf& of, RecordedCondition& r) const {
       o.covariance(i, j) = numbers[i].by_edge * numbers[j].by_edge + numbers[i].by_angle * numbers[j].by_angle;
     o.covariance(i, i) += numbers[i].own * numbers[i].own;
   }
-  const SilhouetteShape shape = silhouette_shape(covered.data(), kSilhouetteCells);
   o.notes.push_back(fmt::format(
       "{}: grey {:.3g} is covered, {:.3g} free; the bed covers {:.1f} % of the drum, its surface slopes by {:.1f}°",
       files.front().filename().string(), covered_grey, free_grey, 100 * shape.area, kDegrees * std::atan(std::fabs(shape.slope))));
@@ -174,8 +186,8 @@ SurfaceAngle SurfaceAngle::read(const Node& section) {
   return a;
 }
 
-void SurfaceAngle::measure(const FigureOf&, RecordedCondition& r) const {
-  r.analyzers = fmt::format("  silhouette: {{cells: {}}}\n", kSilhouetteCells);
+void SurfaceAngle::measure(const FigureOf& of, RecordedCondition& r) const {
+  r.analyzers = silhouette_line(of, r);
   r.summaries.push_back(
       {{"angle of the surface", "deg", ObservableKind::outline}, Summary::number, "silhouette", "surface_angle", "", {}, 1});
   r.observation.value = Eigen::VectorXd::Constant(1, kDegrees * value);

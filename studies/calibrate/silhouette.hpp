@@ -1,17 +1,17 @@
 // The bed as a picture shows it, in the place of a recording: a camera looks through the end face, and its pictures are averaged over time.
 //
-//   # drum.yaml
 //   silhouette:
-//     file: drum_30rpm.png            # PNG, BMP, JPEG, PGM: greys, or colours taken as greys
-//     drum: {centre: [203, 203], diameter: 406}   # pixels, x to the right and y down from the upper left; default: the drum fills the
-//     picture greys: {covered: 22, free: 247} # default: of the lowest and of the highest tenth of the drum angle_error: 0.5 deg # standard
-//     error of how the camera stands, all directions together; this is the default edge_error: 0.5 mm              # standard error of
-//     where the outline lies, all of it together; default: half the width of its blur
-//   condition: {speed: 30 rpm, mill_diameter: 84 mm}
+//     file: drum_30rpm.png
+//     drum: {centre: [203, 203], diameter: 406}
+//     greys: {covered: 22, free: 247}
+//     angle_error: 0.5 deg
+//     edge_error: 0.5 mm
 //
 // or, where only the slope of the surface is known:
 //
 //   surface_angle: {value: 37.4 deg, error: 0.5 deg}
+//
+// docs/calibrate.md explains the keys.
 #pragma once
 
 #include <optional>

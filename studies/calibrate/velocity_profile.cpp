@@ -15,7 +15,6 @@
 namespace millscope::calibrate {
 namespace {
 
-namespace fs = std::filesystem;
 using base::UserError;
 using config::Node;
 

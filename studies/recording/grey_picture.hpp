@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace millscope::recording {
@@ -15,7 +16,8 @@ struct GreyPicture {
   }
 };
 
-/// PNG, BMP, JPEG, PGM; colours become their luminance, what is transparent counts as if it were not. Throws base::UserError.
-GreyPicture read_grey_picture(const std::filesystem::path& file);
+/// PNG, BMP, JPEG, binary PGM; colours become their luminance, what is transparent counts as if it were not. Nothing: the file is no such
+/// picture.
+std::optional<GreyPicture> read_grey_picture(const std::filesystem::path& file);
 
 }  // namespace millscope::recording

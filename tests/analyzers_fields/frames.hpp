@@ -23,7 +23,8 @@ using Motion = std::function<Sample(std::int64_t id, double t)>;
 
 /// A stretch of frames; the arrays behind FrameBlock.
 struct Frames {
-  std::vector<double> time, omega, phase, work, lost, weight, mass, variance, impacts;
+  static constexpr double kBeadRadius = 0.005;  ///< m, of all
+  std::vector<double> time, omega, phase, work, lost, weight, mass, radius, variance, impacts;
   std::vector<std::int32_t> piece;
   std::vector<std::int64_t> first{0}, id;
   std::array<std::vector<double>, 3> position, velocity;
@@ -37,6 +38,7 @@ struct Frames {
     }
     weight.push_back(dwell);
     mass.push_back(bead_mass);
+    radius.push_back(kBeadRadius);
   }
   void end_frame(double t, double turning, double power = 0, std::int32_t unbroken = 0) {
     time.push_back(t);
@@ -69,6 +71,7 @@ struct Frames {
       b.velocity[axis] = velocity[axis].data();
     }
     b.mass = mass.data();
+    b.radius = radius.data();
     b.velocity_variance = variance.empty() ? nullptr : variance.data();
     b.impact_pair_count = pairs;
     b.impact_bin_count = bins;

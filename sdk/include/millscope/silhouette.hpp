@@ -25,13 +25,14 @@ inline constexpr double kSilhouetteInner = 0.15, kSilhouetteOuter = 0.95;  ///< 
 struct SilhouetteRing {
   double inner, outer;
   double share;      ///< 0 … 1
-  double direction;  ///< rad, from 6 o'clock, counter-clockwise
+  double direction;  ///< rad, from 6 o'clock, counter-clockwise; means little where the ring is nearly free or nearly full
   double edge;       ///< part of the radius
 };
 
 struct SilhouetteShape {
   std::vector<SilhouetteRing> rings;
   double area;   ///< covered share of the disc
+  double lean;   ///< mean of P x over the disc, part of the radius: to which side the bed leans
   double slope;  ///< rise of the surface over its run along x
 };
 
@@ -66,13 +67,13 @@ inline SilhouetteShape silhouette_shape(const double* covered, std::int64_t n) {
     for (std::int64_t i = 0; i < n; ++i) {
       const double x = (static_cast<double>(i) + 0.5) * cell - 1, y = (static_cast<double>(j) + 0.5) * cell - 1;
       const double r = std::hypot(x, y), p = covered[j * n + i], place = (r - kSilhouetteInner) / width;
-      if (r < 1) disc.cells += 1, disc.covered += p;
+      if (r < 1) disc.cells += 1, disc.covered += p, disc.x += p * x;
       if (place < 0 || place >= kSilhouetteRings) continue;
       Sum& s = ring[static_cast<int>(place)];
       s.cells += 1, s.covered += p, s.x += p * x / r, s.y += p * y / r, s.edge += 4 * p * (1 - p);
     }
   }
-  SilhouetteShape shape{{}, disc.covered / disc.cells, detail::silhouette_slope(covered, n)};
+  SilhouetteShape shape{{}, disc.covered / disc.cells, disc.x / disc.cells, detail::silhouette_slope(covered, n)};
   for (int k = 0; k < kSilhouetteRings; ++k) {
     const Sum& s = ring[k];
     const double inner = kSilhouetteInner + k * width, outer = inner + width;
