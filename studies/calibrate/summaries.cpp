@@ -207,7 +207,7 @@ Observation summarise(const ResultSet& results, const std::vector<Summary>& summ
     o.value[static_cast<Eigen::Index>(i)] = value;
   }
   o.blocks = median_blocks(results);
-  if (results.meta.draws < 2)
+  if (results.meta.draws < 2 || results.meta.blocks.size() < 2)
     throw UserError(fmt::format("{}: too short for an uncertainty: it holds fewer than two blocks", results.meta.description));
   o.covariance = few_blocks_factor(o.blocks) * naming::shrunk_covariance(drawn(results, summaries, o.value), o.blocks);
   for (Eigen::Index i = 0; i < o.value.size(); ++i) {

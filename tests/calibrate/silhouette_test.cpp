@@ -64,8 +64,8 @@ struct Drum {
   RecordedCondition look() const { return calibrate::look_at_figure(*figure(), 0, {study, registry(), 1}); }
 };
 
-/// Small beads all over the bed, seen six times.
-void write_run(const testing::Folder& folder, const Bed& bed, double omega) {
+/// Small beads all over the bed, seen `frames` times.
+void write_run(const testing::Folder& folder, const Bed& bed, double omega, int frames = 6) {
   folder.write("case.resolved.yaml", kDrum);
   std::vector<double> position;
   for (double x = -kRadius; x <= kRadius; x += 0.0005) {
@@ -79,7 +79,7 @@ void write_run(const testing::Folder& folder, const Bed& bed, double omega) {
   for (std::size_t i = 0; i < n; ++i) id[i] = static_cast<std::uint32_t>(i);
   const std::vector<double> radius(n, 0.0005), mass(n, 1e-4), still(3 * n, 0.0), work{0.0};
   auto writer = output::FrameWriter::create(folder.path / "frames.h5", {id, radius, mass, material, {"glass"}, {"shell"}, {}});
-  for (int f = 0; f < 6; ++f) writer.append({0.01 * f, omega * 0.01 * f, omega, work, {}, {}, position, still, still});
+  for (int f = 0; f < frames; ++f) writer.append({0.01 * f, omega * 0.01 * f, omega, work, {}, {}, position, still, still});
   writer.close();
 }
 
@@ -189,6 +189,12 @@ TEST_CASE("the angle of the surface alone may be compared") {
   CHECK_THAT(r.observation.value[0], WithinAbs(35, 1e-9));
   CHECK_THAT(r.observation.covariance(0, 0), WithinAbs(0.25, 1e-9));
   CHECK_THAT(seen(drum, r).value[0], WithinAbs(35, 0.3));
+}
+
+TEST_CASE("a run that is one block long has no uncertainty, and is refused") {
+  const Drum drum;
+  write_run(drum.folder, Bed(), 2, 1);
+  CHECK_THAT(testing::message_of([&] { seen(drum, drum.look()); }), Catch::Contains("too short for an uncertainty"));
 }
 
 TEST_CASE("what is wrong with a silhouette is said with its place") {
