@@ -30,6 +30,7 @@ from verify_powers import SLICE_60S, powers
 from verify_real import drum, uct, worked
 from verify_round_robin import round_robin
 from verify_rows import NotRun, power, row, show, three_powers
+from verify_silhouettes import silhouettes
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "validation.md"

@@ -1,0 +1,73 @@
+"""Which physics do measured pictures of a drum ask for? For verify.py: the study of configs/measured_drums/silhouettes, with finer beads as a check."""
+
+import json
+import os
+import shutil
+
+from verify_drums import DATA, ROOT, not_run, sources
+from verify_rows import row
+
+CONFIGS = ROOT / "configs" / "measured_drums" / "silhouettes"
+FITTED, HELD_OUT = (15, 45), (10, 30)  # rpm
+ENDS = {10: 5, 15: 4.5, 30: 4, 45: 3.5}  # s, as in the study
+PATHS = {"bead_friction": "pairs.default.static_friction", "filling": "fill.filling", "disc_friction": "pairs.cellulose~disc.static_friction"}
+FINER = "beads.cellulose.diameter=2.8 mm"
+PICTURE = "gd_nature_%drpm_averaged.bmp"
+
+
+def folder_of(bench):
+    """Case, study, pictures and the recordings that tell of them, side by side."""
+    folder = bench.folder / "silhouettes"
+    folder.mkdir(exist_ok=True)
+    for file in CONFIGS.iterdir():
+        shutil.copy(file, folder)
+    for rpm in FITTED + HELD_OUT:
+        shutil.copy(DATA / "granudrum" / (PICTURE % rpm), folder)
+        (folder / ("r_%drpm.yaml" % rpm)).write_text("silhouette: {file: %s}\ncondition: {speed: %d rpm, mill_diameter: 84 mm}\n" % (PICTURE % rpm, rpm))
+    return folder
+
+
+def slope(bench, case, name, rpm, *settings):
+    """Surface angle of a run (degrees), with its standard error."""
+    out, results = "silhouettes_%s_%d" % (name, rpm), bench.folder / ("silhouettes_%s_%d-analysis" % (name, rpm))
+    bench.run(out, os.path.relpath(case, ROOT), "mill.speed=%d rpm" % rpm, "time.end_s=%g" % ENDS[rpm], "time.analyze_from_s=1.5",
+              "output={frames: {every_s: 0.02, from_s: 1.5}}", *settings)
+    bench.call("analyze", os.path.relpath(bench.folder / out, ROOT), "-o", os.path.relpath(results, ROOT), "--force", "--quiet", "--analyzers", "silhouette")
+    found = json.loads((results / "results.json").read_text())["numbers"]["silhouette"]["surface_angle"]
+    return "%.1f ± %.1f°" % (found["value"], found["sem"])
+
+
+def hypothesis_rows(found):
+    rows = [row("verdict", found["verdict"] + ": " + found["sentence"]), row("p of the retuned base", "%.2g" % found["base"]["p_value"])]
+    for h in found["hypotheses"]:
+        strength = ", ".join("%s %.3g" % (name, p["value"]) for name, p in h["parameters"].items())
+        rows.append(row("%s (%s)" % (h["name"], strength), "ΔQ %.3g, p %.2g; %s" % (h["delta_q"], h["p_value"], h["class"])))
+    for held in found["held_out"]:
+        misfits = ", ".join("%s %.3g" % (m["model"], m["misfit"]) for m in held["models"])
+        rows.append(row("%s, held out: misfit a number" % held["condition"], misfits, "about 1 where only chance is left"))
+    return rows
+
+
+def angle_rows(bench, folder, found):
+    """The surface of the retuned base and of the corrected model, with the beads of the study and with finer ones."""
+    from verify_granudrum import pictured_angles
+    base = ["%s=%.6g" % (PATHS[name], p["value"]) for name, p in found["contact_parameters"]["retuned"].items()]
+    corrected, measured, rows = folder / "diagnosis" / "corrected" / "case.yaml", pictured_angles(), []
+    for rpm in FITTED + HELD_OUT:
+        angles = [("retuned base", slope(bench, folder / "drum.yaml", "base", rpm, *base)), ("with finer beads", slope(bench, folder / "drum.yaml", "base_finer", rpm, *base, FINER))]
+        if corrected.exists():
+            angles += [("corrected", slope(bench, corrected, "corrected", rpm)), ("with finer beads", slope(bench, corrected, "corrected_finer", rpm, FINER))]
+        rows.append(row("surface at %d rpm (%s)" % (rpm, "fitted" if rpm in FITTED else "held out"), "; ".join("%s %s" % a for a in angles), "%.1f° (measured)" % measured[rpm]))
+    return rows
+
+
+def silhouettes(bench):
+    """Which physics four measured pictures of beads that are not round ask for (half an hour of two cores)"""
+    if not_run("granudrum"):
+        return not_run("granudrum")
+    folder = folder_of(bench)
+    bench.call("diagnose", os.path.relpath(folder / "study.yaml", ROOT), "-o", os.path.relpath(folder / "diagnosis", ROOT), "--cache", os.path.relpath(folder / "cache", ROOT), "-q")
+    found = json.loads((folder / "diagnosis" / "diagnosis.json").read_text())
+    bench.say("Beads of 4 mm stand for 1.0 to 1.5 mm; those of 2.8 mm say what that changes. Left out: the sizes' spread, humidity. How level the camera stood is taken "
+              "as known to 0.5°. Beads that are not round may be rolling friction or shape; a picture of the bed hardly tells which.", sources("granudrum/gd"))
+    return hypothesis_rows(found) + angle_rows(bench, folder, found)
