@@ -240,7 +240,7 @@ def ergodicity(bench):
     return rows
 
 
-ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, worked, drum, uct, beads6000, alizadeh, granudrum, cellulose, rolling, round_robin)}
+ITEMS = {f.__name__: f for f in (crosscheck, parametric, full, softening, timestep, hashes, memory, powers, ergodicity, camera, roundtrip, bbosa, differences, calibrate, wet, ends, doubts, worked, drum, uct, beads6000, alizadeh, granudrum, cellulose, rolling, silhouettes, round_robin)}
 QUICK = ("crosscheck", "hashes", "memory")
 
 
