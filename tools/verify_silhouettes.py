@@ -77,6 +77,6 @@ def silhouettes(bench):
     found = json.loads((folder / "diagnosis" / "diagnosis.json").read_text())
     bench.say("Beads of 4 mm stand for 1.0 to 1.5 mm; those of 2.8 mm say what that changes. Left out: the sizes' spread, humidity, cohesion (contacts this soft do not "
               "bear it: such runs made energy). How level the camera stood is taken as known to 0.5°. What a model shows on the held-out speeds is predicted by the "
-              "surrogate, and the last rows hold that against runs: where these lie flatter than the pictures, the prediction errs. At low friction the bed slips in jerks; "
-              "simulations there are too unsteady to be looked at and are left out, so the surrogate knows little of that end.", sources("granudrum/gd"))
+              "surrogate, and the last rows hold that against runs: where these lie flatter than the pictures, the prediction errs. The angle rises steeply with friction "
+              "at first, and ten simulations with rolling friction do not show the surrogate how.", sources("granudrum/gd"))
     return hypothesis_rows(found) + angle_rows(bench, folder, found)
