@@ -14,7 +14,7 @@
 namespace millscope::analyzers {
 namespace {
 
-constexpr double kNoDirection = 0.01;  // share of a ring that has no middle, or whose complement has none
+constexpr double kLeastArc = 0.01;  // part of a ring that has a middle, be it covered or free
 
 constexpr Parameter kParameters[] = {
     integer_parameter("cells", 160, 20, 1000, "Cells from shell to shell, in both directions."),
@@ -63,7 +63,7 @@ class Silhouette {
       border.push_back(ring.outer);
       area.push_back(ring.outer * ring.outer - ring.inner * ring.inner);
       share.push_back(100 * ring.share);
-      direction.push_back(ring.share > kNoDirection && ring.share < 1 - kNoDirection ? kDegrees * sense_ * ring.direction : kNaN);
+      direction.push_back(ring.has_middle(kLeastArc) ? kDegrees * sense_ * ring.direction : kNaN);
       edge.push_back(radius_ * ring.edge);
     }
     results.add("x_edges", "m", cells_.edges().data(), {n + 1}, "Edges of the cells along x.", {}, kAlongX);

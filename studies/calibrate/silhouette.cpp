@@ -20,10 +20,10 @@ using config::Node;
 using recording::GreyPicture;
 
 constexpr double kDegrees = 180 / std::numbers::pi, kDefaultAngleError = 0.5 / kDegrees;
-constexpr double kFewestGreys = 20;                    // between what is covered and what is free, of 255
-constexpr double kFewestPixels = 100;                  // from shell to shell
-constexpr double kNoDirection = 0.05;                  // share of a ring below which, or above its complement, an arc has no middle
-constexpr double kOwnPart = 0.25;                      // of the blur: by how much each end of an arc may be off by itself
+constexpr double kFewestGreys = 20;    // between what is covered and what is free, of 255
+constexpr double kFewestPixels = 100;  // from shell to shell
+constexpr double kLeastArc = 0.05;  // part of a recorded ring, covered or free; simulated ones have some way to go to the analyzer's 0.01
+constexpr double kOwnPart = 0.25;   // of the blur: by how much each end of an arc may be off by itself
 constexpr double kLeastBlur = 2.0 / kSilhouetteCells;  // parts of the radius: no picture is sharper than a cell
 
 /// Where the drum is, in pixels.
@@ -102,7 +102,7 @@ std::vector<Number> numbers_of(const Silhouette& s, const SilhouetteShape& shape
     };
     out.push_back(
         {number("share", "share", "%"), 100 * ring.share, std::numbers::sqrt2 * kOwnPart * blur * per_length, 2 * off * per_length, 0});
-    if (ring.share > kNoDirection && ring.share < 1 - kNoDirection)
+    if (ring.has_middle(kLeastArc))
       out.push_back({number("direction", "direction", "deg"), kDegrees * sense * ring.direction,
                      kDegrees * kOwnPart * blur / (std::numbers::sqrt2 * r), 0, kDegrees * s.angle_error});
     ++k;

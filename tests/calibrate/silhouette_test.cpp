@@ -9,22 +9,20 @@
 #include <fstream>
 #include <numbers>
 
-#include "kernel/output/frames.hpp"
 #include "millscope/silhouette.hpp"
 #include "studies/calibrate/observe.hpp"
 #include "studies/calibrate/validate.hpp"
-#include "tests/calibrate/made_up_mill.hpp"
-#include "tests/plugins.hpp"
+#include "tests/calibrate/figure_drum.hpp"
 
 using namespace millscope;
 using calibrate::RecordedCondition;
 using Catch::WithinAbs;
+using testing::kDrumRadius;
 using testing::registry;
 
 namespace {
 
-constexpr double kRadius = 0.1, kDegree = std::numbers::pi / 180;
-const std::string kDrum = testing::drum_case(10, 1);
+constexpr double kDegree = std::numbers::pi / 180;
 
 /// A bed with a flat surface that slopes by `angle` and lies `depth` (in radii) beneath the axis; it rises to the right.
 struct Bed {
@@ -47,44 +45,24 @@ void write_picture(const std::filesystem::path& file, const Bed& bed, int size, 
   }
 }
 
-struct Drum {
-  testing::Folder folder;
-  calibrate::Study study;
-
-  explicit Drum(const std::string& recording = "silhouette: {file: bed.pgm}\n", const std::string& more = "") {
-    folder.write("drum.yaml", kDrum);
+struct Drum : testing::FigureDrum {
+  explicit Drum(const std::string& recording = "silhouette: {file: bed.pgm}\n", const std::string& more = "")
+      : FigureDrum(recording, more) {
     write_picture(folder.path / "bed.pgm", Bed(), 400, 0, false);
-    folder.write("r.yaml", recording);
-    study = calibrate::read_study(folder.write("study.yaml",
-                                               "base: drum.yaml\nconditions: {dry: {recording: r.yaml, role: fit}}\n"
-                                               "parameters: {pairs.glass~glass.static_friction: {range: [0.1, 0.8]}}\n" +
-                                                   more));
   }
-  std::unique_ptr<const calibrate::Figure> figure() const { return calibrate::read_figure(study.conditions[0].recording); }
-  RecordedCondition look() const { return calibrate::look_at_figure(*figure(), 0, {study, registry(), 1}); }
 };
 
 /// Small beads all over the bed, seen `frames` times.
 void write_run(const testing::Folder& folder, const Bed& bed, double omega, int frames = 6) {
-  folder.write("case.resolved.yaml", kDrum);
-  std::vector<double> position;
-  for (double x = -kRadius; x <= kRadius; x += 0.0005) {
-    for (double y = -kRadius; y <= kRadius; y += 0.0005) {
-      if (std::hypot(x, y) <= kRadius && bed.covers((omega < 0 ? -1 : 1) * x / kRadius, y / kRadius))
-        position.insert(position.end(), {x, y, 0.025});
+  testing::FrozenBeads beads{{}, {}, 0.0005, omega, frames};
+  for (double x = -kDrumRadius; x <= kDrumRadius; x += 0.0005) {
+    for (double y = -kDrumRadius; y <= kDrumRadius; y += 0.0005) {
+      if (std::hypot(x, y) <= kDrumRadius && bed.covers((omega < 0 ? -1 : 1) * x / kDrumRadius, y / kDrumRadius))
+        beads.position.insert(beads.position.end(), {x, y, 0.025});
     }
   }
-  const std::size_t n = position.size() / 3;
-  std::vector<std::uint32_t> id(n), material(n, 0);
-  for (std::size_t i = 0; i < n; ++i) id[i] = static_cast<std::uint32_t>(i);
-  const std::vector<double> radius(n, 0.0005), mass(n, 1e-4), still(3 * n, 0.0), work{0.0};
-  auto writer = output::FrameWriter::create(folder.path / "frames.h5", {id, radius, mass, material, {"glass"}, {"shell"}, {}});
-  for (int f = 0; f < frames; ++f) writer.append({0.01 * f, omega * 0.01 * f, omega, work, {}, {}, position, still, still});
-  writer.close();
-}
-
-calibrate::Observation seen(const Drum& drum, const RecordedCondition& r) {
-  return calibrate::summarise(calibrate::figure_of_run(drum.folder.path, r, {drum.study, registry(), 1}), r.summaries);
+  beads.velocity.assign(beads.position.size(), 0.0);
+  testing::write_run(folder, beads);
 }
 
 }  // namespace
@@ -127,7 +105,7 @@ TEST_CASE("a picture and simulated beads of the same bed are measured alike, whi
       write_run(drum.folder, Bed(), omega);
       const RecordedCondition r = drum.look();
       REQUIRE(r.observation.value.size() == 2 * kSilhouetteRings);
-      const calibrate::Observation simulated = seen(drum, r);
+      const calibrate::Observation simulated = drum.seen(r);
       for (Eigen::Index i = 0; i < r.observation.value.size(); ++i) {
         INFO(r.observation.observables[i].name);
         CHECK_THAT(simulated.value[i], WithinAbs(r.observation.value[i], 0.5));
@@ -167,7 +145,7 @@ TEST_CASE("the camera's stand is one error of all directions, the outline's plac
   const Eigen::MatrixXd& c = r.observation.covariance;
   CHECK_THAT(c(1, 3), WithinAbs(4, 1e-9));
   CHECK_THAT(std::sqrt(c(1, 1)), WithinAbs(2, 0.1));  // the edge is sharp but for the cells: little is its own
-  CHECK_THAT(std::sqrt(c(0, 2)), WithinAbs(100 * 2 * 0.001 / (2 * std::numbers::pi * kRadius * std::sqrt(0.2 * 0.3)), 0.02));
+  CHECK_THAT(std::sqrt(c(0, 2)), WithinAbs(100 * 2 * 0.001 / (2 * std::numbers::pi * kDrumRadius * std::sqrt(0.2 * 0.3)), 0.02));
   CHECK(c(0, 1) == 0);
 }
 
@@ -175,7 +153,7 @@ TEST_CASE("a slice that repeats is noted, a mill that stands is refused") {
   const Drum drum;
   REQUIRE(drum.look().observation.notes.size() == 2);
   CHECK(drum.look().observation.notes[0].find("periodic along z") != std::string::npos);
-  std::string still = kDrum;
+  std::string still = testing::drum_case(10, 1);
   still.replace(still.find("speed: 2 rad/s"), 14, "speed: 0 rad/s");
   drum.folder.write("drum.yaml", still);
   CHECK(testing::message_of([&] { drum.look(); }).find("speed") != std::string::npos);
@@ -188,13 +166,13 @@ TEST_CASE("the angle of the surface alone may be compared") {
   REQUIRE(r.observation.value.size() == 1);
   CHECK_THAT(r.observation.value[0], WithinAbs(35, 1e-9));
   CHECK_THAT(r.observation.covariance(0, 0), WithinAbs(0.25, 1e-9));
-  CHECK_THAT(seen(drum, r).value[0], WithinAbs(35, 0.3));
+  CHECK_THAT(drum.seen(r).value[0], WithinAbs(35, 0.3));
 }
 
 TEST_CASE("a run that is one block long has no uncertainty, and is refused") {
   const Drum drum;
   write_run(drum.folder, Bed(), 2, 1);
-  CHECK_THAT(testing::message_of([&] { seen(drum, drum.look()); }), Catch::Contains("too short for an uncertainty"));
+  CHECK_THAT(testing::message_of([&] { drum.seen(drum.look()); }), Catch::Contains("too short for an uncertainty"));
 }
 
 TEST_CASE("what is wrong with a silhouette is said with its place") {

@@ -5,24 +5,21 @@
 
 #include <cmath>
 
-#include "kernel/output/frames.hpp"
 #include "studies/calibrate/methods.hpp"
 #include "studies/calibrate/observe.hpp"
 #include "studies/calibrate/validate.hpp"
-#include "tests/calibrate/made_up_mill.hpp"
-#include "tests/plugins.hpp"
+#include "tests/calibrate/figure_drum.hpp"
 
 using namespace millscope;
 using calibrate::RecordedCondition;
 using Catch::WithinAbs;
 using Catch::WithinRel;
+using testing::kDrumRadius;
 using testing::registry;
 
 namespace {
 
-constexpr double kRadius = 0.1, kSurface = -0.02;  // m
-
-const std::string kDrum = testing::drum_case(10, 1);
+constexpr double kSurface = -0.02;  // m
 
 /// Positions in mm and velocities in mm/s, in no order.
 const std::string kPoints = "# digitised\np,v\n-90,180\n-30,-120\n-80,150\n-70,110\n-60,60\n-50,0\n-40,-60\n";
@@ -30,52 +27,33 @@ const std::string kRecording =
     "profile:\n  file: points.csv\n  position: {column: p, unit: mm}\n  velocity: {column: v, unit: mm/s}\n  position_error: 1 mm\n"
     "  velocity_error: 0.01 m/s\n";
 
-struct Drum {
-  testing::Folder folder;
-  calibrate::Study study;
-
-  explicit Drum(const std::string& recording = kRecording, const std::string& points = kPoints, const std::string& more = "") {
-    folder.write("drum.yaml", kDrum);
+struct Drum : testing::FigureDrum {
+  explicit Drum(const std::string& recording = kRecording, const std::string& points = kPoints, const std::string& more = "")
+      : FigureDrum(recording, more) {
     folder.write("points.csv", points);
-    folder.write("r.yaml", recording);
-    study = calibrate::read_study(folder.write("study.yaml",
-                                               "base: drum.yaml\nconditions: {dry: {recording: r.yaml, role: fit}}\n"
-                                               "parameters: {pairs.glass~glass.static_friction: {range: [0.1, 0.8]}}\n" +
-                                                   more));
   }
-  std::shared_ptr<const calibrate::VelocityProfile> profile() const {
-    return std::dynamic_pointer_cast<const calibrate::VelocityProfile>(
-        std::shared_ptr<const calibrate::Figure>(calibrate::read_figure(study.conditions[0].recording)));
-  }
-  RecordedCondition look() const { return calibrate::look_at_figure(*profile(), 0, {study, registry(), 1}); }
 };
 
-/// Beads of a segment, seen six times, that move along its surface as fast as their depth says; gravity's side is down.
+/// Beads of a segment that move along its surface as fast as their depth says; gravity's side is down.
 template <class Flow>
 void write_run(const testing::Folder& folder, const Flow& flow) {
-  folder.write("case.resolved.yaml", kDrum);
-  std::vector<double> position, velocity;
-  for (double p = -kRadius; p <= kSurface; p += 0.0005) {
+  testing::FrozenBeads beads{{}, {}, 0.002};
+  for (double p = -kDrumRadius; p <= kSurface; p += 0.0005) {
     for (double s = -0.1; s <= 0.1; s += 0.001) {
-      if (std::hypot(p, s) > kRadius) continue;
-      position.insert(position.end(), {s, p, 0.025});
-      velocity.insert(velocity.end(), {flow(p), 0.0, 0.0});
+      if (std::hypot(p, s) > kDrumRadius) continue;
+      beads.position.insert(beads.position.end(), {s, p, 0.025});
+      beads.velocity.insert(beads.velocity.end(), {flow(p), 0.0, 0.0});
     }
   }
-  const std::size_t n = position.size() / 3;
-  std::vector<std::uint32_t> id(n), material(n, 0);
-  for (std::size_t i = 0; i < n; ++i) id[i] = static_cast<std::uint32_t>(i);
-  const std::vector<double> radius(n, 0.002), mass(n, 1e-4), spin(3 * n, 0.0), work{0.0};
-  auto writer = output::FrameWriter::create(folder.path / "frames.h5", {id, radius, mass, material, {"glass"}, {"shell"}, {}});
-  for (int f = 0; f < 6; ++f) writer.append({0.01 * f, 0.02 * f, 2, work, {}, {}, position, velocity, spin});
-  writer.close();
+  testing::write_run(folder, beads);
 }
 
 }  // namespace
 
 TEST_CASE("a profile is its points by position, in SI, with the errors that are stated") {
   const Drum drum;
-  const auto profile = drum.profile();
+  const auto figure = drum.figure();
+  const auto* profile = dynamic_cast<const calibrate::VelocityProfile*>(figure.get());
   REQUIRE(profile);
   CHECK(profile->position.size() == 7);
   CHECK_THAT(profile->position.front(), WithinRel(-0.09, 1e-12));
@@ -106,7 +84,7 @@ TEST_CASE("a simulation is seen between the analyzer's places, where the measure
   const Drum drum(kRecording, points);
   write_run(drum.folder, flow);
   const RecordedCondition r = drum.look();
-  const auto seen = calibrate::summarise(calibrate::figure_of_run(drum.folder.path, r, {drum.study, registry(), 1}), r.summaries);
+  const auto seen = drum.seen(r);
   REQUIRE(seen.value.size() == r.observation.value.size());
   for (Eigen::Index i = 0; i < seen.value.size(); ++i) CHECK_THAT(seen.value[i], WithinAbs(r.observation.value[i], 0.002));
 }
@@ -141,7 +119,7 @@ TEST_CASE("the part of the length is left out of a periodic slice and refused be
   CHECK(slice.analyzers.find("z_from") == std::string::npos);
   CHECK(slice.observation.notes.front().find("periodic along z") != std::string::npos);
   Drum closed(text);
-  std::string drum = kDrum;
+  std::string drum = testing::drum_case(10, 1);
   drum.replace(drum.find("domain:"), drum.find('\n', drum.find("domain:")) + 1 - drum.find("domain:"), "");
   drum.replace(drum.find("end_faces: false"), 16, "end_faces: true");
   closed.folder.write("drum.yaml", drum);
@@ -152,9 +130,7 @@ TEST_CASE("a simulation without enough beads where a point was measured says so"
   const Drum drum(kRecording, "p,v\n-90,1\n-70,1\n-50,1\n20,1\n");
   write_run(drum.folder, [](double) { return 0.1; });
   const RecordedCondition r = drum.look();
-  const std::string said = testing::message_of([&] {
-    calibrate::summarise(calibrate::figure_of_run(drum.folder.path, r, {drum.study, registry(), 1}), r.summaries);
-  });
+  const std::string said = testing::message_of([&] { drum.seen(r); });
   CHECK(said.find("'velocity at 20.0 mm' is undefined") != std::string::npos);
 }
 
@@ -169,7 +145,7 @@ TEST_CASE("what is wrong with a profile is said with its place") {
     std::string text = kRecording;
     text.replace(text.find(from), from.size(), to);
     const Drum drum(text);
-    return testing::message_of([&] { drum.profile(); });
+    return testing::message_of([&] { drum.figure(); });
   };
   CHECK(said("column: p", "column: q").find("r.yaml:3") != std::string::npos);
   CHECK(said("column: p", "column: q").find("no column of") != std::string::npos);

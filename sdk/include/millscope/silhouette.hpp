@@ -25,8 +25,10 @@ inline constexpr double kSilhouetteInner = 0.15, kSilhouetteOuter = 0.95;  ///< 
 struct SilhouetteRing {
   double inner, outer;
   double share;      ///< 0 … 1
-  double direction;  ///< rad, from 6 o'clock, counter-clockwise; means little where the ring is nearly free or nearly full
+  double direction;  ///< rad, from 6 o'clock, counter-clockwise; see has_middle
   double edge;       ///< part of the radius
+  /// Whether the arc is neither nearly nothing nor nearly the whole circle: `least` of it is covered, and as much is free.
+  bool has_middle(double least) const { return share > least && share < 1 - least; }
 };
 
 struct SilhouetteShape {
