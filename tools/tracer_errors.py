@@ -7,6 +7,7 @@ from as many mills, and the ratio falls below 1: without any memory, to âˆš(1 âˆ
 """
 
 import argparse
+import csv
 import json
 import math
 import statistics
@@ -31,13 +32,10 @@ def values_of(binary, out, run, beads, total):
         if name.startswith("centre_of_mass"):
             found[name] = (n["value"], n["sem"])
     for axis in "xy":
-        lines = (out / "tables" / ("distributions.%s_edges.csv" % axis)).read_text().splitlines()
-        head = lines[0].split(",")
-        value, sem = head.index("%s_percent [%%]" % axis), head.index("%s_percent_sem" % axis)
-        for k, line in enumerate(lines[1:]):
-            row = line.split(",")
-            if row[sem]:
-                found["%s bin %d" % (axis, k)] = (float(row[value]), float(row[sem]))
+        with open(out / "tables" / ("distributions.%s_edges.csv" % axis), encoding="utf-8", newline="") as file:
+            for k, row in enumerate(csv.DictReader(file)):
+                if row[axis + "_percent_sem"]:
+                    found["%s bin %d" % (axis, k)] = (float(row[axis + "_percent [%]"]), float(row[axis + "_percent_sem"]))
     return found
 
 

@@ -4,12 +4,12 @@ import json
 import os
 import shutil
 
-from verify_drums import DATA, ROOT, not_run, sources
+from verify_drums import DATA, ROOT, angle_of, not_run, sources
+from verify_granudrum import BORE, pictured_angles
 from verify_rows import row
 
 CONFIGS = ROOT / "configs" / "measured_drums" / "silhouettes"
 FITTED, HELD_OUT = (15, 45), (10, 30)  # rpm
-ENDS = {10: 5, 15: 4.5, 30: 4, 45: 3.5}  # s, as in the study
 PATHS = {"bead_friction": "pairs.default.static_friction", "filling": "fill.filling", "disc_friction": "pairs.cellulose~disc.static_friction"}
 KINDS = {"rolling_friction": "rolling_constant_torque", "bead_shape": "bead_shape"}  # of candidates, the plugin
 FINER = "beads.cellulose.diameter=2.8 mm"
@@ -29,13 +29,11 @@ def folder_of(bench):
 
 
 def slope(bench, case, name, rpm, *settings):
-    """Surface angle of a run (degrees), with its standard error."""
-    out, results = "silhouettes_%s_%d" % (name, rpm), bench.folder / ("silhouettes_%s_%d-analysis" % (name, rpm))
-    bench.run(out, os.path.relpath(case, ROOT), "mill.speed=%d rpm" % rpm, "time.end_s=%g" % ENDS[rpm], "time.analyze_from_s=1.5",
-              "output={frames: {every_s: 0.02, from_s: 1.5}}", *settings)
-    bench.call("analyze", os.path.relpath(bench.folder / out, ROOT), "-o", os.path.relpath(results, ROOT), "--force", "--quiet", "--analyzers", "silhouette")
-    found = json.loads((results / "results.json").read_text())["numbers"]["silhouette"]["surface_angle"]
-    return "%.1f ± %.1f°" % (found["value"], found["sem"])
+    """Angle of the bed's outline in a run, with its standard error; read as the pictures are."""
+    out = "silhouettes_%s_%d" % (name, rpm)
+    bench.run(out, os.path.relpath(case, ROOT), "mill.speed=%d rpm" % rpm, "output={frames: {every_s: 0.02, from_s: 1.1}}", *settings)
+    found = angle_of(bench.folder / out, BORE)
+    return "%.1f ± %.1f°" % (found["outline"], found["outline_error"])
 
 
 def hypothesis_rows(found):
@@ -55,7 +53,6 @@ def settings_of(parameters):
 
 def angle_rows(bench, folder, found):
     """The surface of the retuned base and of the best candidate as fitted, with the beads of the study and with finer ones."""
-    from verify_granudrum import pictured_angles
     best, case = max((h for h in found["hypotheses"] if h["name"] in KINDS), key=lambda h: h["delta_q"]), folder / "drum.yaml"
     effect = ["contact.interactions={it: {kind: %s}}" % KINDS[best["name"]]] \
         + ["pairs.%s.%s=%.6g" % (pair, name, p["value"]) for pair in ("default", "cellulose~disc") for name, p in best["parameters"].items()]
