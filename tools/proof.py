@@ -189,8 +189,8 @@ class Batch:
 
     def check_program(self, commit):
         reads = {str(path.relative_to(ROOT)) for path in read_by(self.challenge.resolve()) if ROOT in path.parents}
-        changed = changed_since(commit) + changed_since(commit, built_from(self.binary))
-        changed = [path for path in changed if not path.startswith("configs/") or path in reads]  # what other batches read is free
+        changed = [path for path in changed_since(commit) if not path.startswith("configs/") or path in reads]  # other batches' are free
+        changed += [path for path in changed_since(commit, built_from(self.binary)) if not path.startswith("configs/")]  # read, not built
         if changed:
             raise Failure("%s is for commit %s, and %s differs since; use a clone and a build of that commit, or make fresh sets" %
                           (self.name, commit[:12], changed[0]))
