@@ -74,6 +74,17 @@ naming::Result nearly_named() {
 
 }  // namespace
 
+// Two that these data cannot tell apart: nothing is about to be named, so that the bank's predictions would do.
+TEST_CASE("a fit at an end of what was simulated is simulated in the held-out condition, named or not") {
+  Story within({kRolling + "=0.1"}, true), beyond({kRolling + "=0.9"}, true);
+  const Diagnosis usual = within.diagnosed(), far = beyond.diagnosed();
+  REQUIRE(usual.naming.kept.size() == 2);
+  REQUIRE(far.naming.best);
+  REQUIRE(far.naming.judged[*far.naming.best].at_end);
+  CHECK_FALSE(simulated(usual.held_out[0], "corrected"));
+  CHECK(simulated(far.held_out[0], "corrected"));
+}
+
 TEST_CASE("where nothing is missing the bank predicts the held-out condition, and nothing is simulated for it") {
   Story story;
   const Diagnosis d = story.diagnosed();

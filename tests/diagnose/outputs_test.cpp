@@ -232,6 +232,17 @@ TEST_CASE("a camera that was found to stand aside is where corrected/ goes on fr
   CHECK_THAT(again.nuisances[0].sigma, WithinRel(0.001, 1e-6));
 }
 
+TEST_CASE("a filling that was found beyond its range is where corrected/ goes on from") {
+  const Scratch folder;
+  const nlohmann::json j = written(folder, {kBase[0], kBase[1], "fill.filling=0.333"}, kFilling, 0.3);
+  REQUIRE(j["named"] == nlohmann::json({"filling"}));
+  const Question again = read_question(folder / "out/corrected/study.yaml", {}, registry());
+  REQUIRE(again.nuisances.size() == 1);
+  CHECK_THAT(again.nuisances[0].mean, WithinAbs(0.333, 0.002));
+  CHECK_THAT(again.nuisances[0].low, WithinAbs(0.304, 1e-6));
+  CHECK_THAT(again.nuisances[0].high, WithinAbs(again.nuisances[0].mean + 2 * 0.00313, 1e-5));
+}
+
 TEST_CASE("corrected/ has what was varied apart as it was fitted, and doubts it again") {
   const Scratch folder;
   // The mill is stiffer than the range allows for: the fit stands at its end, which the corrected case has then. It is so by a twentieth:

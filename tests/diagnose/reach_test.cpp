@@ -17,10 +17,10 @@ TEST_CASE("beyond an end of a range a bank has simulations in the strip that fol
   const Scratch folder;
   const Question q = question_of(folder, kSections);
   const Index rolling = Index{0};
-  const End friction{.parameter = 0, .upper = true}, strength{.candidate = rolling, .upper = true};
+  const End friction{.coordinate = 0, .upper = true}, strength{.candidate = rolling, .upper = true};
   CHECK(place_of(q, friction) == 0.6);
   CHECK(farthest_of(q, friction) == Approx(0.85));
-  CHECK(farthest_of(q, {.parameter = 0, .upper = false}) > 0);  // no friction is below 0
+  CHECK(farthest_of(q, {.coordinate = 0, .upper = false}) > 0);  // no friction is below 0
   CHECK(farthest_of(q, strength) == 2);
   std::set<double> values;
   for (const BankPoint& p : plan_beyond(q, friction)) {
@@ -84,6 +84,29 @@ TEST_CASE("friction beyond its range is no physics, and the range is said to be 
   CHECK(d.question.study.parameters[0].high == Approx(0.85));
 }
 
+// What acts like more beads would be taken for them, or they for it, where the filling could not leave its range.
+TEST_CASE("a filling beyond its range is named as that, and not the physics that acts like it") {
+  std::vector<Physics> physics = usual();
+  physics[1].direction = {102, 202, 302};  // bridges: what the filling does
+  std::vector<std::string> truth = kTheta;
+  truth[2] = "fill.filling=0.333";
+  const Diagnosis d = diagnosed(physics, truth, 0.3);
+  INFO(d.sentence);
+  CHECK(d.named == std::vector<std::string>{"filling"});
+  CHECK_FALSE(judged(d, "filling").at_end);
+  CHECK_THAT(judged(d, "filling").theta[2].value, WithinAbs(0.333, 0.002));
+  CHECK_THAT(d.sentence, Contains("The range is too narrow: filling = 0.33") && Contains("outside its range 0.304 … 0.322"));
+}
+
+TEST_CASE("a filling beyond all that was simulated is said to be so") {
+  std::vector<std::string> truth = kTheta;
+  truth[2] = "fill.filling=0.36";
+  const Diagnosis d = diagnosed(usual(), truth, 0.3);
+  INFO(d.sentence);
+  CHECK(judged(d, "filling").at_end);
+  CHECK_THAT(d.sentence, Contains("stands at an end of what was simulated"));
+}
+
 TEST_CASE("where nothing of the library helps, what the study takes for granted is asked for first") {
   Physics elsewhere{"pairs.glass~glass.restitution", 0.8, 0.5, 3, {51, 52, 53}};
   std::vector<Physics> physics = usual();
@@ -118,7 +141,7 @@ TEST_CASE("the bank keeps its simulations where it reaches farther, also those t
   INFO(d.sentence);
   CHECK(d.verdict == Verdict::no_mismatch);
   CHECK_THAT(d.naming.base_theta[0].value, WithinAbs(0.8, 0.05));
-  const auto without = plan_bank(q).size() * 3, beyond = plan_beyond(q, {.parameter = 0, .upper = true}).size() * 3;
+  const auto without = plan_bank(q).size() * 3, beyond = plan_beyond(q, {.coordinate = 0, .upper = true}).size() * 3;
   CHECK(static_cast<std::size_t>(mill.computed()) <= without + beyond + 36);  // 36: held out
 }
 

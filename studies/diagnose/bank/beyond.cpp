@@ -11,12 +11,11 @@ constexpr int kPartOfBase = 3, kPartOfEach = 2;
 /// Of a question that may be changed or not.
 template <class AnyQuestion>
 auto& end_of(AnyQuestion& question, const End& end) {
-  if (end.candidate) {
-    auto& range = question.candidates[*end.candidate].range;
-    return end.upper ? range.high : range.low;
-  }
-  auto& p = question.study.parameters[*end.parameter];
-  return end.upper ? p.high : p.low;
+  const auto of = [&](auto& range) -> auto& { return end.upper ? range.high : range.low; };
+  if (end.candidate) return of(question.candidates[*end.candidate].range);
+  const auto parameters = std::ssize(question.study.parameters);
+  if (*end.coordinate < parameters) return of(question.study.parameters[*end.coordinate]);
+  return of(question.nuisances[*end.coordinate - parameters]);
 }
 
 int count_of(const BankSize& bank, const End& end) {
@@ -32,7 +31,7 @@ double farthest_of(const Question& question, const End& end) {
     const naming::StrengthRange& farthest = question.candidates[*end.candidate].farthest;
     return end.upper ? farthest.high : farthest.low;
   }
-  const Farthest& farthest = question.farthest[*end.parameter];
+  const Farthest& farthest = question.farthest[*end.coordinate];
   return end.upper ? farthest.high : farthest.low;
 }
 
@@ -46,13 +45,13 @@ std::vector<BankPoint> plan_beyond(const Question& question, const End& end) {
       double& strength = p.active.front().strength;
       strength = rounded_strength(c, from + std::max(std::fabs(strength), kLeastStrength) * (to - from));
     } else {
-      const calibrate::Parameter& own = question.study.parameters[*end.parameter];
-      double& value = p.theta[*end.parameter];
+      const naming::Coordinate own = question.coordinates()[*end.coordinate];
+      double& value = p.theta[*end.coordinate];
       const double share = (value - own.low) / (own.high - own.low);
       value = rounded(from + (end.upper ? share : 1 - share) * (to - from));
     }
     p.group += end.upper ? ">" : "<";
-    if (end.parameter) p.group += question.study.parameters[*end.parameter].name;
+    if (end.coordinate) p.group += question.coordinates()[*end.coordinate].name;
   }
   std::erase_if(points, [&](const BankPoint& p) { return !question.study.allowed(p.theta.head(std::ssize(question.study.parameters))); });
   return points;

@@ -10,9 +10,9 @@
 
 namespace millscope::diagnose {
 
-/// One end of a parameter's range, or of a candidate's prior.
+/// One end of the range of a parameter or of a nuisance that every simulation varies, or of a candidate's prior.
 struct End {
-  std::optional<Index> parameter = {};
+  std::optional<Index> coordinate = {};  ///< of θ, below Question::case_dimensions()
   std::optional<Index> candidate = {};
   bool upper = true;
 

@@ -157,6 +157,13 @@ class Namer {
     for (std::size_t k = 0; k < asked.size(); ++k) out_.judged[asked[k]].p_family = family.p(k, observed);
   }
 
+  /// A fitted value at an end of what was simulated. A nuisance whose prior allows that end anyway says nothing by it.
+  static bool ends_there(const Coordinate& c, double coded) {
+    constexpr double kUsual = 2;  // standard deviations
+    const bool expected = c.nuisance() && std::fabs(coded - c.coded(c.prior_mean)) * c.prior_weight() < kUsual;
+    return at_limit(coded, {-1, 1}) && !expected;
+  }
+
   void visibility(Index j) {
     Judged& judged = out_.judged[j];
     const Visibility seen(p_, pseudo_.surrogate(), pseudo_.weighting(), {judged.fit.coded}, j);
@@ -172,7 +179,7 @@ class Namer {
     judged.strength = without_interval(found);
     judged.at_end = alternative.candidate && at_limit(found, alternative.range);
     for (Index i = 0; i < judged.fit.coded.size(); ++i) {
-      judged.at_end = judged.at_end || (!p_.data.theta[i].nuisance() && at_limit(judged.fit.coded[i], {-1, 1}));
+      judged.at_end = judged.at_end || ends_there(p_.data.theta[i], judged.fit.coded[i]);
       judged.theta.push_back(without_interval(p_.data.theta[i].natural(judged.fit.coded[i])));
     }
   }

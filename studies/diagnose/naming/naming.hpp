@@ -77,7 +77,7 @@ struct Judged {
   double lambda_found = 0;  ///< at the fitted strength
   std::vector<std::pair<double, double>> lambda_curve;  ///< (strength, λ), strengths rising; of candidates
   bool undetectable = false;
-  bool at_end = false;  ///< the fitted strength, or a parameter beside it, stands at an end of what was simulated
+  bool at_end = false;  ///< the fitted strength, or a parameter or nuisance beside it, stands at an end of what was simulated
   int runs = 0;         ///< of the bank with this candidate
   double lambda_beside =
       kNotWorkedOut;          ///< λ at full strength beside the best candidate, which is refitted as well; of others that may be there too

@@ -50,7 +50,7 @@ std::string what_is_on(const Told& t) {
   return t.diagnosis.two_effects || named.size() == 1 ? all : fmt::format("{}, the best of {}", named.front(), all);
 }
 
-/// `theta`: as fitted. What the camera was found to do is the study's prior from here on: no case could hold it.
+/// `theta`: as fitted. Where a nuisance was found to stand is the study's prior from here on.
 std::string study_text(const Told& t, const VectorXd& theta, const fs::path& folder) {
   std::string out = fmt::format("# The study {} on the corrected case.\nschema_version: 1\nbase: case.yaml\n\nconditions:\n",
                                 t.question.study.file.filename().string());
@@ -74,9 +74,10 @@ std::string study_text(const Told& t, const VectorXd& theta, const fs::path& fol
   const double* fitted = theta.data() + t.question.study.parameters.size();
   for (const Nuisance& n : t.question.nuisances) {
     const double value = *fitted++;
-    const bool moved = n.of_camera() && is_named(t, n) && value > n.low && value < n.high;
+    const bool moved = is_named(t, n) && !n.usual;
+    const double mean = moved ? rounded(value) : n.mean, room = moved ? 2 * n.sigma : 0;
     fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], mean: {:.6g}, sigma: {:.6g}{}}}\n", n.path, n.name,
-                   n.low, n.high, moved ? rounded(value) : n.mean, n.sigma, n.usual ? ", apart: true" : "");
+                   std::min(n.low, mean - room), std::max(n.high, mean + room), mean, n.sigma, n.usual ? ", apart: true" : "");
   }
   return out + choices_text(t.question);
 }

@@ -34,16 +34,22 @@ std::string resolved(const calibrate::Study& study, const std::vector<std::strin
 }
 
 void find_farthest(const host::Registry& registry, Question& question) {
-  constexpr double kBeyond = 0.5;  // of a parameter's range
+  constexpr double kBeyond = 0.5;  // of a parameter's range; of a nuisance's, which a belief made narrow, all
+  const auto reach = [&](double low, double high, double part, const auto& settings) {
+    const double step = part * (high - low);
+    question.farthest.push_back(
+        {farthest(question.study, registry, low, -step, settings), farthest(question.study, registry, high, step, settings)});
+  };
   for (const calibrate::Parameter& p : question.study.parameters) {
-    const auto settings = [&](double value) {
+    reach(p.low, p.high, kBeyond, [&](double value) {
       std::vector<std::string> out{fmt::format("{}={:.4g}", p.path, value)};
       for (const std::string& path : p.tied) out.push_back(fmt::format("{}={:.4g}", path, value));
       return out;
-    };
-    const double step = kBeyond * (p.high - p.low);
-    question.farthest.push_back(
-        {farthest(question.study, registry, p.low, -step, settings), farthest(question.study, registry, p.high, step, settings)});
+    });
+  }
+  for (std::size_t i = 0; i < question.case_dimensions() - question.study.parameters.size(); ++i) {
+    const Nuisance& n = question.nuisances[i];
+    reach(n.low, n.high, 1, [&](double value) { return std::vector{fmt::format("{}={:.4g}", n.path, value)}; });
   }
   for (Candidate& c : question.candidates) {
     c.prior = c.farthest = c.range;

@@ -42,7 +42,7 @@ struct BankSize {
   std::optional<double> develop = {};  ///< s that a run which begins at another's end turns before it is looked at; none: all begin at rest
 };
 
-/// How far a parameter may lie beyond its range, natural units.
+/// How far a parameter or nuisance may lie beyond its range, natural units.
 struct Farthest {
   double low = 0, high = 0;
 };
@@ -54,7 +54,8 @@ struct Question {
   std::vector<std::string> left_out;  ///< hypotheses that do not apply, and why
   BankSize bank;
   double level = 0.05;             ///< of every statement, for all candidates together
-  std::vector<Farthest> farthest;  ///< of each parameter, as far as the case allows: at most half its range beyond either end
+  std::vector<Farthest> farthest;  ///< of θ's case_dimensions(), as far as the case allows: at most half a parameter's range, or all of a
+                                   ///< nuisance's, beyond either end
   std::vector<double> speed;       ///< |Ω| of every condition, rad/s
 
   std::size_t dimensions() const { return study.parameters.size() + nuisances.size(); }

@@ -14,11 +14,11 @@ namespace {
 constexpr double kHelpsSurely = 8;  // about what a level of 5 % asks of the best of a few
 constexpr double kHelps = 4;        // of Q: less is no sign of anything
 
-const std::string& name_of(const Question& question, const End& end) {
-  return end.candidate ? question.candidates[*end.candidate].name : question.study.parameters[*end.parameter].name;
+std::string name_of(const Question& question, const End& end) {
+  return end.candidate ? question.candidates[*end.candidate].name : question.coordinates()[*end.coordinate].name;
 }
 
-/// What a strength stands for; what a parameter is.
+/// What a strength stands for; what a parameter or nuisance is.
 double value_at(const Question& question, const End& end, double place) {
   return end.candidate ? question.candidates[*end.candidate].value(place) : place;
 }
@@ -27,20 +27,22 @@ void add_new(std::vector<End>& ends, const End& end) {
   if (std::find(ends.begin(), ends.end(), end) == ends.end()) ends.push_back(end);
 }
 
-void add_parameters(const Question& question, const naming::FitResult& fit, std::vector<End>& ends) {
-  for (Index i = 0; i < std::ssize(question.study.parameters); ++i) {
-    if (naming::at_limit(fit.coded[i], {-1, 1})) add_new(ends, {.parameter = i, .upper = fit.coded[i] > 0});
+void add_coordinates(const Question& question, const naming::FitResult& fit, std::vector<End>& ends) {
+  for (Index i = 0; i < static_cast<Index>(question.case_dimensions()); ++i) {
+    if (naming::at_limit(fit.coded[i], {-1, 1})) add_new(ends, {.coordinate = i, .upper = fit.coded[i] > 0});
   }
 }
 
 /// The surrogate of all that is simulated, and fits to it.
 struct FirstLook {
   explicit FirstLook(const naming::Problem& p)
-      : problem(p), surrogate(p.data), weighting(p.covariance, surrogate), ranges(naming::ranges_of(p)), base(fit({})) {}
+      : problem(p), surrogate(p.data), weighting(p.covariance, surrogate), ranges(naming::ranges_of(p)), base(fit(naming::Alternative{})) {}
   FirstLook(const FirstLook&) = delete;
 
-  naming::FitResult fit(std::vector<Index> on) const {
-    return naming::Model(problem.data, surrogate, weighting, {std::move(on), ranges, {}}).fit(problem.observed);
+  naming::FitResult fit(const naming::Alternative& a) const {
+    std::vector<Index> on;
+    if (a.candidate) on.push_back(*a.candidate);
+    return naming::Model(problem.data, surrogate, weighting, {std::move(on), ranges, a.freed}).fit(problem.observed);
   }
   /// Alternatives that are candidates with simulations, and may matter.
   std::vector<Index> candidates() const {
@@ -64,12 +66,17 @@ struct FirstLook {
 std::vector<End> ends_reached(const Question& question, const naming::Problem& problem) {
   const FirstLook look(problem);
   std::vector<End> ends;
-  add_parameters(question, look.base, ends);
-  for (const Index a : look.candidates()) {
+  add_coordinates(question, look.base, ends);
+  std::vector<Index> asked = look.candidates();
+  for (Index a = 0; a < std::ssize(problem.alternatives); ++a) {
+    if (problem.alternatives[a].freed) asked.push_back(a);
+  }
+  for (const Index a : asked) {
     const std::optional<Index>& candidate = problem.alternatives[a].candidate;
-    const naming::FitResult with = look.fit({*candidate});
+    const naming::FitResult with = look.fit(problem.alternatives[a]);
     if (look.base.q - with.q < kHelps) continue;
-    add_parameters(question, with, ends);
+    add_coordinates(question, with, ends);
+    if (!candidate) continue;
     const double strength = with.strengths.front();
     if (naming::at_limit(strength, look.ranges[*candidate])) add_new(ends, {.candidate = candidate, .upper = strength > 0});
   }
@@ -82,7 +89,7 @@ std::vector<std::pair<Index, Index>> pairs_asked_for(const naming::Problem& prob
   const auto& alternatives = problem.alternatives;
   const std::vector<Index> tested = look.candidates();
   std::vector<double> q;
-  for (const Index a : tested) q.push_back(look.fit({*alternatives[a].candidate}).q);
+  for (const Index a : tested) q.push_back(look.fit(alternatives[a]).q);
   const double least = q.empty() ? look.base.q : *std::min_element(q.begin(), q.end());
   if (least > look.base.q - kHelpsSurely) return {};
   std::vector<Index> seconds;
@@ -109,11 +116,12 @@ std::string sentence_of(const Question& before, const End& end) {
 std::vector<std::string> outside_ranges(const Question& asked, const naming::Problem& problem, const naming::FitResult& fit,
                                         const std::vector<naming::ActiveCandidate>& active) {
   std::vector<std::string> out;
-  for (std::size_t i = 0; i < asked.study.parameters.size(); ++i) {
-    const calibrate::Parameter& p = asked.study.parameters[i];
+  const std::vector<naming::Coordinate> coordinates = asked.coordinates();
+  for (std::size_t i = 0; i < asked.case_dimensions(); ++i) {
+    const naming::Coordinate& c = coordinates[i];
     const double value = problem.data.theta[i].natural(fit.coded[static_cast<Index>(i)]);
-    if (rounded(value) < rounded(p.low) || rounded(value) > rounded(p.high))
-      out.push_back(fmt::format("{} = {:.3g} lies outside its range {:.4g} … {:.4g}", p.name, value, p.low, p.high));
+    if (rounded(value) < rounded(c.low) || rounded(value) > rounded(c.high))
+      out.push_back(fmt::format("{} = {:.3g} lies outside its range {:.4g} … {:.4g}", c.name, value, c.low, c.high));
   }
   for (const naming::ActiveCandidate& a : active) {
     const Candidate& c = asked.candidates[a.candidate];

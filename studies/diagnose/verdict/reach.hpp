@@ -10,8 +10,8 @@
 
 namespace millscope::diagnose {
 
-/// Ends at which fits stand and beyond which the case allows more: of parameters where the base's fit does, or that of a candidate that
-/// helps; of priors where such a candidate's does.
+/// Ends at which fits stand and beyond which the case allows more: of parameters and nuisances where the base's fit does, or that of an
+/// alternative that helps; of priors where such a candidate's does.
 std::vector<End> ends_reached(const Question& question, const naming::Problem& problem);
 
 /// Alternatives: each candidate that helps as much as the best, where that may be named, with each other that may be beside it. What a

@@ -161,8 +161,9 @@ void tell_ranges(const Question& asked, Diagnosis& diagnosis) {
     if (diagnosis.next_experiment.empty()) diagnosis.next_experiment = "Widen the range in the study if such a value is possible.";
   }
   if (diagnosis.naming.best && diagnosis.naming.judged[*diagnosis.naming.best].at_end)
-    diagnosis.sentence +=
-        " The fit stands at an end of what was simulated: how strong the effect is, and what friction is beside it, is not known.";
+    diagnosis.sentence += is_nuisance(diagnosis) ? " The fit stands at an end of what was simulated: the value may lie farther."
+                                                 : " The fit stands at an end of what was simulated: how strong the effect is, and what "
+                                                   "friction is beside it, is not known.";
 }
 
 /// What could be seen for itself, but not beside the best: it may be there as well.
