@@ -40,8 +40,9 @@ void put_mesh_in_place(const Triangles& triangles, config::PluginInstance& plugi
 }
 
 void fill_by_count(config::Case& c, std::uint64_t beads) {
+  if (!c.fill.file.empty()) return;
   c.fill.count = beads;
-  c.fill.filling.reset(), c.fill.mass.reset(), c.fill.file.clear(), c.fill.placed.clear();
+  c.fill.filling.reset(), c.fill.mass.reset();
 }
 
 void write_frames_for_means(config::Case& c) {

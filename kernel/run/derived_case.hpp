@@ -21,7 +21,7 @@ struct Triangles {
 void put_mesh_in_place(const Triangles& triangles, config::PluginInstance& plugin, const config::DomainCase& domain,
                        const std::filesystem::path& folder);
 
-/// That many beads are filled in, however the case said it.
+/// That many beads are filled in, however the case said it; those of a file begin where it puts them.
 void fill_by_count(config::Case& c, std::uint64_t beads);
 
 /// Of beads and walls only frames from the start of the analysis on, half as far apart as a charge takes to forget its kinetic energy.

@@ -240,7 +240,8 @@ TEST_CASE("a filling that was found beyond its range is where corrected/ goes on
   REQUIRE(again.nuisances.size() == 1);
   CHECK_THAT(again.nuisances[0].mean, WithinAbs(0.333, 0.002));
   CHECK_THAT(again.nuisances[0].low, WithinAbs(0.304, 1e-6));
-  CHECK_THAT(again.nuisances[0].high, WithinAbs(again.nuisances[0].mean + 2 * 0.00313, 1e-5));
+  CHECK_THAT(again.nuisances[0].high, WithinAbs(0.340, 1e-6));  // as far as was simulated
+  CHECK(again.nuisances[0].sigma >= 0.00313);
 }
 
 TEST_CASE("corrected/ has what was varied apart as it was fitted, and doubts it again") {

@@ -1,8 +1,11 @@
 // Ranges that are too narrow: what the bank adds, and what is said of it.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "kernel/base/random.hpp"
 #include "made_up_diagnosis.hpp"
 #include "studies/diagnose/bank/beyond.hpp"
 
@@ -51,7 +54,7 @@ TEST_CASE("a strength beyond its prior is found, for the bank reaches farther by
   INFO(d.sentence);
   REQUIRE(d.named == std::vector<std::string>{"rolling_resistance"});
   const Judged& found = judged(d, "rolling_resistance");
-  CHECK_FALSE(found.at_end);
+  CHECK_THAT(d.sentence, !Contains("stands at an end"));
   CHECK(found.strength.low < 1.5);
   CHECK(found.strength.high > 1.5);
   CHECK(found.strength.value > 1.2);
@@ -66,8 +69,8 @@ TEST_CASE("a strength beyond its prior is found, for the bank reaches farther by
 TEST_CASE("a strength beyond all that was simulated is said to be unknown") {
   const Diagnosis d = diagnosed(usual(), with(kRolling + "=0.8"));
   INFO(d.sentence);
-  CHECK(judged(d, "rolling_resistance").at_end);
-  CHECK_THAT(d.sentence, Contains("The fit stands at an end of what was simulated"));
+  CHECK_THAT(d.sentence,
+             Contains("The fit stands at an end of what was simulated (rolling_resistance") && Contains("how strong the effect is"));
 }
 
 TEST_CASE("friction beyond its range is no physics, and the range is said to be too narrow") {
@@ -93,9 +96,31 @@ TEST_CASE("a filling beyond its range is named as that, and not the physics that
   const Diagnosis d = diagnosed(physics, truth, 0.3);
   INFO(d.sentence);
   CHECK(d.named == std::vector<std::string>{"filling"});
-  CHECK_FALSE(judged(d, "filling").at_end);
+  CHECK_THAT(d.sentence, !Contains("stands at an end"));
   CHECK_THAT(judged(d, "filling").theta[2].value, WithinAbs(0.333, 0.002));
   CHECK_THAT(d.sentence, Contains("The range is too narrow: filling = 0.33") && Contains("outside its range 0.304 … 0.322"));
+}
+
+// The range is short against the prior, so that one recording in seven has its filling beyond it and the bank is often widened by the
+// recording itself. At a level of 5 % a name is given in 2 of 40 by chance; 7 and more are broken once in 140.
+TEST_CASE("a bank that reaches farther gives no more false names") {
+  const Scratch folder;
+  const Question q = question_of(folder, "nuisances: {fill.filling: {range: [30.83 %, 31.77 %], sigma: 0.313 %, name: filling}}\n" +
+                                             kSections.substr(kSections.find("hypotheses")));
+  int named = 0, widened = 0;
+  for (std::uint64_t k = 0; k < 40; ++k) {
+    base::RandomStream random(271, k);
+    std::vector<std::string> truth = kTheta;
+    truth[2] = fmt::format("fill.filling={:.4f}", 0.313 + 0.00313 * random.normal());
+    MadeUpMill mill(q, usual(), truth, 0.5);
+    mill.seed = k;
+    const Diagnosis d = found(q, mill);
+    named += d.naming.best ? 1 : 0;
+    widened += d.question.nuisances[0].low < q.nuisances[0].low || d.question.nuisances[0].high > q.nuisances[0].high ? 1 : 0;
+  }
+  INFO(named << " names, widened in " << widened);
+  CHECK(widened >= 4);
+  CHECK(named <= 6);
 }
 
 TEST_CASE("a filling beyond all that was simulated is said to be so") {
@@ -103,8 +128,7 @@ TEST_CASE("a filling beyond all that was simulated is said to be so") {
   truth[2] = "fill.filling=0.36";
   const Diagnosis d = diagnosed(usual(), truth, 0.3);
   INFO(d.sentence);
-  CHECK(judged(d, "filling").at_end);
-  CHECK_THAT(d.sentence, Contains("stands at an end of what was simulated"));
+  CHECK_THAT(d.sentence, Contains("The fit stands at an end of what was simulated (filling): the value is not known"));
 }
 
 TEST_CASE("where nothing of the library helps, what the study takes for granted is asked for first") {

@@ -7,6 +7,7 @@
 #include "dem/support.hpp"
 #include "kernel/config/bead_file.hpp"
 #include "kernel/run/assembly.hpp"
+#include "kernel/run/derived_case.hpp"
 #include "tests/scratch.hpp"
 
 using namespace millscope;
@@ -44,6 +45,18 @@ std::string why(const Folder& folder, const std::string& text) {
 }
 
 }  // namespace
+
+// crosscheck and wear run a case that is derived from the user's: its beads had been cleared out of the file and were not given time to
+// settle.
+TEST_CASE("in a case that is derived from another the beads of a file begin where it puts them") {
+  const Folder folder;
+  const Assembly a = placed(folder, "# x [mm]; y [mm]; z [mm]; radius [mm]\n1.5; -20; 3; 2.5\n-9; -20; 13; 2.5\n");
+  config::Case derived = a.c;
+  run::fill_by_count(derived, a.bead_count);
+  CHECK(derived.fill.file == a.c.fill.file);
+  CHECK_FALSE(derived.fill.count.has_value());
+  CHECK(derived.fill.settle == 0);
+}
 
 TEST_CASE("beads stand where a file puts them, and move as it says") {
   const Folder folder;

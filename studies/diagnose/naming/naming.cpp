@@ -157,13 +157,6 @@ class Namer {
     for (std::size_t k = 0; k < asked.size(); ++k) out_.judged[asked[k]].p_family = family.p(k, observed);
   }
 
-  /// A fitted value at an end of what was simulated. A nuisance whose prior allows that end anyway says nothing by it.
-  static bool ends_there(const Coordinate& c, double coded) {
-    constexpr double kUsual = 2;  // standard deviations
-    const bool expected = c.nuisance() && std::fabs(coded - c.coded(c.prior_mean)) * c.prior_weight() < kUsual;
-    return at_limit(coded, {-1, 1}) && !expected;
-  }
-
   void visibility(Index j) {
     Judged& judged = out_.judged[j];
     const Visibility seen(p_, pseudo_.surrogate(), pseudo_.weighting(), {judged.fit.coded}, j);
@@ -177,11 +170,8 @@ class Namer {
     judged.lambda_curve = seen.curve();
     judged.undetectable = alternative.screened_out || std::sqrt(judged.lambda) < o_.noise_units;
     judged.strength = without_interval(found);
-    judged.at_end = alternative.candidate && at_limit(found, alternative.range);
-    for (Index i = 0; i < judged.fit.coded.size(); ++i) {
-      judged.at_end = judged.at_end || ends_there(p_.data.theta[i], judged.fit.coded[i]);
+    for (Index i = 0; i < judged.fit.coded.size(); ++i)
       judged.theta.push_back(without_interval(p_.data.theta[i].natural(judged.fit.coded[i])));
-    }
   }
 
   /// One p for whether the data look like a draw of the base: Q and the largest residual together (min-p), and of every observable within
@@ -311,6 +301,19 @@ std::vector<StrengthRange> ranges_of(const Problem& problem) {
     if (r.candidate) ranges[*r.candidate] = r.range;
   }
   return ranges;
+}
+
+std::vector<std::string> ends_of(const Problem& problem, const VectorXd& coded, const std::vector<ActiveCandidate>& active) {
+  std::vector<std::string> names;
+  for (const Alternative& a : problem.alternatives) {
+    const auto on = std::find_if(active.begin(), active.end(), [&](const ActiveCandidate& e) { return e.candidate == a.candidate; });
+    if (on != active.end() && at_limit(on->strength, a.range)) names.push_back(a.name);
+  }
+  for (Index i = 0; i < coded.size(); ++i) {
+    const Coordinate& c = problem.data.theta[i];
+    if (c.products == Products::all && at_limit(coded[i], {-1, 1})) names.push_back(c.name);
+  }
+  return names;
 }
 
 Result name_candidates(const Problem& problem, const Options& options) { return Namer(problem, options).run(); }

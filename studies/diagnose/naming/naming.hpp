@@ -28,7 +28,7 @@ struct Alternative {
   std::optional<Index> candidate = {};      ///< of the bank
   std::optional<Index> freed = {};          ///< else: the coordinate whose prior does not count
   StrengthRange range = {};                 ///< of the candidate's strength, within which it is fitted
-  std::optional<StrengthRange> prior = {};  ///< full strength is its end, where `range` reaches farther
+  std::optional<StrengthRange> prior = {};  ///< full strength is its end, where the fit may reach farther; of a nuisance coded
   std::vector<std::string> excludes = {};
   bool screened_out = false;  ///< its first runs showed that it cannot matter: it is not tested
 };
@@ -52,6 +52,10 @@ struct Problem {
 
 /// Within which each candidate of the bank is fitted.
 std::vector<StrengthRange> ranges_of(const Problem& problem);
+
+/// Names of what of a fit stands at an end of what was simulated: candidates, parameters, nuisances. Not nuisances that are varied apart,
+/// nor those of the camera: their range is all that is thought possible.
+std::vector<std::string> ends_of(const Problem& problem, const VectorXd& coded, const std::vector<ActiveCandidate>& active);
 
 struct Options {
   int draws = 2016;            ///< behind the null; 0: diagnose() takes as many as the level asks for
@@ -77,8 +81,7 @@ struct Judged {
   double lambda_found = 0;  ///< at the fitted strength
   std::vector<std::pair<double, double>> lambda_curve;  ///< (strength, λ), strengths rising; of candidates
   bool undetectable = false;
-  bool at_end = false;  ///< the fitted strength, or a parameter or nuisance beside it, stands at an end of what was simulated
-  int runs = 0;         ///< of the bank with this candidate
+  int runs = 0;  ///< of the bank with this candidate
   double lambda_beside =
       kNotWorkedOut;          ///< λ at full strength beside the best candidate, which is refitted as well; of others that may be there too
   bool tested = true;         ///< else it has no runs, or its first ones showed that it cannot matter; its p are 1

@@ -49,8 +49,7 @@ Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const
 }
 
 std::vector<double> Visibility::ends() const {
-  if (alternative_.freed) return {1, -1};
-  const StrengthRange full = alternative_.prior.value_or(alternative_.range);
+  const StrengthRange full = alternative_.prior.value_or(alternative_.freed ? StrengthRange{-1, 1} : alternative_.range);
   if (full.low < 0) return {full.high, full.low};
   return {full.high};
 }

@@ -39,8 +39,15 @@ std::vector<std::string> base_speeds(const fs::path& base) {
   }
 }
 
-bool is_named(const Told& t, const Nuisance& n) {
-  return std::find(t.diagnosis.named.begin(), t.diagnosis.named.end(), n.name) != t.diagnosis.named.end();
+/// The alternative by which the fit that is told leaves the prior of a coordinate; null: it does not.
+const naming::Judged* freed_by(const Told& t, std::size_t coordinate) {
+  const naming::Result& naming = t.diagnosis.naming;
+  std::vector<Index> told{*naming.best};
+  if (t.diagnosis.two_effects) told.push_back(naming.pairs.front().second);
+  for (const Index k : told) {
+    if (t.diagnosis.problem.alternatives[k].freed == static_cast<Index>(coordinate)) return &naming.judged[k];
+  }
+  return nullptr;
 }
 
 /// Of a class the best alone.
@@ -50,7 +57,26 @@ std::string what_is_on(const Told& t) {
   return t.diagnosis.two_effects || named.size() == 1 ? all : fmt::format("{}, the best of {}", named.front(), all);
 }
 
-/// `theta`: as fitted. Where a nuisance was found to stand is the study's prior from here on.
+/// A nuisance of the study. Where the fit that is told stands by leaving its prior, that is believed from here on, no more surely than it
+/// was found; not at an end of what was simulated, where nobody knows.
+std::string nuisance_text(const Told& t, std::size_t i, double value) {
+  const Nuisance& n = t.question.nuisances[i];
+  const std::size_t coordinate = t.question.study.parameters.size() + i;
+  const bool fixed = n.of_camera() || n.usual;
+  const Farthest farthest = fixed ? Farthest{n.low, n.high} : t.question.farthest[coordinate];
+  double low = n.low, high = n.high, mean = n.mean, sigma = n.sigma;
+  const naming::Judged* by = freed_by(t, coordinate);
+  if (!n.usual && by != nullptr && value > farthest.low && value < farthest.high) {
+    mean = rounded(value);
+    if (by->theta[coordinate].known()) sigma = std::max(sigma, rounded(by->theta[coordinate].standard_error()));
+    if (value <= low) low = farthest.low;
+    if (value >= high) high = farthest.high;
+  }
+  return fmt::format("{}: {{name: {}, range: [{:.6g}, {:.6g}], mean: {:.6g}, sigma: {:.6g}{}}}{}", n.path, n.name, low, high, mean, sigma,
+                     n.usual ? ", apart: true" : "", mean == n.mean ? "" : "  # as these recordings have it");
+}
+
+/// `theta`: as fitted.
 std::string study_text(const Told& t, const VectorXd& theta, const fs::path& folder) {
   std::string out = fmt::format("# The study {} on the corrected case.\nschema_version: 1\nbase: case.yaml\n\nconditions:\n",
                                 t.question.study.file.filename().string());
@@ -71,14 +97,9 @@ std::string study_text(const Told& t, const VectorXd& theta, const fs::path& fol
                    outside ? "  # wider than asked: the fit lies outside" : "");
   }
   if (!t.question.nuisances.empty()) out += "\nnuisances:\n";
-  const double* fitted = theta.data() + t.question.study.parameters.size();
-  for (const Nuisance& n : t.question.nuisances) {
-    const double value = *fitted++;
-    const bool moved = is_named(t, n) && !n.usual;
-    const double mean = moved ? rounded(value) : n.mean, room = moved ? 2 * n.sigma : 0;
-    fmt::format_to(std::back_inserter(out), "  {}: {{name: {}, range: [{:.6g}, {:.6g}], mean: {:.6g}, sigma: {:.6g}{}}}\n", n.path, n.name,
-                   std::min(n.low, mean - room), std::max(n.high, mean + room), mean, n.sigma, n.usual ? ", apart: true" : "");
-  }
+  for (std::size_t i = 0; i < t.question.nuisances.size(); ++i)
+    fmt::format_to(std::back_inserter(out), "  {}\n",
+                   nuisance_text(t, i, theta[static_cast<Index>(t.question.study.parameters.size() + i)]));
   return out + choices_text(t.question);
 }
 
@@ -90,8 +111,10 @@ void write_corrected(const Told& t, const fs::path& folder) {
   const VectorXd theta = t.diagnosis.problem.data.natural(fit.coded);
   std::vector<std::string> settings = base_speeds(t.question.study.base);
   for (const std::string& s : t.question.settings(theta, active)) settings.push_back(s);
-  const bool of_camera = std::any_of(t.question.nuisances.begin(), t.question.nuisances.end(),
-                                     [&](const Nuisance& nuisance) { return nuisance.of_camera() && is_named(t, nuisance); });
+  const std::size_t parameters = t.question.study.parameters.size();
+  bool of_camera = false;
+  for (std::size_t i = 0; i < t.question.nuisances.size(); ++i)
+    of_camera = of_camera || (t.question.nuisances[i].of_camera() && freed_by(t, parameters + i) != nullptr);
   fs::create_directories(folder);
   output::write_file(folder / "case.yaml",
                      calibrate::case_with(fmt::format("{} {}, as 'millscope diagnose' found it: {}.",

@@ -190,7 +190,8 @@ Json diagnosis_json(const Told& t) {
                         {"sentence", mismatch_sentence(t, m)}});
   }
   Json contact = {{"retuned", parameters(t, d.naming.base_theta)}};
-  if (d.naming.best && !d.naming.judged[*d.naming.best].at_end) contact["unmasked"] = parameters(t, d.naming.judged[*d.naming.best].theta);
+  if (const auto [fit, active] = fit_of(d); d.naming.best && naming::ends_of(d.problem, fit.coded, active).empty())
+    contact["unmasked"] = parameters(t, d.naming.judged[*d.naming.best].theta);
   Json pairs = Json::array();
   for (const naming::Pair& p : d.naming.pairs) {
     pairs.push_back({{"first", d.problem.alternatives[p.first].name},

@@ -8,10 +8,10 @@
 namespace millscope::diagnose {
 namespace {
 
-/// The farthest of `from` + 1, ½ and ¼ `step` at which the case can be run; `from` where none can.
+/// The farthest of `from` + 1, ½, ¼ and ⅛ `step` at which the case can be run; `from` where none can.
 template <class Settings>
 double farthest(const calibrate::Study& study, const host::Registry& registry, double from, double step, const Settings& settings_at) {
-  for (const double share : {1.0, 0.5, 0.25}) {
+  for (const double share : {1.0, 0.5, 0.25, 0.125}) {
     const double value = from + share * step;
     try {
       resolved(study, settings_at(value), registry);

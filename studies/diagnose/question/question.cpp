@@ -48,6 +48,7 @@ void collect_nuisances(const Node& node, std::size_t prefix, const host::Registr
   const std::string unit = n.of_camera() ? camera_frame_unit(node, n.path, registry) : "";
   const auto read = [&](const Node& value) { return n.of_camera() ? config::read_number(value, unit) : number(value); };
   std::tie(n.low, n.high) = range(node.at("range"), read);
+  n.asked = {n.low, n.high};
   n.mean = node.has("mean") ? read(node.at("mean")) : 0.5 * (n.low + n.high);
   n.sigma = read(node.at("sigma", "standard deviation of what is known of it"));
   n.name = node.has("name") ? node.at("name").text() : n.path.substr(n.path.rfind('.') + 1);

@@ -25,8 +25,9 @@ namespace millscope::diagnose {
 
 /// A value of the case, or of the recording's camera, that is known with an error only.
 struct Nuisance {
-  std::string path, name;    ///< of the camera: camera.frame_error.PARAMETER
-  double low = 0, high = 0;  ///< what the bank covers
+  std::string path, name;            ///< of the camera: camera.frame_error.PARAMETER
+  double low = 0, high = 0;          ///< what the bank covers
+  naming::StrengthRange asked = {};  ///< the same as the study gives it; the bank may reach beyond
   double mean = 0, sigma = 0;
   std::optional<double> usual;  ///< varied apart: the case's own value, which all other simulations have
   base::Location where;

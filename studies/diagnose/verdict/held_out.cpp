@@ -192,16 +192,6 @@ class HeldOutTrial {
     return std::find_if(ways_.begin(), ways_.end(), [&](const Way& w) { return w.name == p.name; }) - ways_.begin();
   }
 
-  /// At a corner of what was simulated the surrogate may err by more than left-out runs show, most of which lie within.
-  bool at_end(const Way& way) const {
-    for (Index i = 0; i < static_cast<Index>(r_.question.case_dimensions()); ++i) {
-      if (naming::at_limit(way.coded[i], {-1, 1})) return true;
-    }
-    const std::vector<naming::StrengthRange> ranges = naming::ranges_of(r_.problem);
-    return std::any_of(way.active.begin(), way.active.end(),
-                       [&](const naming::ActiveCandidate& e) { return at_limit(e.strength, ranges[e.candidate]); });
-  }
-
   /// The ways that have to be simulated next; none: what is known suffices.
   std::set<std::size_t> to_simulate(const HeldOut& out) const {
     std::set<std::size_t> wanted;
@@ -209,8 +199,8 @@ class HeldOutTrial {
     const auto ask = [&](std::size_t way) {
       if (!ways_[way].prediction.simulated) wanted.insert(way);
     };
-    for (std::size_t k = 0; compared() && k < ways_.size(); ++k) {
-      if (at_end(ways_[k])) ask(k);
+    for (std::size_t k = compared() ? 0 : ways_.size() - 1; k < ways_.size(); ++k) {  // at an end the surrogate errs most
+      if (!naming::ends_of(r_.problem, ways_[k].coded, ways_[k].active).empty()) ask(k);
     }
     for (std::size_t k = compared() ? 1 : 0; k < out.scores.size(); ++k) {
       if (out.scores[k].reliance.enough()) continue;

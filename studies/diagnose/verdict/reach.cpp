@@ -89,8 +89,11 @@ std::vector<std::pair<Index, Index>> pairs_asked_for(const naming::Problem& prob
   const auto& alternatives = problem.alternatives;
   const std::vector<Index> tested = look.candidates();
   std::vector<double> q;
-  for (const Index a : tested) q.push_back(look.fit(alternatives[a]).q);
-  const double least = q.empty() ? look.base.q : *std::min_element(q.begin(), q.end());
+  double least = look.base.q;  // of nuisances, too
+  for (const naming::Alternative& a : alternatives) {
+    if (a.freed) least = std::min(least, look.fit(a).q);
+  }
+  for (const Index a : tested) q.push_back(look.fit(alternatives[a]).q), least = std::min(least, q.back());
   if (least > look.base.q - kHelpsSurely) return {};
   std::vector<Index> seconds;
   std::copy_if(tested.begin(), tested.end(), std::back_inserter(seconds), [&](Index a) {

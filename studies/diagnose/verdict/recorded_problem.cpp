@@ -78,7 +78,12 @@ std::vector<naming::Alternative> alternatives_of(const Question& question) {
                             .excludes = c.excludes});
   }
   Index coordinate = std::ssize(question.study.parameters);
-  for (const Nuisance& n : question.nuisances) alternatives.push_back({.name = n.name, .freed = coordinate++});
+  const std::vector<naming::Coordinate> coordinates = question.coordinates();
+  for (const Nuisance& n : question.nuisances) {
+    const naming::Coordinate& c = coordinates[coordinate];
+    alternatives.push_back(
+        {.name = n.name, .freed = coordinate++, .prior = naming::StrengthRange{c.coded(n.asked.low), c.coded(n.asked.high)}});
+  }
   return alternatives;
 }
 

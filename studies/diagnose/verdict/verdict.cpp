@@ -160,10 +160,10 @@ void tell_ranges(const Question& asked, Diagnosis& diagnosis) {
     diagnosis.sentence += fmt::format(" The range is too narrow: {}.", fmt::join(outside, "; "));
     if (diagnosis.next_experiment.empty()) diagnosis.next_experiment = "Widen the range in the study if such a value is possible.";
   }
-  if (diagnosis.naming.best && diagnosis.naming.judged[*diagnosis.naming.best].at_end)
-    diagnosis.sentence += is_nuisance(diagnosis) ? " The fit stands at an end of what was simulated: the value may lie farther."
-                                                 : " The fit stands at an end of what was simulated: how strong the effect is, and what "
-                                                   "friction is beside it, is not known.";
+  const std::vector<std::string> ends = naming::ends_of(diagnosis.problem, fit.coded, active);
+  if (diagnosis.naming.best && !ends.empty())
+    diagnosis.sentence += fmt::format(" The fit stands at an end of what was simulated ({}): {} not known.", fmt::join(ends, ", "),
+                                      active.empty() ? "the value is" : "how strong the effect is, and what friction is beside it, is");
 }
 
 /// What could be seen for itself, but not beside the best: it may be there as well.

@@ -13,7 +13,8 @@ const either = (names) => (names.length < 2 ? names.join("") : `${names.slice(0,
 
 function namedSentence(row, unmasked) {
   const p = pValue(row.p_value);
-  const amount = unmasked ? strength(row, "90 %: ") : "how strong it is, is not known";
+  const unknown = row.kind === "nuisance" ? "what it is, is not known" : "how strong it is, is not known";
+  const amount = unmasked ? strength(row, "90 %: ") : unknown;
   return row.kind === "nuisance" ? `The case states ${words(row.name)} wrongly: ${amount}; ${p}.` : `The simulation leaves out ${words(row.name)}: ${amount}; ${p}.`;
 }
 
