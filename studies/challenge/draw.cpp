@@ -97,7 +97,9 @@ campaign::Simulation simulation_of(const Challenge& challenge, const diagnose::Q
   s.settings.insert(s.settings.end(), challenge.truth.begin(), challenge.truth.end());
   s.settings.insert(s.settings.end(), truth.settings.begin(), truth.settings.end());
   const config::Case truth_case = config::read_case(s.case_file.string(), s.settings);
-  s.settings.push_back(fmt::format("time.end_s={}", truth_case.time.analyze_from + challenge.seconds));
+  const bool held_out = q.study.conditions[condition].role == calibrate::Role::held_out;
+  const double seconds = held_out ? challenge.held_out_seconds : challenge.seconds;
+  s.settings.push_back(fmt::format("time.end_s={}", truth_case.time.analyze_from + seconds));
   s.settings.push_back(fmt::format("output.tracks={{beads: {}, every_s: {}}}", challenge.beads, kTrackStep));
   // Beads that are set apart draw their share of the power, which a mill with one tracer does not: frames say how much.
   s.settings.push_back(truth_case.has_tracers() ? fmt::format("output.frames={{every_s: {}}}", kFrameStep) : "output.frames=~");

@@ -107,7 +107,9 @@ void make(const Challenge& challenge, const diagnose::Question& question, const 
   require_playable(simulations, registry);
   fs::create_directories(options.output / "answers");
   if (options.campaign.cache.empty()) options.campaign.cache = options.output / "answers" / "cache";
-  say(fmt::format("{} sets of {} conditions, {:.4g} s each", truths.size(), conditions, challenge.seconds));
+  const std::string longer =
+      challenge.held_out_seconds == challenge.seconds ? "" : fmt::format(", held out {:.4g} s", challenge.held_out_seconds);
+  say(fmt::format("{} sets of {} conditions, {:.4g} s each{}", truths.size(), conditions, challenge.seconds, longer));
   const std::vector<campaign::Outcome> outcomes = campaign::run(simulations, options.campaign);
   refuse_failed(simulations, outcomes);
   std::vector<Answer> answers;

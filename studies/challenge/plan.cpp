@@ -173,7 +173,7 @@ const char* name_of(Kind kind) {
 
 Challenge read_challenge(const fs::path& file, const std::vector<std::string>& overrides) {
   const Node root = config::load_document_with_paths(file.string(), overrides);
-  root.expect({"schema_version", "study", "camera", "seed", "truth", "beads", "seconds", "sets"});
+  root.expect({"schema_version", "study", "camera", "seed", "truth", "beads", "seconds", "held_out_seconds", "sets"});
   if (const auto version = root.find("schema_version")) {
     if (config::read_integer(*version, between(1, 1e9)) != 1) version->fail("is not 1; this millscope reads version 1");
   }
@@ -195,6 +195,8 @@ Challenge read_challenge(const fs::path& file, const std::vector<std::string>& o
   }
   if (const auto node = root.find("beads")) c.beads = static_cast<int>(config::read_integer(*node, between(1, kMostBeads)));
   if (const auto node = root.find("seconds")) c.seconds = config::read_number(*node, "s", config::positive());
+  const auto held_out = root.find("held_out_seconds");
+  c.held_out_seconds = held_out ? config::read_number(*held_out, "s", config::positive()) : c.seconds;
   const Node sets = root.at("sets", "a list of what is made");
   int count = 0;
   for (const Node& item : sets.items()) {

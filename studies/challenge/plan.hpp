@@ -6,6 +6,7 @@
 //   truth: {set: {stiffness_factor: 0.01, contact.law.cap: sum}}
 //   beads: 60                                    # tracers of every condition
 //   seconds: 20                                  # of each
+//   held_out_seconds: 40                         # of each in a held-out condition (default: seconds)
 //   sets:
 //     - {kind: none, count: 5}
 //     - {kind: effect, hypothesis: rolling_resistance, strength: [0.3, 1], count: 3}
@@ -47,7 +48,7 @@ struct Challenge {
   std::vector<std::string> truth;  ///< settings of all truths
   base::Location truth_where;
   int beads = 60;
-  double seconds = 20;
+  double seconds = 20, held_out_seconds = 20;
   std::vector<SetsOf> sets;
 };
 

@@ -200,6 +200,25 @@ TEST_CASE("a decoy is made with what it sets, and its answer says so") {
         }).find("which is no parameter or drawn nuisance of the study by itself: that is no decoy") != std::string::npos);
 }
 
+TEST_CASE("a held-out condition is recorded for as long as the challenge asks") {
+  Made made;
+  std::string study = kStudy;
+  study.replace(study.find("parameters:"), 0,
+                "  slow: {set: {mill.speed: 50 %critical, time.analyze_from_s: 0.05}, recording: still_to_be_made.yaml, role: held_out}\n");
+  std::ofstream(made.folder / "study.yaml") << study;
+  std::ofstream(made.folder / "c.yaml") << kChallenge << "held_out_seconds: 0.7\n";
+  for (const auto& [overrides, held_out] : std::map<std::string, double>{{"", 0.7}, {"held_out_seconds=2", 2}}) {
+    const Challenge c = read_challenge(made.folder / "c.yaml", overrides.empty() ? std::vector<std::string>{} : std::vector{overrides});
+    const diagnose::Question q = question_of(c, made.registry);
+    const Truth t = draw_truths(c, q).front();
+    for (std::size_t k = 0; k < 2; ++k) {
+      const campaign::Simulation s = simulation_of(c, q, t, k, "");
+      const double end = config::read_case(s.case_file.string(), s.settings).time.end;
+      CHECK(end == Approx(0.05 + (q.study.conditions[k].role == calibrate::Role::held_out ? held_out : 0.4)));
+    }
+  }
+}
+
 TEST_CASE("a set whose diagnosis throws is noted, and the others are tried") {
   Made made;
   seal(made.sets, {{"set_001", challenge::Kind::none, "", {}, {}, {}}, {"set_002", challenge::Kind::none, "", {}, {}, {}}},
