@@ -3,9 +3,9 @@
 
     millscope challenge score docs/proof/BATCH …      # writes what this reads
 
-A row for each set with physics hidden that a diagnosis names, or lists in a class. On the speed that was held out it shows the misfit of the base whose
-friction was retuned to its power (the practice), and that of the corrected model. Below 1 nothing is left beyond chance. A star: practice sees nothing
-of it at the speed where it tuned.
+A row for each set with physics hidden, found or not. On the speed that was held out it shows the misfit of three models: the base whose friction was retuned
+to its power (the practice), the base that was refitted to all that was recorded, and the corrected model where there is one. Bands: what the two
+bases come out as in nine of ten sets where nothing is hidden. A star: practice sees nothing of it at the speed where it tuned.
 """
 
 import argparse
@@ -15,8 +15,9 @@ import sys
 from html import escape
 from pathlib import Path
 
-BASE, CORRECTED, INK, FAINT = "#d55e00", "#0072b2", "#1b2733", "#8a97a3"
-LEFT, WIDTH, ROW, TOP = 362, 320, 26, 96
+MODELS = {"retuned to power": ("#d55e00", "retuned to its power"), "retuned to all observables": ("#8a6d00", "refitted to everything"), "corrected": ("#0072b2", "corrected")}
+INK, FAINT = "#1b2733", "#8a97a3"
+LEFT, WIDTH, ROW, TOP = 392, 320, 24, 122
 
 
 def text(x, y, words, **attributes):
@@ -24,43 +25,56 @@ def text(x, y, words, **attributes):
     return '<text x="%.1f" y="%.1f"%s>%s</text>' % (x, y, more, escape(words))
 
 
+def misfits_of(diagnosis):
+    held = diagnosis.get("held_out") or [{"models": []}]
+    return {model["model"]: model["misfit"] for model in held[0]["models"] if model["model"] in MODELS}
+
+
 def rows_of(batch):
-    """[(hidden, verdict, concealed, misfit of the base, misfit corrected)] of a batch that is scored."""
-    found = []
+    """[(hidden, what is said of it, {model: misfit})] of the sets with effects, and [{model: misfit}] of those with nothing hidden."""
+    found, empty = [], []
     for one in json.loads((batch / "score.json").read_text())["every_set"]:
-        diagnosis = json.loads((batch / one["set"] / "diagnosis" / "diagnosis.json").read_text())
-        effects = one["truth"] != "none" and not one["truth"].startswith(("decoy:", "outside:"))
-        if not effects or not diagnosis.get("held_out") or diagnosis["verdict"] not in ("named", "ambiguous"):
-            continue
-        misfits = {model["model"]: model["misfit"] for model in diagnosis["held_out"][0]["models"]}
-        if "corrected" not in misfits or "retuned to power" not in misfits:
-            continue
-        concealed = (one.get("concealment") or {}).get("unsuspicious", False)  # without long runs not known: then nothing is marked
-        found.append((one["truth"].replace("_", " "), diagnosis["verdict"], concealed, misfits["retuned to power"], misfits["corrected"]))
-    return found
+        file = batch / one["set"] / "diagnosis" / "diagnosis.json"
+        diagnosis = json.loads(file.read_text()) if file.exists() else {"verdict": "failed"}
+        if one["truth"] == "none":
+            empty.append(misfits_of(diagnosis))
+        elif not one["truth"].startswith(("decoy:", "outside:")):
+            concealed = (one.get("concealment") or {}).get("unsuspicious", False)  # without long runs not known: then nothing is marked
+            listed = {"named": "", "ambiguous": "listed"}.get(diagnosis["verdict"], "missed")
+            said = listed if listed == "missed" or not one["missed"] else "in part"
+            name = ("★ " if concealed else "") + one["truth"].replace("_", " ") + (" (%s)" % said if said else "")
+            found.append((name, misfits_of(diagnosis)))
+    return found, empty
 
 
-def picture(rows):
-    rows = sorted(rows, key=lambda row: -row[3])
-    low, high = min(min(r[3:]) for r in rows), max(max(r[3:]) for r in rows)
-    ends = math.floor(math.log10(low)), math.ceil(math.log10(high))
+def band(empty, model):
+    """Where nine of ten lie."""
+    values = sorted(row[model] for row in empty if model in row)
+    return (values[int(0.05 * (len(values) - 1))], values[math.ceil(0.95 * (len(values) - 1))]) if len(values) > 9 else None
+
+
+def picture(rows, empty):
+    rows = sorted((row for row in rows if row[1]), key=lambda row: -row[1].get("retuned to power", 0))
+    values = [misfit for _, misfits in rows for misfit in misfits.values()]
+    ends = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)))
     px = lambda misfit: LEFT + WIDTH * (math.log10(misfit) - ends[0]) / (ends[1] - ends[0])
     bottom = TOP + ROW * len(rows)
-    parts = [text(20, 32, "The speed that nobody fitted: misfit a number", font_weight="bold", font_size=18),
-             '<circle cx="28" cy="56" r="6" fill="%s"/>' % BASE + text(42, 61, "base, friction retuned to its power"),
-             '<circle cx="322" cy="56" r="6" fill="%s"/>' % CORRECTED + text(336, 61, "corrected model"),
-             text(486, 61, "★ concealed from practice")]
+    parts = [text(20, 32, "The speed that nobody fitted: misfit a number; about 1 is chance", font_weight="bold", font_size=18)]
+    for k, (model, (colour, words)) in enumerate(MODELS.items()):
+        parts.append('<circle cx="%d" cy="56" r="5" fill="%s"/>' % (28 + 210 * k, colour) + text(40 + 210 * k, 61, words))
+        if (wide := band(empty, model)) is not None:
+            parts.append('<rect x="%.1f" y="%d" width="%.1f" height="%d" fill="%s" opacity="0.1"/>' % (px(wide[0]), TOP - 12, px(wide[1]) - px(wide[0]), bottom - TOP + 12, colour))
+    parts.append(text(20, 86, "Bands: the same two bases where nothing is hidden (nine of ten sets). ★ concealed from practice.", fill=FAINT, font_size=14))
     for power in range(ends[0], ends[1] + 1):
         parts.append('<path d="M%.1f %dV%d" stroke="#e3e8ec"/>' % (px(10.0**power), TOP - 12, bottom) + text(px(10.0**power), bottom + 20, "%g" % 10.0**power, text_anchor="middle", fill=FAINT))
     parts.append('<path d="M%.1f %dV%d" stroke="%s" stroke-dasharray="5 4"/>' % (px(1), TOP - 12, bottom, INK))
-    for k, (hidden, verdict, concealed, base, corrected) in enumerate(rows):
+    for k, (name, misfits) in enumerate(rows):
         y = TOP + ROW * k + 6
-        name = ("★ " if concealed else "") + hidden + ("" if verdict == "named" else " (in a class)")
         parts.append(text(LEFT - 14, y + 5, name, text_anchor="end", font_size=14))
-        parts.append('<path d="M%.1f %dH%.1f" stroke="%s" stroke-width="2"/>' % (px(base), y, px(corrected), FAINT))
-        parts += ['<circle cx="%.1f" cy="%d" r="6" fill="%s"/>' % (px(v), y, colour) for v, colour in ((base, BASE), (corrected, CORRECTED))]
-    return ('<svg xmlns="http://www.w3.org/2000/svg" width="720" height="%d" viewBox="0 0 720 %d" role="img" aria-label="Misfit on the held-out speed of the retuned base '
-            'and of the corrected model, set by set" font-family="system-ui, Helvetica, Arial, sans-serif" font-size="15" fill="%s">\n<rect width="720" height="%d" rx="12" fill="#fff"/>\n%s\n</svg>\n'
+        parts.append('<path d="M%.1f %dH%.1f" stroke="%s" stroke-width="1.5"/>' % (px(min(misfits.values())), y, px(max(misfits.values())), FAINT))
+        parts += ['<circle cx="%.1f" cy="%d" r="5" fill="%s"/>' % (px(misfits[model]), y, colour) for model, (colour, _) in MODELS.items() if model in misfits]
+    return ('<svg xmlns="http://www.w3.org/2000/svg" width="740" height="%d" viewBox="0 0 740 %d" role="img" aria-label="Misfit on the held-out speed of two retuned bases '
+            'and of the corrected model, set by set" font-family="system-ui, Helvetica, Arial, sans-serif" font-size="15" fill="%s">\n<rect width="740" height="%d" rx="12" fill="#fff"/>\n%s\n</svg>\n'
             % (bottom + 36, bottom + 36, INK, bottom + 36, "\n".join(parts)))
 
 
@@ -70,12 +84,13 @@ def main():
     parser.add_argument("-o", "--output", type=Path, required=True, help="the SVG file")
     arguments = parser.parse_args()
     try:
-        rows = [row for batch in arguments.batches for row in rows_of(batch)]
+        read = [rows_of(batch) for batch in arguments.batches]
     except FileNotFoundError as missing:
         sys.exit("proof_picture: %s is missing; run 'millscope challenge score' on these batches first" % missing.filename)
-    if not rows:
-        sys.exit("proof_picture: no set of these batches has something hidden that was found; give another batch")
-    arguments.output.write_text(picture(rows))
+    rows, empty = (sum(parts, []) for parts in zip(*read))
+    if not any(misfits for _, misfits in rows):
+        sys.exit("proof_picture: no set of these batches has physics hidden and a held-out condition; give another batch")
+    arguments.output.write_text(picture(rows, empty))
 
 
 if __name__ == "__main__":

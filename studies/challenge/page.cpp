@@ -1,10 +1,15 @@
 #include "studies/challenge/page.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <set>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/challenge/concealment.hpp"
 
 namespace millscope::challenge {
@@ -28,34 +33,107 @@ Json count_json(const Count& c) {
 /// Lines of counts, misses beside hits.
 void add_counts(const Score& s, std::string& out) {
   const auto line = [&](const char* what, const Count& c) { add(out, "| {} | {} | {} |\n", what, count_text(c), c.of - c.hits); };
-  out += "| of the sets with … | counted | the others |\n|---|---|---|\n";
+  out += "## Counted\n\n| of the sets with … | counted | the others |\n|---|---|---|\n";
   line("nothing hidden: something is said to be missing (false alarm)", s.false_alarms);
-  line("nothing hidden: a name is given", s.false_names);
   line("nothing hidden: physics is named or listed", s.false_physics);
-  line("one effect: named alone, and rightly", s.named_alone);
+  line("one effect: the verdict is `named`, and right", s.named_alone);
   line("one effect: the best candidate is the truth (top-1)", s.best_right);
-  line("one effect: the truth is among those named", s.in_class);
-  line("one effect: the truth is named, alone or in a class of two", s.in_class_of_two);
+  line("one effect: the truth is listed, alone or in a class of two", s.in_class_of_two);
+  line("one effect: the truth is listed", s.in_class);
   line("one effect: said to lie outside the library (wrong abstention)", s.abstained_on_effect);
   line("two effects: both named, together", s.two_both);
-  line("two effects: both among those named", s.two_class);
-  line("two effects: at least one named", s.two_one);
+  line("two effects: at least one listed", s.two_one);
   line("physics outside the list: said to lie outside (right abstention)", s.outside_abstained);
   line("physics outside the list: something of the list named (wrong)", s.outside_named);
   line("physics outside the list: not noticed", s.outside_missed);
-  line("decoy (another camera, or what is believed is wrong): physics is named (wrong)", s.decoys_named);
+  line("decoy (another camera, or what is believed is wrong): physics is listed (wrong)", s.decoys_named);
   line("decoy: said to lie outside the library (wrong)", s.decoys_outside);
   if (std::isfinite(s.mean_class))
-    add(out, "\nWhere one effect is hidden and something is named, {:.2f} candidates are named in the mean.\n", s.mean_class);
+    add(out, "\nWhere one effect is hidden and something is listed, {:.2f} candidates are listed in the mean.\n", s.mean_class);
+  out +=
+      "\nIntervals behind counts are of Clopper and Pearson (1934), 5 % on each side. They take sets as independent; sets of one mill "
+      "share one bank of simulations. A diagnosis that failed counts as a miss where something is to be found, and nowhere else.\n\n";
 }
 
-/// A test that is silent has p-values that are all high; one that alarms too often, low ones.
+/// Of which sets, by whom, against which candidates.
+void add_tried(const Page& page, std::string& out) {
+  std::map<std::string, int> engines, candidates;
+  std::set<double> levels;
+  for (const Marked& m : page.sets) {
+    if (!m.engine().empty()) ++engines[m.engine()];
+    if (!m.found) continue;
+    if (std::isfinite(m.found->level)) levels.insert(100 * m.found->level);
+    for (const Tested& t : m.found->hypotheses) candidates[t.name] += t.physics ? 0 : 1;
+  }
+  std::vector<std::string> played, physics, nuisances;
+  for (const auto& [engine, sets] : engines) played.push_back(fmt::format("{} ({} sets)", engine, sets));
+  for (const auto& [name, beliefs] : candidates) (beliefs == 0 ? physics : nuisances).push_back(name);
+  out += "**No recording here is of a real mill.** Each is a simulation that a made-up camera has seen";
+  if (!played.empty()) add(out, ", played by {}", fmt::join(played, ", "));
+  add(out, ". Candidates: {}. Beliefs that may be wrong: {}. ", fmt::join(physics, ", "),
+      nuisances.empty() ? "none" : fmt::format("{}", fmt::join(nuisances, ", ")));
+  if (!levels.empty()) add(out, "A false alarm is allowed in {:g} % of the sets. ", fmt::join(levels, ", "));
+  out += "All sets of one mill share one bank of simulations.\n\n";
+}
+
+/// What a reader of a diagnosis wants to know first.
+void add_said(const Score& s, std::string& out) {
+  out +=
+      "## When it says …\n\nThe shares hang on the mix of sets that was drawn.\n\n"
+      "| it says | sets | right | in part: the truth is among more, or not all of it | wrong |\n|---|---|---|---|---|\n";
+  const auto brief = [](int count) { return count == 0 ? std::string() : std::to_string(count); };
+  for (const Said& one : s.said)
+    add(out, "| {} | {} | {} | {} | {} |\n", one.what, one.right + one.part + one.wrong, brief(one.right), brief(one.part),
+        brief(one.wrong));
+  out += "\n";
+}
+
+/// Each kind of decoy for itself: a camera is another thing than a belief.
+void add_decoys(const Page& page, std::string& out) {
+  std::map<std::string, Count> kinds;
+  for (const Marked& m : page.sets) {
+    if (m.found && m.answer.kind == Kind::decoy) kinds[m.answer.name].add(!m.missed());
+  }
+  if (kinds.empty()) return;
+  out += "| decoy | right: no physics listed, nor said to lie outside |\n|---|---|\n";
+  for (const auto& [name, right] : kinds) add(out, "| {} | {} of {} |\n", name, right.hits, right.of);
+  out += "\n";
+}
+
+double median_of(std::vector<double> values) { return base::quantile(values, 0.5); }
+
+/// "Half of them lie above 0.6": in a test whose errors are right, half lie above a half.
 void add_p_values(const char* of, const std::vector<double>& p, std::string& out) {
   if (p.empty()) return;
   add(out,
-      "Of these {} sets, {}: should lie evenly between 0 and 1 or higher. By chance they would be as low with a probability of {:.2g}, "
-      "and as high, if they lie evenly, with {:.2g} (Kolmogorov, one-sided).\n\n",
-      p.size(), of, low_p(p), high_p(p));
+      "- **{}**: half of them lie above {:.2f}, the smallest is {:.2g}. Even ones would come out so low with a probability of {:.2g}, so "
+      "high with {:.2g} "
+      "(Kolmogorov, one-sided).\n",
+      of, median_of(p), *std::min_element(p.begin(), p.end()), low_p(p), high_p(p));
+}
+
+/// Whether errors are as large as they are said to be.
+void add_calibration(const Score& s, std::string& out) {
+  if (s.empty_p.empty() && s.empty_base_p.empty()) return;
+  out +=
+      "## Are the errors right?\n\nIn the sets with nothing hidden the p-values should lie evenly between 0 and 1. Low ones mean false "
+      "alarms, high ones a test that is "
+      "milder than it says.\n\n";
+  add_p_values("Smallest p of a hypothesis, for all of them", s.empty_p, out);
+  add_p_values("p of the base", s.empty_base_p, out);
+  if (!s.empty_base_q.empty())
+    add(out,
+        "- **Misfit of the refitted base, of each number**: median {:.2f}, from {:.2f} to {:.2f}. A little below 1 is right; far below, "
+        "errors are taken for "
+        "larger than they are.\n",
+        median_of(s.empty_base_q), *std::min_element(s.empty_base_q.begin(), s.empty_base_q.end()),
+        *std::max_element(s.empty_base_q.begin(), s.empty_base_q.end()));
+  Count all;
+  for (const Coverage& c : s.coverage) {
+    if (c.varies) all.hits += c.inside.hits, all.of += c.inside.of;
+  }
+  if (all.of > 0) add(out, "- **90 % intervals** hold the truth in {}, all quantities below together.\n", count_text(all));
+  out += "\n";
 }
 
 /// The counts that matter most, by who played which mill; nothing where all is one.
@@ -63,7 +141,7 @@ void add_groups(const Page& page, std::string& out) {
   const std::vector<Group> groups = groups_of(page.sets);
   if (groups.size() < 2) return;
   out +=
-      "| played by | sets of | nothing hidden: physics named | one effect, λ ≥ 30: named, alone or in a class of two | two: both named, "
+      "| played by | sets of | nothing hidden: physics named | one effect, λ ≥ 30: listed, alone or in a class of two | two: both named, "
       "together | outside: said so | decoy: physics named |\n|---|---|---|---|---|---|---|\n";
   const auto brief = [](const Count& c) { return c.of == 0 ? std::string() : fmt::format("{} of {}", c.hits, c.of); };
   for (const Group& g : groups) {
@@ -148,25 +226,24 @@ std::string page_text(const Page& page) {
   const Score& s = page.score;
   std::string out = "# Score of a challenge\n\n";
   add(out, "    {}\n\n", page.command);
-  add(out,
-      "{} sets, {} diagnosed, {} of which failed; {} still to be diagnosed. Every answer has the hash that its manifest gives it; {}.\n\n",
-      s.sets, s.diagnosed, s.failed, s.sets - s.diagnosed, manifests_text(page));
+  add(out, "{} sets, {} diagnosed, {} of which failed; {} still to be diagnosed.\n\n", s.sets, s.diagnosed, s.failed, s.sets - s.diagnosed);
+  add_tried(page, out);
   if (s.false_physics.of > 0)
     add(out,
         "**Nothing hidden: physics is named or listed in {} of {}; with 95 % confidence the rate is below {:.1f} %. Something is said to "
-        "be "
-        "missing in {} of {}; below {:.1f} %.**\n\n",
+        "be missing in {} of {}; below {:.1f} %.**\n\n",
         s.false_physics.hits, s.false_physics.of, 100 * upper_bound(s.false_physics, kSure), s.false_alarms.hits, s.false_alarms.of,
         100 * upper_bound(s.false_alarms, kSure));
-  add_p_values("the smallest p of a hypothesis", s.empty_p, out);
-  add_p_values("p of the base", s.empty_base_p, out);
   add_groups(page, out);
+  add_said(s, out);
+  add_decoys(page, out);
+  out += misses_text(page);
   add_counts(s, out);
-  out +=
-      "\nIntervals behind counts are of Clopper and Pearson (1934), 5 % on each side. They take sets as independent; sets of one mill "
-      "share one "
-      "bank of simulations. A diagnosis that failed counts as a miss where something is to be found, and nowhere else.\n\n";
-  return out + tables_text(page);
+  out += figures_text(page);
+  add_calibration(s, out);
+  out += sets_text(page);
+  add(out, "## Hashes\n\nEvery answer has the hash that its manifest gives it; {}.\n", manifests_text(page));
+  return out;
 }
 
 Json score_json(const Page& page) {
@@ -181,6 +258,12 @@ Json score_json(const Page& page) {
     recovery.push_back({{"parameter", r.parameter}, {"sets", r.sets}, {"error_retuned", r.retuned}, {"error_unmasked", r.unmasked}});
   for (const GainCount& g : s.gains)
     gains.push_back({{"against", g.model}, {"surely", count_json(g.surely)}, {"median_improvement", g.median}});
+  Json said = Json::array(), power_errors = Json::array();
+  for (const Said& one : s.said) said.push_back({{"what", one.what}, {"right", one.right}, {"in_part", one.part}, {"wrong", one.wrong}});
+  for (const PowerError& e : s.held_out_power)
+    power_errors.push_back({{"model", e.model},
+                            {"one_effect", {{"mean", e.effect}, {"sets", e.effects}}},
+                            {"empty", {{"mean", e.empty}, {"sets", e.empties}}}});
   return {{"schema_version", 2},
           {"command", page.command},
           {"manifest_hash", page.manifests.at(0).second},
@@ -211,6 +294,8 @@ Json score_json(const Page& page) {
           {"strengths", strengths_json(s)},
           {"recovery", recovery},
           {"held_out", gains},
+          {"held_out_power_percent", power_errors},
+          {"said", said},
           {"held_out_better_than_every_rival", count_json(s.improves)},
           {"not_held_out", s.not_held_out},
           {"confusion", {{"truths", s.truths}, {"diagnoses", s.answers}, {"counts", s.confusion}}},

@@ -25,7 +25,9 @@ nlohmann::ordered_json score_json(const Page& page);
 
 /// "3 of 4 (75 %; 90 %: 25 … 99 %)"; "none tried".
 std::string count_text(const Count& count);
-/// The tables of the page: of every set, confusion, power, strengths, coverage, recovery, gains.
-std::string tables_text(const Page& page);
+/// Parts of the page: what went wrong; power, held-out gain, strengths, coverage, recovery; every set and what of it is concealed.
+std::string misses_text(const Page& page);
+std::string figures_text(const Page& page);
+std::string sets_text(const Page& page);
 
 }  // namespace millscope::challenge

@@ -55,6 +55,20 @@ std::map<std::string, double> practice_from(const Json& held_out) {
   return out;
 }
 
+std::map<std::string, double> power_from(const Json& held_out) {
+  std::map<std::string, int> counts;
+  std::map<std::string, double> out;
+  for (const Json& h : held_out) {
+    for (const Json& model : h.at("models")) {
+      const double error = model.contains("power_percent") ? number(model.at("power_percent")) : std::nan("");
+      if (!std::isfinite(error)) continue;
+      const std::string name = model.at("model");
+      out[name] += (std::fabs(error) - out[name]) / ++counts[name];
+    }
+  }
+  return out;
+}
+
 std::optional<bool> improves_from(const Json& held_out) {
   std::optional<bool> out;
   for (const Json& h : held_out) {
@@ -81,7 +95,12 @@ Found found_from(const Json& j) {
   f.unmasked = parameters(j.at("contact_parameters"), "unmasked");
   f.level = j.value("level", f.level);
   f.together = j.value("named_together", false);
-  if (j.contains("base")) f.base_p = number(j.at("base").at("p_value"));
+  if (j.contains("base")) {
+    const Json& base = j.at("base");
+    f.base_p = number(base.at("p_value"));
+    if (base.contains("q")) f.base_q = number(base.at("q")) / base.at("observables").get<double>();
+  }
+  f.power = power_from(j.at("held_out"));
   f.gains = gains_from(j.at("held_out"));
   f.improves = improves_from(j.at("held_out"));
   f.practice = practice_from(j.at("held_out"));

@@ -31,6 +31,7 @@ void score_none(const Marked& m, Score& s) {
   s.false_names.add(!m.found->named.empty());
   s.false_physics.add(m.found->names_physics());
   if (std::isfinite(m.found->base_p)) s.empty_base_p.push_back(m.found->base_p);
+  if (std::isfinite(m.found->base_q)) s.empty_base_q.push_back(m.found->base_q);
   if (std::isfinite(m.found->smallest_p())) s.empty_p.push_back(m.found->smallest_p());
 }
 
@@ -211,6 +212,52 @@ void add_gains(const std::vector<Marked>& sets, Score& s) {
   }
 }
 
+/// What a diagnosis says, whatever the names.
+std::string statement_of(const Found& f) {
+  if (!f.failure.empty()) return "nothing: it failed";
+  if (f.verdict != "ambiguous") return f.verdict;
+  if (f.together) return "ambiguous: two together";
+  return f.named.size() == 1 ? "ambiguous: one listed, not confirmed on the held-out condition" : "ambiguous: a list of two and more";
+}
+
+/// Of what is hidden something is listed; of a belief that is wrong, something that is no physics.
+bool lists_some(const Marked& m) {
+  if (m.answer.kind == Kind::decoy) {
+    return std::any_of(m.found->named.begin(), m.found->named.end(), [&](const std::string& name) {
+      const Tested* tested = m.found->find(name);
+      return tested != nullptr && !tested->physics;
+    });
+  }
+  return std::any_of(m.answer.effects.begin(), m.answer.effects.end(), [&](const auto& e) { return m.found->names(e.hypothesis); });
+}
+
+void add_said(const std::vector<Marked>& sets, Score& s) {
+  for (const Marked& m : sets) {
+    if (!m.found) continue;
+    const std::string what = statement_of(*m.found);
+    auto row = std::find_if(s.said.begin(), s.said.end(), [&](const Said& one) { return one.what == what; });
+    if (row == s.said.end()) row = s.said.insert(row, {what});
+    ++(!m.missed() ? row->right : lists_some(m) ? row->part : row->wrong);
+  }
+  std::sort(s.said.begin(), s.said.end(), [](const Said& a, const Said& b) { return a.what < b.what; });
+}
+
+/// Where the right candidate is best, and where there is none, so that one can be held against the other.
+void add_power_errors(const std::vector<Marked>& sets, Score& s) {
+  std::map<std::string, PowerError> by_model;
+  for (const Marked& m : sets) {
+    if (!m.found) continue;
+    const bool empty = m.answer.kind == Kind::none;
+    if (!empty && (m.answer.kind != Kind::effect || !best_is(*m.found, m.answer.effects.front().hypothesis))) continue;
+    for (const auto& [model, error] : m.found->power) {
+      PowerError& row = by_model.try_emplace(model, PowerError{model}).first->second;
+      double& mean = empty ? row.empty : row.effect;
+      mean += (error - mean) / ++(empty ? row.empties : row.effects);
+    }
+  }
+  for (const auto& [model, row] : by_model) s.held_out_power.push_back(row);
+}
+
 std::size_t place(std::vector<std::string>& labels, const std::string& label) {
   const auto found = std::find(labels.begin(), labels.end(), label);
   if (found != labels.end()) return found - labels.begin();
@@ -307,6 +354,8 @@ Score score(const std::vector<Marked>& sets) {
   add_at_zero(sets, s);
   add_gains(sets, s);
   add_confusion(sets, s);
+  add_said(sets, s);
+  add_power_errors(sets, s);
   return s;
 }
 

@@ -40,6 +40,7 @@ struct Found {
   std::string verdict;
   double level = std::numeric_limits<double>::quiet_NaN();   ///< for all hypotheses together; NaN: of before diagnosis.json told it
   double base_p = std::numeric_limits<double>::quiet_NaN();  ///< that the base looks like the recordings
+  double base_q = std::numeric_limits<double>::quiet_NaN();  ///< its misfit, of each number compared
   std::vector<std::string> named;
   bool together = false;  ///< `named` are two at once, else a class of which one is true
   std::vector<Tested> hypotheses;
@@ -47,6 +48,7 @@ struct Found {
   std::vector<Gain> gains;
   std::optional<bool> improves;            ///< on every rival, in all held-out conditions that were simulated; nothing: none was
   std::map<std::string, double> practice;  ///< parameters of the base that was retuned to power
+  std::map<std::string, double> power;     ///< %, of each model: mean |predicted less recorded| of the held-out conditions
 
   const Tested* find(const std::string& name) const;
   const Tested* best() const;
@@ -96,6 +98,19 @@ struct PowerBin {
   Count concealed = {};  ///< of these, the ones that practice would not suspect
   double ideal = 0;      ///< mean of ideal_power …
   int ideals = 0;        ///< … of so many sets
+};
+
+/// What a diagnosis may say, and how often it was so: all of it; what is hidden among more, or not all of it; not so.
+struct Said {
+  std::string what;
+  int right = 0, part = 0, wrong = 0;
+};
+
+/// Mean error of the held-out power, %, of a model.
+struct PowerError {
+  std::string model;
+  double effect = 0, empty = 0;  ///< one effect, and the best candidate is it; nothing hidden
+  int effects = 0, empties = 0;  ///< sets behind each
 };
 
 struct Estimated {
@@ -153,6 +168,9 @@ struct Score {
   std::vector<double> at_zero;                      ///< estimated strengths of hypotheses in sets that hide nothing
   std::vector<Recovery> recovery;
   std::vector<GainCount> gains;
+  std::vector<PowerError> held_out_power;
+  std::vector<Said> said;
+  std::vector<double> empty_base_q;  ///< of the sets with nothing hidden
 
   std::vector<std::string> truths, answers;  ///< of the confusion matrix
   std::vector<std::vector<int>> confusion;

@@ -40,34 +40,24 @@ std::string longer(const Marked& m) {
   return times < kMuchLonger ? fmt::format("{:.{}f} ×", times, times < 10 ? 1 : 0) : fmt::format("over {:g} ×", kMuchLonger);
 }
 
+/// The strength that was fitted to a set with one effect; "" where there is none.
+std::string estimates(const Score& s, const std::string& set) {
+  const auto found = std::find_if(s.estimates.begin(), s.estimates.end(), [&](const Estimated& e) { return e.set == set; });
+  return found == s.estimates.end() ? "" : fmt::format("{:.2f}", found->estimate);
+}
+
 void every_set(const Page& page, std::string& out) {
   out +=
       "## Every set\n\nλ as below; beside another effect it is less. *Longer*: a recording about so many times as long tells the effect in "
       "four sets of five, by "
       "the ideal test below; the error of the simulations does not shrink with it.\n\n"
-      "| set | hidden | strength (1: the far end of the prior range) | λ | longer | diagnosis |\n|---|---|---|---|---|---|\n";
+      "| set | hidden | strength (1: the far end of the prior range) | found | λ | longer | diagnosis |\n|---|---|---|---|---|---|---|\n";
   for (const Marked& m : page.sets) {
     std::string strength;
     for (const TrueEffect& e : m.answer.effects) strength += fmt::format("{}{:.2f}", strength.empty() ? "" : ", ", e.strength);
-    append(out, "| {} | {} | {} | {} | {} | {}{} |\n", m.answer.set, label_of(m.answer), strength, lambdas(m), longer(m),
-           m.found ? label_of(*m.found) : "not diagnosed yet", m.found && !m.found->failure.empty() ? ": " + m.found->failure : "");
-  }
-  out += "\n";
-}
-
-void misses(const Page& page, std::string& out) {
-  const auto missed = [](const Marked& m) { return m.found && m.missed(); };
-  if (std::none_of(page.sets.begin(), page.sets.end(), missed)) return;
-  out +=
-      "## Misses\n\nAll sets whose diagnosis is not what is hidden: something missing where nothing is, one effect that is not named alone "
-      "or in a class of two, two that are not named together, what lies outside not said to, a decoy taken for physics or said to lie "
-      "outside, and those "
-      "that failed. The remarks are of whoever looked into them, after opening.\n\n"
-      "| set | hidden | λ | diagnosis | remark |\n|---|---|---|---|---|\n";
-  for (const Marked& m : page.sets) {
-    if (missed(m))
-      append(out, "| {} | {} | {} | {} | {} |\n", m.answer.set, label_of(m.answer), lambdas(m), label_of(*m.found),
-             m.remark.empty() ? "not looked into" : m.remark);
+    append(out, "| {} | {} | {} | {} | {} | {} | {}{} |\n", m.answer.set, label_of(m.answer), strength, estimates(page.score, m.answer.set),
+           lambdas(m), longer(m), m.found ? label_of(*m.found) : "not diagnosed yet",
+           m.found && !m.found->failure.empty() ? ": " + m.found->failure : "");
   }
   out += "\n";
 }
@@ -93,36 +83,18 @@ void concealment(const Page& page, std::string& out) {
       continue;
     }
     const Concealment& c = *m.concealment;
-    const bool hidden = lacks && limits.at(m.study).holds(c);
-    append(out, "| {} | {} | {:+.2f} % | {:+.2f}° | {:+.2f}° | {:.2f} | {} | {} |\n", m.answer.set, label_of(m.answer), c.power_percent,
-           c.shoulder_deg, c.toe_deg, c.chagas,
-           hidden  ? "yes"
-           : lacks ? "no"
-                   : "",
-           label_of(*m.found));
     if (m.answer.kind == Kind::none) empty.add(limits.at(m.study).holds(c));
+    if (!lacks) continue;
+    const bool hidden = limits.at(m.study).holds(c);
+    append(out, "| {} | {} | {:+.2f} % | {:+.2f}° | {:+.2f}° | {:.2f} | {} | {} |\n", m.answer.set, label_of(m.answer), c.power_percent,
+           c.shoulder_deg, c.toe_deg, c.chagas, hidden ? "yes" : "no", label_of(*m.found));
     if (hidden && m.answer.kind == Kind::effect) found.add(!m.missed());
   }
   append(out,
-         "\nOf the concealed sets with one effect it is named, alone or in a class of two, in {}. The same limits hold in {} of the sets "
-         "where nothing is hidden.{}\n\n",
+         "\nOf the concealed sets with one effect it is listed, alone or in a class of two, in {}. The same limits hold in {} of the sets "
+         "where nothing is hidden: one measured power leaves two frictions open, so they are narrower than practice.{}\n\n",
          count_text(found), fmt::format("{} of {}", empty.hits, empty.of),
          unknown == 0 ? "" : fmt::format(" Of {} more with one effect it is not known whether they are concealed.", unknown));
-}
-
-void confusion(const Score& s, std::string& out) {
-  if (s.answers.empty()) return;
-  out += "## Confusion\n\nRows: what is hidden; columns: what the diagnosis says.\n\n|";
-  for (const std::string& answer : s.answers) append(out, " | {}", answer);
-  out += " |\n|---";
-  for (std::size_t i = 0; i < s.answers.size(); ++i) out += "|---";
-  out += "|\n";
-  for (std::size_t r = 0; r < s.truths.size(); ++r) {
-    append(out, "| {}", s.truths[r]);
-    for (const int count : s.confusion[r]) append(out, " | {}", count == 0 ? "" : std::to_string(count));
-    out += " |\n";
-  }
-  out += "\n";
 }
 
 void power(const Score& s, std::string& out) {
@@ -130,7 +102,7 @@ void power(const Score& s, std::string& out) {
       "## Power\n\nλ: squared length, in noise units, of the effect's part that no retuning imitates, by the diagnosis' own "
       "surrogate, at the hidden strength. Sets with one effect. *Ideal*: a test of one number with normal noise of known "
       "size, at the candidate's share of the level (Bonferroni): Φ(√λ − z), mean of the bin's sets.\n\n"
-      "| λ | named, alone or in a class of two | of the concealed | ideal |\n|---|---|---|---|\n";
+      "| λ | listed, alone or in a class of two | of the concealed | ideal |\n|---|---|---|---|\n";
   for (const PowerBin& b : s.power)
     append(out, "| {} | {} | {} | {} |\n",
            std::isfinite(b.high) ? fmt::format("{:g} … {:g}", b.low, b.high) : fmt::format("{:g} and more", b.low), count_text(b.named),
@@ -147,15 +119,11 @@ void line(const std::string& of, std::size_t sets, const Line& l, std::string& o
 
 void strengths(const Score& s, std::string& out) {
   out += "## Strengths\n\n";
-  if (!s.estimates.empty()) {
-    out += "| set | hypothesis | hidden strength | estimated strength | named |\n|---|---|---|---|---|\n";
-    for (const Estimated& d : s.estimates)
-      append(out, "| {} | {} | {:.2f} | {:.2f} | {} |\n", d.set, d.hypothesis, d.truth, d.estimate, d.found ? "yes" : "no");
-    out += "\n";
-  }
   if (std::isfinite(s.line.slope)) {
     out +=
-        "estimate = intercept + slope × hidden strength, least squares, sets that name nothing included. A hidden strength is known "
+        "estimate = intercept + slope × hidden strength, least squares, sets that name nothing included (each set below). The strengths of "
+        "different "
+        "candidates have different scales, so that the line through all is a check and no law. A hidden strength is known "
         "exactly; "
         "the interval is that of the sets drawn anew, so that errors may differ. An estimate of a one-sided strength cannot be below 0, "
         "nor "
@@ -216,18 +184,52 @@ void gains(const Score& s, std::string& out) {
   for (const GainCount& g : s.gains) append(out, "| {} | {} | {:.2f} |\n", g.model, count_text(g.surely), g.median);
 }
 
+void held_out_power(const Score& s, std::string& out) {
+  if (s.held_out_power.empty()) return;
+  const auto mean = [](double error, int sets) { return sets == 0 ? std::string() : fmt::format("{:.2f} % ({})", error, sets); };
+  out +=
+      "\nMean error of the power predicted for the held-out conditions (sets). Where nothing is hidden, it says what chance makes of a "
+      "base.\n\n"
+      "| model | one effect, and the best candidate is it | nothing hidden |\n|---|---|---|\n";
+  for (const PowerError& e : s.held_out_power)
+    append(out, "| {} | {} | {} |\n", e.model, mean(e.effect, e.effects), mean(e.empty, e.empties));
+  out += "\n";
+}
+
 }  // namespace
 
-std::string tables_text(const Page& page) {
+std::string misses_text(const Page& page) {
   std::string out;
-  every_set(page, out);
-  misses(page, out);
-  concealment(page, out);
-  confusion(page.score, out);
+  const auto missed = [](const Marked& m) { return m.found && m.missed(); };
+  if (std::none_of(page.sets.begin(), page.sets.end(), missed)) return out;
+  out +=
+      "## Misses\n\nAll sets whose diagnosis is not what is hidden: something missing where nothing is, one effect that is not named alone "
+      "or in a class of two, two that are not named together, what lies outside not said to, a decoy taken for physics or said to lie "
+      "outside, and those "
+      "that failed. The remarks are of whoever looked into them, after opening.\n\n"
+      "| set | hidden | λ | diagnosis | remark |\n|---|---|---|---|---|\n";
+  for (const Marked& m : page.sets) {
+    if (missed(m))
+      append(out, "| {} | {} | {} | {} | {} |\n", m.answer.set, label_of(m.answer), lambdas(m), label_of(*m.found),
+             m.remark.empty() ? "not looked into" : m.remark);
+  }
+  return out + "\n";
+}
+
+std::string figures_text(const Page& page) {
+  std::string out;
   power(page.score, out);
+  gains(page.score, out);
+  held_out_power(page.score, out);
   strengths(page.score, out);
   coverage(page.score, out);
-  gains(page.score, out);
+  return out;
+}
+
+std::string sets_text(const Page& page) {
+  std::string out;
+  concealment(page, out);
+  every_set(page, out);
   return out;
 }
 

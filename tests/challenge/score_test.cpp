@@ -1,6 +1,7 @@
 // The score's arithmetic on diagnoses that were made up, against numbers worked out by hand.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <map>
 
 #include "studies/challenge/page.hpp"
 
@@ -237,7 +238,7 @@ TEST_CASE("an effect that lies beyond the level is told by a longer recording, a
   sets[5].found->level = 0.05;
   const Score s = score(sets);
   const std::string text = page_text({sets, s, "", {{"sets", "cafe"}}});
-  CHECK(text.find("| s6 | bridge | 0.40 | 2 | 3.9 × | no_mismatch |") != std::string::npos);  // (1.645 + 0.842)² / 1.6
+  CHECK(text.find("| s6 | bridge | 0.40 | 0.10 | 2 | 3.9 × | no_mismatch |") != std::string::npos);  // (1.645 + 0.842)² / 1.6
   CHECK(text.find("| s6 | bridge | 2 | no_mismatch | too faint |") != std::string::npos);
   CHECK(text.find("| s7 | rolling + bridge | 10 | named: rolling | not looked into |") != std::string::npos);
   CHECK(text.find("| s4 | rolling | 20 | named") == std::string::npos);
@@ -253,6 +254,35 @@ TEST_CASE("sets of two mills and engines are counted apart") {
   const std::string text = page_text({sets, score(sets), "", {{"sets", "cafe"}}});
   CHECK(text.find("| liggghts |  | 1 of 1 |") != std::string::npos);
   CHECK(text.find("| millscope |  | 0 of 1 |") != std::string::npos);
+}
+
+TEST_CASE("what a diagnosis says is right, right in part, or wrong") {
+  std::vector<Marked> sets = ten_sets();
+  Found seven = found("ambiguous", {"filling", "rolling", "bridge"}), pool = found("ambiguous", {"rolling"});
+  seven.hypotheses = {{"filling", "best", {}, {}, false}, {"rolling", "not rejected", {}, {}}, {"bridge", "not rejected", {}, {}}};
+  sets.push_back({answer("s11", Kind::decoy), seven});
+  sets.push_back({answer("s12", Kind::decoy), pool});
+  const Score s = score(sets);
+  std::map<std::string, std::vector<int>> said;
+  for (const Said& one : s.said) said[one.what] = {one.right, one.part, one.wrong};
+  CHECK(said.at("named") == std::vector<int>{1, 1, 1});  // s4; one of two in s7; an alarm in s2
+  CHECK(said.at("ambiguous: a list of two and more") == std::vector<int>{1, 1, 0});
+  CHECK(said.at("ambiguous: one listed, not confirmed on the held-out condition") == std::vector<int>{0, 0, 1});
+  CHECK(said.at("no_mismatch") == std::vector<int>{1, 0, 1});
+  CHECK(said.at("outside_library") == std::vector<int>{1, 0, 1});
+  CHECK(said.at("nothing: it failed") == std::vector<int>{0, 0, 1});
+}
+
+TEST_CASE("the held-out power's error stands beside that of sets with nothing hidden") {
+  std::vector<Marked> sets = ten_sets();
+  sets[0].found->power = {{"retuned to power", 0.5}}, sets[1].found->power = {{"retuned to power", 1.5}};
+  sets[3].found->power = {{"retuned to power", 4}, {"corrected", 0.25}};  // rolling is best, and true
+  sets[4].found->power = {{"corrected", 9}};                              // bridge is best
+  const Score s = score(sets);
+  REQUIRE(s.held_out_power.size() == 2);
+  CHECK(s.held_out_power[0].model == "corrected");
+  CHECK((s.held_out_power[0].effect == 0.25 && s.held_out_power[0].effects == 1 && s.held_out_power[0].empties == 0));
+  CHECK((s.held_out_power[1].effect == 4 && s.held_out_power[1].empty == 1 && s.held_out_power[1].empties == 2));
 }
 
 TEST_CASE("every diagnosed set stands in the confusion matrix once") {
@@ -272,8 +302,8 @@ TEST_CASE("the page says what was missed") {
   const Score s = score(sets);
   const std::string text = page_text({sets, s, "millscope challenge score sets", {{"sets", "cafe"}}});
   for (const char* part : {"physics is named or listed in 1 of 3", "missing in 2 of 3", "`cafe`", "    millscope challenge score sets",
-                           "| s9 | rolling | 0.70 |  |  | failed: no camera |", "| s6 | bridge | 0.40 | 2 |  | no_mismatch |",
-                           "| s10 | none |  |  |  | not diagnosed yet |", "1 of 4 (25 %"}) {
+                           "| s9 | rolling | 0.70 |  |  |  | failed: no camera |", "| s6 | bridge | 0.40 | 0.10 | 2 |  | no_mismatch |",
+                           "| s10 | none |  |  |  |  | not diagnosed yet |", "1 of 4 (25 %"}) {
     CAPTURE(part);
     CHECK(text.find(part) != std::string::npos);
   }
