@@ -43,7 +43,7 @@ class Failure(Exception):
 
 def git(*arguments):
     done = subprocess.run(["git", "-C", str(ROOT)] + list(arguments), capture_output=True, text=True)
-    return done.stdout.strip() if done.returncode == 0 else None
+    return done.stdout.rstrip("\n") if done.returncode == 0 else None  # a line of porcelain may begin with a blank
 
 
 def committed(path):
@@ -105,10 +105,17 @@ def sha256(path):
 
 
 def sha256_anywhere(path):
-    """Of a recording; of a set's study without the folders it includes from, which hang on where the build lies."""
+    """Of a recording; of a set's study with the file it includes as named in the clone, for that path hangs on where the build lies."""
     if path.name != "study.yaml":
         return sha256(path)
-    return hashlib.sha256(re.sub(rb'"[./]*/', b'"', path.read_bytes())).hexdigest()
+
+    def in_clone(quoted):
+        file = (path.parent / quoted.group(1)).resolve()
+        if ROOT not in file.parents:
+            raise Failure("%s: includes %s, which is no file of this clone; remove %s" % (path, file, path.parent.parent))
+        return '"%s"' % file.relative_to(ROOT)
+
+    return hashlib.sha256(re.sub(r'"([^"]*)"', in_clone, path.read_text()).encode()).hexdigest()
 
 
 class Batch:
@@ -182,8 +189,8 @@ class Batch:
 
     def check_program(self, commit):
         reads = {str(path.relative_to(ROOT)) for path in read_by(self.challenge.resolve()) if ROOT in path.parents}
-        changed = changed_since(commit) + changed_since(commit, built_from(self.binary))
-        changed = [path for path in changed if not path.startswith("configs/") or path in reads]  # what other batches read is free
+        changed = [path for path in changed_since(commit) if not path.startswith("configs/") or path in reads]  # other batches' are free
+        changed += [path for path in changed_since(commit, built_from(self.binary)) if not path.startswith("configs/")]  # read, not built
         if changed:
             raise Failure("%s is for commit %s, and %s differs since; use a clone and a build of that commit, or make fresh sets" %
                           (self.name, commit[:12], changed[0]))
@@ -219,6 +226,8 @@ class Batch:
                 continue
             if (source / "diagnosis.json").exists():
                 found = json.loads((source / "diagnosis.json").read_text())
+                if "study" in found:
+                    found["study"] = "%s/study.yaml" % name  # where it lay on this machine is nobody's business
                 replace(target / "diagnosis.json", (json.dumps(found, separators=(",", ":"), ensure_ascii=False) + "\n").encode())
             elif (source / "failed.txt").exists():
                 replace(target / "failed.txt", (source / "failed.txt").read_bytes())
