@@ -41,8 +41,9 @@ def rows_of(batch):
         elif not one["truth"].startswith(("decoy:", "outside:")):
             concealed = (one.get("concealment") or {}).get("unsuspicious", False)  # without long runs not known: then nothing is marked
             listed = {"named": "", "ambiguous": "listed"}.get(diagnosis["verdict"], "missed")
-            said = listed if listed == "missed" or not one["missed"] else "in part"
-            name = ("★ " if concealed else "") + one["truth"].replace("_", " ") + (" (%s)" % said if said else "")
+            if listed != "missed" and one["missed"]:
+                listed = "in part" if set(one["truth"].split(" + ")) & set(diagnosis["named"]) else "wrong"
+            name = ("★ " if concealed else "") + one["truth"].replace("_", " ") + (" (%s)" % listed if listed else "")
             found.append((name, misfits_of(diagnosis)))
     return found, empty
 
@@ -50,21 +51,24 @@ def rows_of(batch):
 def band(empty, model):
     """Where nine of ten lie."""
     values = sorted(row[model] for row in empty if model in row)
-    return (values[int(0.05 * (len(values) - 1))], values[math.ceil(0.95 * (len(values) - 1))]) if len(values) > 9 else None
+    return (values[int(0.05 * (len(values) - 1))], values[math.ceil(0.95 * (len(values) - 1))]) if len(values) > 19 else None
 
 
 def picture(rows, empty):
     rows = sorted((row for row in rows if row[1]), key=lambda row: -row[1].get("retuned to power", 0))
-    values = [misfit for _, misfits in rows for misfit in misfits.values()]
-    ends = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)))
+    bands = {model: wide for model in MODELS if (wide := band(empty, model)) is not None}
+    values = [misfit for _, misfits in rows for misfit in misfits.values()] + [end for wide in bands.values() for end in wide]
+    first = math.floor(math.log10(min(values)))
+    ends = first, max(first + 1, math.ceil(math.log10(max(values))))
     px = lambda misfit: LEFT + WIDTH * (math.log10(misfit) - ends[0]) / (ends[1] - ends[0])
     bottom = TOP + ROW * len(rows)
     parts = [text(20, 32, "The speed that nobody fitted: misfit a number; about 1 is chance", font_weight="bold", font_size=18)]
     for k, (model, (colour, words)) in enumerate(MODELS.items()):
         parts.append('<circle cx="%d" cy="56" r="5" fill="%s"/>' % (28 + 210 * k, colour) + text(40 + 210 * k, 61, words))
-        if (wide := band(empty, model)) is not None:
+        if (wide := bands.get(model)) is not None:
             parts.append('<rect x="%.1f" y="%d" width="%.1f" height="%d" fill="%s" opacity="0.1"/>' % (px(wide[0]), TOP - 12, px(wide[1]) - px(wide[0]), bottom - TOP + 12, colour))
-    parts.append(text(20, 86, "Bands: the same two bases where nothing is hidden (nine of ten sets). ★ concealed from practice.", fill=FAINT, font_size=14))
+    told = "Bands: the same two bases where nothing is hidden (nine of ten sets). " if bands else ""
+    parts.append(text(20, 86, told + "★ concealed from practice.", fill=FAINT, font_size=14))
     for power in range(ends[0], ends[1] + 1):
         parts.append('<path d="M%.1f %dV%d" stroke="#e3e8ec"/>' % (px(10.0**power), TOP - 12, bottom) + text(px(10.0**power), bottom + 20, "%g" % 10.0**power, text_anchor="middle", fill=FAINT))
     parts.append('<path d="M%.1f %dV%d" stroke="%s" stroke-dasharray="5 4"/>' % (px(1), TOP - 12, bottom, INK))

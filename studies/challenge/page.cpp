@@ -70,8 +70,10 @@ void add_tried(const Page& page, std::string& out) {
   for (const auto& [name, beliefs] : candidates) (beliefs == 0 ? physics : nuisances).push_back(name);
   out += "**No recording here is of a real mill.** Each is a simulation that a made-up camera has seen";
   if (!played.empty()) add(out, ", played by {}", fmt::join(played, ", "));
-  add(out, ". Candidates: {}. Beliefs that may be wrong: {}. ", fmt::join(physics, ", "),
-      nuisances.empty() ? "none" : fmt::format("{}", fmt::join(nuisances, ", ")));
+  out += ". ";
+  if (!candidates.empty())
+    add(out, "Candidates: {}. Beliefs that may be wrong: {}. ", physics.empty() ? "none" : fmt::format("{}", fmt::join(physics, ", ")),
+        nuisances.empty() ? "none" : fmt::format("{}", fmt::join(nuisances, ", ")));
   if (!levels.empty()) add(out, "A false alarm is allowed in {:g} % of the sets. ", fmt::join(levels, ", "));
   out += "All sets of one mill share one bank of simulations.\n\n";
 }
@@ -92,7 +94,7 @@ void add_said(const Score& s, std::string& out) {
 void add_decoys(const Page& page, std::string& out) {
   std::map<std::string, Count> kinds;
   for (const Marked& m : page.sets) {
-    if (m.found && m.answer.kind == Kind::decoy) kinds[m.answer.name].add(!m.missed());
+    if (m.found && m.found->failure.empty() && m.answer.kind == Kind::decoy) kinds[m.answer.name].add(!m.missed());
   }
   if (kinds.empty()) return;
   out += "| decoy | right: no physics listed, nor said to lie outside |\n|---|---|\n";
@@ -132,7 +134,7 @@ void add_calibration(const Score& s, std::string& out) {
   for (const Coverage& c : s.coverage) {
     if (c.varies) all.hits += c.inside.hits, all.of += c.inside.of;
   }
-  if (all.of > 0) add(out, "- **90 % intervals** hold the truth in {}, all quantities below together.\n", count_text(all));
+  if (all.of > 0) add(out, "- **90 % intervals** hold the truth in {} of {}, all quantities above together.\n", all.hits, all.of);
   out += "\n";
 }
 
@@ -141,8 +143,8 @@ void add_groups(const Page& page, std::string& out) {
   const std::vector<Group> groups = groups_of(page.sets);
   if (groups.size() < 2) return;
   out +=
-      "| played by | sets of | nothing hidden: physics named | one effect, λ ≥ 30: listed, alone or in a class of two | two: both named, "
-      "together | outside: said so | decoy: physics named |\n|---|---|---|---|---|---|---|\n";
+      "| played by | sets of | nothing hidden: physics listed | one effect, λ ≥ 30: listed, alone or in a class of two | two: both named, "
+      "together | outside: said so | decoy: physics listed |\n|---|---|---|---|---|---|---|\n";
   const auto brief = [](const Count& c) { return c.of == 0 ? std::string() : fmt::format("{} of {}", c.hits, c.of); };
   for (const Group& g : groups) {
     const Score s = score(g.sets);

@@ -214,6 +214,10 @@ diagnose::Question question_of(const Challenge& challenge, const host::Registry&
   for (const std::string& name : conditions.keys())
     overrides.push_back(fmt::format("conditions.{}.recording={}", name, nlohmann::json(fs::absolute(challenge.study).string()).dump()));
   diagnose::Question question = diagnose::read_question(challenge.study, overrides, registry);
+  if (challenge.held_out_seconds != challenge.seconds && question.study.with_role(calibrate::Role::held_out).empty())
+    throw base::UserError(
+        fmt::format("{}: held_out_seconds is given, but {} holds no condition out; leave it out, or give one the role held_out",
+                    challenge.file.string(), challenge.study.string()));
   for (const diagnose::Nuisance& n : question.nuisances) {
     if (n.of_camera())
       throw base::UserError(

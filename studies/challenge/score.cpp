@@ -217,7 +217,7 @@ std::string statement_of(const Found& f) {
   if (!f.failure.empty()) return "nothing: it failed";
   if (f.verdict != "ambiguous") return f.verdict;
   if (f.together) return "ambiguous: two together";
-  return f.named.size() == 1 ? "ambiguous: one listed, not confirmed on the held-out condition" : "ambiguous: a list of two and more";
+  return f.named.size() == 1 ? "ambiguous: one listed, not confirmed by a held-out condition" : "ambiguous: a list of two and more";
 }
 
 /// Of what is hidden something is listed; of a belief that is wrong, something that is no physics.

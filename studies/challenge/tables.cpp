@@ -48,9 +48,9 @@ std::string estimates(const Score& s, const std::string& set) {
 
 void every_set(const Page& page, std::string& out) {
   out +=
-      "## Every set\n\nλ as below; beside another effect it is less. *Longer*: a recording about so many times as long tells the effect in "
+      "## Every set\n\nλ as above; beside another effect it is less. *Longer*: a recording about so many times as long tells the effect in "
       "four sets of five, by "
-      "the ideal test below; the error of the simulations does not shrink with it.\n\n"
+      "the ideal test above; the error of the simulations does not shrink with it.\n\n"
       "| set | hidden | strength (1: the far end of the prior range) | found | λ | longer | diagnosis |\n|---|---|---|---|---|---|---|\n";
   for (const Marked& m : page.sets) {
     std::string strength;
@@ -92,7 +92,7 @@ void concealment(const Page& page, std::string& out) {
   }
   append(out,
          "\nOf the concealed sets with one effect it is listed, alone or in a class of two, in {}. The same limits hold in {} of the sets "
-         "where nothing is hidden: one measured power leaves two frictions open, so they are narrower than practice.{}\n\n",
+         "where nothing is hidden, which practice would not suspect either.{}\n\n",
          count_text(found), fmt::format("{} of {}", empty.hits, empty.of),
          unknown == 0 ? "" : fmt::format(" Of {} more with one effect it is not known whether they are concealed.", unknown));
 }
@@ -203,7 +203,8 @@ std::string misses_text(const Page& page) {
   const auto missed = [](const Marked& m) { return m.found && m.missed(); };
   if (std::none_of(page.sets.begin(), page.sets.end(), missed)) return out;
   out +=
-      "## Misses\n\nAll sets whose diagnosis is not what is hidden: something missing where nothing is, one effect that is not named alone "
+      "## Misses\n\nAll sets whose diagnosis is not what is hidden: something missing where nothing is, one effect that is not listed "
+      "alone "
       "or in a class of two, two that are not named together, what lies outside not said to, a decoy taken for physics or said to lie "
       "outside, and those "
       "that failed. The remarks are of whoever looked into them, after opening.\n\n"

@@ -219,6 +219,13 @@ TEST_CASE("a held-out condition is recorded for as long as the challenge asks") 
   }
 }
 
+TEST_CASE("longer held-out recordings are refused where nothing is held out") {
+  Made made;
+  std::ofstream(made.folder / "c.yaml") << kChallenge << "held_out_seconds: 0.7\n";
+  const Challenge c = read_challenge(made.folder / "c.yaml");
+  CHECK(testing::refusal([&] { question_of(c, made.registry); }).find("holds no condition out") != std::string::npos);
+}
+
 TEST_CASE("a set whose diagnosis throws is noted, and the others are tried") {
   Made made;
   seal(made.sets, {{"set_001", challenge::Kind::none, "", {}, {}, {}}, {"set_002", challenge::Kind::none, "", {}, {}, {}}},

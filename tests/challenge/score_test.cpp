@@ -267,7 +267,7 @@ TEST_CASE("what a diagnosis says is right, right in part, or wrong") {
   for (const Said& one : s.said) said[one.what] = {one.right, one.part, one.wrong};
   CHECK(said.at("named") == std::vector<int>{1, 1, 1});  // s4; one of two in s7; an alarm in s2
   CHECK(said.at("ambiguous: a list of two and more") == std::vector<int>{1, 1, 0});
-  CHECK(said.at("ambiguous: one listed, not confirmed on the held-out condition") == std::vector<int>{0, 0, 1});
+  CHECK(said.at("ambiguous: one listed, not confirmed by a held-out condition") == std::vector<int>{0, 0, 1});
   CHECK(said.at("no_mismatch") == std::vector<int>{1, 0, 1});
   CHECK(said.at("outside_library") == std::vector<int>{1, 0, 1});
   CHECK(said.at("nothing: it failed") == std::vector<int>{0, 0, 1});

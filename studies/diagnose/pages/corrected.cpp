@@ -66,7 +66,8 @@ std::string nuisance_text(const Told& t, std::size_t i, double value) {
   const Farthest farthest = fixed ? Farthest{n.low, n.high} : t.question.farthest[coordinate];
   double low = n.low, high = n.high, mean = n.mean, sigma = n.sigma;
   const naming::Judged* by = freed_by(t, coordinate);
-  if (!n.usual && by != nullptr && value > farthest.low && value < farthest.high) {
+  const bool at_end = naming::at_limit(t.diagnosis.problem.data.theta[coordinate].coded(value), {-1, 1});
+  if (!n.usual && by != nullptr && !at_end) {
     mean = rounded(value);
     if (by->theta[coordinate].known()) sigma = std::max(sigma, rounded(by->theta[coordinate].standard_error()));
     if (value <= low) low = farthest.low;

@@ -190,8 +190,11 @@ Json diagnosis_json(const Told& t) {
                         {"sentence", mismatch_sentence(t, m)}});
   }
   Json contact = {{"retuned", parameters(t, d.naming.base_theta)}};
-  if (const auto [fit, active] = fit_of(d); d.naming.best && naming::ends_of(d.problem, fit.coded, active).empty())
-    contact["unmasked"] = parameters(t, d.naming.judged[*d.naming.best].theta);
+  if (d.naming.best) {
+    const naming::Judged& best = d.naming.judged[*d.naming.best];
+    const std::vector<naming::ActiveCandidate> active = naming::active_of(d.problem.alternatives[*d.naming.best], best.fit);
+    if (naming::ends_of(d.problem, best.fit.coded, active).empty()) contact["unmasked"] = parameters(t, best.theta);
+  }
   Json pairs = Json::array();
   for (const naming::Pair& p : d.naming.pairs) {
     pairs.push_back({{"first", d.problem.alternatives[p.first].name},

@@ -1,8 +1,8 @@
 // Before and after, on conditions that were used for neither fit nor choice, against the rivals of the practice.
 //
 // The bank has simulations of these conditions, so that its surrogate predicts them. Where its left-out error is not below half of the
-// difference that is judged (judge.hpp), both that differ are simulated, several seeds each. So is every
-// model whose fit stands at an end of what was simulated. A name rests on simulations: where only the
+// difference that is judged (judge.hpp), both that differ are simulated, several seeds each. So is a
+// fitted model that stands at an end of what was simulated. A name rests on simulations: where only the
 // held-out conditions stand between the best candidate and its name, the corrected case, the base retuned to power and every rival that
 // may be the strongest are simulated; so is a rival on which the prediction alone would not let it improve.
 #pragma once
