@@ -31,7 +31,7 @@ def misfits_of(diagnosis):
 
 
 def rows_of(batch):
-    """[(hidden, what is said of it, {model: misfit})] of the sets with effects, and [{model: misfit}] of those with nothing hidden."""
+    """[(what is hidden and said of it, {model: misfit})] of the sets with effects, and [{model: misfit}] of those with nothing hidden."""
     found, empty = [], []
     for one in json.loads((batch / "score.json").read_text())["every_set"]:
         file = batch / one["set"] / "diagnosis" / "diagnosis.json"

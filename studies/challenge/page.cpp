@@ -109,8 +109,7 @@ void add_p_values(const char* of, const std::vector<double>& p, std::string& out
   if (p.empty()) return;
   add(out,
       "- **{}**: half of them lie above {:.2f}, the smallest is {:.2g}. Even ones would come out so low with a probability of {:.2g}, so "
-      "high with {:.2g} "
-      "(Kolmogorov, one-sided).\n",
+      "high with {:.2g} (Kolmogorov, one-sided).\n",
       of, median_of(p), *std::min_element(p.begin(), p.end()), low_p(p), high_p(p));
 }
 
@@ -119,15 +118,14 @@ void add_calibration(const Score& s, std::string& out) {
   if (s.empty_p.empty() && s.empty_base_p.empty()) return;
   out +=
       "## Are the errors right?\n\nIn the sets with nothing hidden the p-values should lie evenly between 0 and 1. Low ones mean false "
-      "alarms, high ones a test that is "
-      "milder than it says.\n\n";
+      "alarms, high ones a test that is milder than it says.\n\n";
   add_p_values("Smallest p of a hypothesis, for all of them", s.empty_p, out);
   add_p_values("p of the base", s.empty_base_p, out);
   if (!s.empty_base_q.empty())
     add(out,
-        "- **Misfit of the refitted base, of each number**: median {:.2f}, from {:.2f} to {:.2f}. A little below 1 is right; far below, "
-        "errors are taken for "
-        "larger than they are.\n",
+        "- **Misfit of the refitted base, of each number**: median {:.2f}, from {:.2f} to {:.2f}. Right errors give 1, less what the fit "
+        "itself "
+        "takes; far below that, errors are taken for larger than they are.\n",
         median_of(s.empty_base_q), *std::min_element(s.empty_base_q.begin(), s.empty_base_q.end()),
         *std::max_element(s.empty_base_q.begin(), s.empty_base_q.end()));
   Count all;

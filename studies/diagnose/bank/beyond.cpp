@@ -38,6 +38,7 @@ double farthest_of(const Question& question, const End& end) {
 /// The group's own points, with what is varied here moved from its range into the strip beyond.
 std::vector<BankPoint> plan_beyond(const Question& question, const End& end) {
   const double from = place_of(question, end), to = farthest_of(question, end);
+  const naming::Coordinate own = end.coordinate ? question.coordinates()[*end.coordinate] : naming::Coordinate{};
   std::vector<BankPoint> points = plan_group(question, {end.candidate, {}}, count_of(question.bank, end));
   for (BankPoint& p : points) {
     if (end.candidate) {
@@ -45,13 +46,11 @@ std::vector<BankPoint> plan_beyond(const Question& question, const End& end) {
       double& strength = p.active.front().strength;
       strength = rounded_strength(c, from + std::max(std::fabs(strength), kLeastStrength) * (to - from));
     } else {
-      const naming::Coordinate own = question.coordinates()[*end.coordinate];
       double& value = p.theta[*end.coordinate];
       const double share = (value - own.low) / (own.high - own.low);
       value = rounded(from + (end.upper ? share : 1 - share) * (to - from));
     }
-    p.group += end.upper ? ">" : "<";
-    if (end.coordinate) p.group += question.coordinates()[*end.coordinate].name;
+    p.group += (end.upper ? ">" : "<") + own.name;
   }
   std::erase_if(points, [&](const BankPoint& p) { return !question.study.allowed(p.theta.head(std::ssize(question.study.parameters))); });
   return points;
