@@ -136,13 +136,14 @@ void add_calibration(const Score& s, std::string& out) {
   out += "\n";
 }
 
-/// The counts that matter most, by who played which mill; nothing where all is one.
+/// The counts that matter most, by who played which mill and which program diagnosed it; nothing where all is one.
 void add_groups(const Page& page, std::string& out) {
   const std::vector<Group> groups = groups_of(page.sets);
   if (groups.size() < 2) return;
   out +=
-      "| played by | sets of | nothing hidden: physics listed | one effect, λ ≥ 30: listed, alone or in a class of two | two: both named, "
-      "together | outside: said so | decoy: physics listed |\n|---|---|---|---|---|---|---|\n";
+      "| played by | diagnosed by commit | sets of | nothing hidden: physics listed | one effect, λ ≥ 30: listed, alone or in a class of "
+      "two | two: both named, "
+      "together | outside: said so | decoy: physics listed |\n|---|---|---|---|---|---|---|---|\n";
   const auto brief = [](const Count& c) { return c.of == 0 ? std::string() : fmt::format("{} of {}", c.hits, c.of); };
   for (const Group& g : groups) {
     const Score s = score(g.sets);
@@ -150,8 +151,8 @@ void add_groups(const Page& page, std::string& out) {
     for (const PowerBin& b : s.power) {
       if (b.low >= kStrong) strong.hits += b.named.hits, strong.of += b.named.of;
     }
-    add(out, "| {} | {} | {} | {} | {} | {} | {} |\n", g.engine, g.folders, brief(s.false_physics), brief(strong), brief(s.two_both),
-        brief(s.outside_abstained), brief(s.decoys_named));
+    add(out, "| {} | {} | {} | {} | {} | {} | {} | {} |\n", g.engine, g.program, g.folders, brief(s.false_physics), brief(strong),
+        brief(s.two_both), brief(s.outside_abstained), brief(s.decoys_named));
   }
   out += "\n";
 }

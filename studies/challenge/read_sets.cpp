@@ -222,15 +222,27 @@ std::map<std::string, std::string> read_remarks(const fs::path& file) {
   return out;
 }
 
+/// Of published sets; else empty.
+std::string program_of(const fs::path& sets) {
+  constexpr std::size_t kDigits = 7;
+  if (!fs::exists(sets / kFrozenFile)) return "";
+  const Json j = output::read_json(sets / kFrozenFile);
+  const auto commit = j.find("commit");
+  if (commit == j.end() || !commit->is_string())
+    throw base::UserError(
+        fmt::format("{}: tells no 'commit'; publish the sets with tools/proof.py, or take the file away", (sets / kFrozenFile).string()));
+  return commit->get<std::string>().substr(0, kDigits);
+}
+
 std::vector<Marked> read_sets(const fs::path& sets) {
   std::vector<Marked> out;
   std::map<std::string, std::string> remarks = read_remarks(sets / kRemarksFile);
-  const std::string study = study_hash(sets);
+  const std::string study = study_hash(sets), program = program_of(sets);
   const std::map<std::string, Concealment> concealment = read_concealment(sets);
   for (Answer& a : open_answers(sets)) {
     std::optional<Found> found = read_found(sets / a.set);
     const auto long_runs = concealment.find(a.set);
-    out.push_back({std::move(a), std::move(found), {}, study});
+    out.push_back({std::move(a), std::move(found), {}, study, {}, program});
     if (long_runs != concealment.end()) out.back().concealment = long_runs->second;
     if (auto remark = remarks.extract(out.back().answer.set)) out.back().remark = std::move(remark.mapped());
   }

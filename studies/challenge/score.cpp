@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "kernel/base/statistics.hpp"
@@ -295,10 +296,11 @@ bool Marked::missed() const {
 }
 
 std::vector<Group> groups_of(const std::vector<Marked>& sets) {
-  std::map<std::pair<std::string, std::string>, Group> groups;
+  std::map<std::array<std::string, 3>, Group> groups;
   for (const Marked& m : sets) {
-    Group& g = groups[{m.study, m.engine()}];
+    Group& g = groups[{m.study, m.engine(), m.program}];
     g.engine = m.engine();
+    g.program = m.program;
     const std::string folder = m.folder();
     if (g.sets.empty() || g.sets.back().folder() != folder) g.folders += (g.folders.empty() ? "" : ", ") + folder;
     g.sets.push_back(m);

@@ -71,8 +71,9 @@ struct Marked {
   Answer answer;
   std::optional<Found> found;
   std::optional<Concealment> concealment = {};
-  std::string study = {};   ///< hash of the study that was put to the test
-  std::string remark = {};  ///< of whoever looked into it
+  std::string study = {};    ///< hash of the study that was put to the test
+  std::string remark = {};   ///< of whoever looked into it
+  std::string program = {};  ///< first digits of the commit that was put to the test; empty: not told
 
   std::string engine() const;  ///< that played the mills
   std::string folder() const;  ///< of FOLDER/set_001; else ""
@@ -83,6 +84,7 @@ struct Marked {
 };
 
 inline constexpr const char* kRemarksFile = "remarks.txt";  ///< lines of "set_001: why"
+inline constexpr const char* kFrozenFile = "frozen.json";   ///< of published sets: the commit that was put to the test
 
 /// Reads what `run` left of a set.
 std::optional<Found> read_found(const std::filesystem::path& set);
@@ -178,9 +180,9 @@ struct Score {
 
 Score score(const std::vector<Marked>& sets);
 
-/// Sets of one mill that one engine played.
+/// Sets of one mill that one engine played and one program diagnosed.
 struct Group {
-  std::string engine, folders;
+  std::string engine, program, folders;
   std::vector<Marked> sets;
 };
 std::vector<Group> groups_of(const std::vector<Marked>& sets);

@@ -244,16 +244,18 @@ TEST_CASE("an effect that lies beyond the level is told by a longer recording, a
   CHECK(text.find("| s4 | rolling | 20 | named") == std::string::npos);
 }
 
-TEST_CASE("sets of two mills and engines are counted apart") {
+TEST_CASE("sets of two mills, engines and programs are counted apart") {
   std::vector<Marked> sets = ten_sets();
   sets[1].answer.made = {{"fast", {{"settings", {"a=1", "run.engine=liggghts"}}}}};
   sets[2].answer.made = {{"fast", {{"settings", {"a=1"}}}}};
   sets[3].study = "other";
+  sets[4].program = "c3dc7bf";
   const std::vector<Group> groups = groups_of(sets);
-  CHECK(groups.size() == 4);  // those that tell nothing of how they were made are of no engine
+  CHECK(groups.size() == 5);  // those that tell nothing of how they were made are of no engine
   const std::string text = page_text({sets, score(sets), "", {{"sets", "cafe"}}});
-  CHECK(text.find("| liggghts |  | 1 of 1 |") != std::string::npos);
-  CHECK(text.find("| millscope |  | 0 of 1 |") != std::string::npos);
+  CHECK(text.find("| liggghts |  |  | 1 of 1 |") != std::string::npos);
+  CHECK(text.find("| millscope |  |  | 0 of 1 |") != std::string::npos);
+  CHECK(text.find("|  | c3dc7bf |  |") != std::string::npos);
 }
 
 TEST_CASE("what a diagnosis says is right, right in part, or wrong") {

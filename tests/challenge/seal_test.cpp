@@ -118,14 +118,20 @@ TEST_CASE("folders of sets are counted together, each set by the name of its fol
     seal(folder / name, two_answers(), folder / "study.yaml");
     write(folder / name / "set_002" / "diagnosis" / "diagnosis.json", kDiagnosis);
   }
+  write(folder / "second" / "frozen.json", "{\"commit\": \"e7092d5559674a219ab96602527ca179e6bf9a02\"}\n");
   const std::vector<Marked> all = read_all_sets({folder / "first", folder / "second/"});
   REQUIRE(all.size() == 4);
+  CHECK(all[1].program.empty());
+  CHECK(all[3].program == "e7092d5");
+  CHECK(groups_of(all).size() == 2);
   CHECK(all[3].answer.set == "second/set_002");
   CHECK(score(all).named_alone.hits == 2);
   CHECK(read_all_sets({folder / "first"})[1].answer.set == "set_002");
   const std::string text = page_text({all, score(all), "", {{"first", "cafe"}, {"second", "beef"}}});
   CHECK(text.find("the manifests' own are `cafe` (first), `beef` (second).") != std::string::npos);
   CHECK_THROWS_WITH(read_all_sets({folder / "first", folder / "first"}), Catch::Matchers::Contains("the same sets as a folder before it"));
+  write(folder / "second" / "frozen.json", "{}\n");
+  CHECK_THROWS_WITH(read_sets(folder / "second"), Catch::Matchers::Contains("frozen.json: tells no 'commit'"));
   seal(folder / "other/first", two_answers(), folder / "study.yaml");
   CHECK_THROWS_WITH(read_all_sets({folder / "first", folder / "other/first"}), Catch::Matchers::Contains("two folders are called 'first'"));
 }
