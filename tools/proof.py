@@ -100,6 +100,11 @@ def read_plan():
     return out
 
 
+def without_folders(text):
+    """Where files lay on this machine is nobody's business: a path that begins at the root is left with its file's name."""
+    return re.sub(r"(?<![\w./])/(?:[^\s/'\"\\:;,()]+/)+", "", text)
+
+
 def sha256(path):
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
@@ -227,10 +232,11 @@ class Batch:
             if (source / "diagnosis.json").exists():
                 found = json.loads((source / "diagnosis.json").read_text())
                 if "study" in found:
-                    found["study"] = "%s/study.yaml" % name  # where it lay on this machine is nobody's business
-                replace(target / "diagnosis.json", (json.dumps(found, separators=(",", ":"), ensure_ascii=False) + "\n").encode())
+                    found["study"] = "%s/study.yaml" % name
+                text = json.dumps(found, separators=(",", ":"), ensure_ascii=False) + "\n"
+                replace(target / "diagnosis.json", without_folders(text).encode())
             elif (source / "failed.txt").exists():
-                replace(target / "failed.txt", (source / "failed.txt").read_bytes())
+                replace(target / "failed.txt", without_folders((source / "failed.txt").read_text()).encode())
 
     def has(self, name):
         return any((self.public / name / "diagnosis" / file).exists() for file in ("diagnosis.json", "failed.txt"))

@@ -15,6 +15,8 @@ SOURCE = Path(__file__).resolve().parents[2]
 PLAYED = r'''#!/usr/bin/env python3
 import hashlib, json, os, sys, pathlib
 words = sys.argv[1:]
+DIAGNOSIS = {"verdict": "no_mismatch", "unit": "m/s", "study": "/a/b/set/study.yaml",
+             "failures": ["base_2: plugin '/a/b/v4/libmill.so' is not loaded (searched: /a/b/plugins; add one)", "base_3: /a/b-c/case.yaml:61: \"x\""]}
 if words == ["--version"]:
     print("millscope 0.1.0 (commit %s)" % ((pathlib.Path(__file__).parent / "commit").read_text().strip()))
 if words[:2] == ["challenge", "make"]:
@@ -34,9 +36,9 @@ elif words[:2] == ["challenge", "run"]:
         found = pathlib.Path(words[2]) / name / "diagnosis"
         found.mkdir(exist_ok=True)
         if name == "set_002" and pathlib.Path("build/fail.txt").exists():
-            (found / "failed.txt").write_text("too few beads\n")
+            (found / "failed.txt").write_text("/a/b/case.yaml:61: too few beads\n")
         elif not (found / "diagnosis.json").exists():
-            (found / "diagnosis.json").write_text(json.dumps({"verdict": "no_mismatch", "times": 1}))
+            (found / "diagnosis.json").write_text(json.dumps(DIAGNOSIS))
 elif words[:2] == ["challenge", "conceal"]:
     (pathlib.Path(words[3]) / "concealment.json").write_text(words[2])
 elif words[:2] == ["challenge", "score"]:
@@ -95,6 +97,9 @@ class Proof(unittest.TestCase):
         self.assertFalse(self.public("set_001").exists())
         self.commit()
         self.assertIn("commit the diagnoses", self.proof("part_1")[1])
+        said = {"verdict": "no_mismatch", "unit": "m/s", "study": "set_001/study.yaml",
+                "failures": ["base_2: plugin 'libmill.so' is not loaded (searched: plugins; add one)", "base_3: case.yaml:61: \"x\""]}
+        self.assertEqual(json.loads(self.public("set_001/diagnosis/diagnosis.json").read_text()), said)
         self.assertFalse(self.public("answers").exists())
         self.commit()
         self.assertEqual(self.proof("part_1")[0], 0)
@@ -185,6 +190,7 @@ class Proof(unittest.TestCase):
         (self.root / "build/fail.txt").unlink()
         self.proof("part_1", "--until", "diagnose")
         self.assertEqual([p.name for p in self.public("set_002/diagnosis").iterdir()], ["failed.txt"])
+        self.assertEqual(self.public("set_002/diagnosis/failed.txt").read_text(), "case.yaml:61: too few beads\n")
 
     def test_what_is_no_part_is_refused(self):
         code, said = self.proof("prat")
