@@ -124,8 +124,7 @@ void add_calibration(const Score& s, std::string& out) {
   if (!s.empty_base_q.empty())
     add(out,
         "- **Misfit of the refitted base, of each number**: median {:.2f}, from {:.2f} to {:.2f}. Right errors give 1, less what the fit "
-        "itself "
-        "takes; far below that, errors are taken for larger than they are.\n",
+        "itself takes; far below that, errors are taken for larger than they are.\n",
         median_of(s.empty_base_q), *std::min_element(s.empty_base_q.begin(), s.empty_base_q.end()),
         *std::max_element(s.empty_base_q.begin(), s.empty_base_q.end()));
   Count all;
@@ -142,8 +141,7 @@ void add_groups(const Page& page, std::string& out) {
   if (groups.size() < 2) return;
   out +=
       "| played by | diagnosed by commit | sets of | nothing hidden: physics listed | one effect, λ ≥ 30: listed, alone or in a class of "
-      "two | two: both named, "
-      "together | outside: said so | decoy: physics listed |\n|---|---|---|---|---|---|---|---|\n";
+      "two | two: both named, together | outside: said so | decoy: physics listed |\n|---|---|---|---|---|---|---|---|\n";
   const auto brief = [](const Count& c) { return c.of == 0 ? std::string() : fmt::format("{} of {}", c.hits, c.of); };
   for (const Group& g : groups) {
     const Score s = score(g.sets);

@@ -49,8 +49,7 @@ std::string estimates(const Score& s, const std::string& set) {
 void every_set(const Page& page, std::string& out) {
   out +=
       "## Every set\n\nλ as above; beside another effect it is less. *Longer*: a recording about so many times as long tells the effect in "
-      "four sets of five, by "
-      "the ideal test above; the error of the simulations does not shrink with it.\n\n"
+      "four sets of five, by the ideal test above; the error of the simulations does not shrink with it.\n\n"
       "| set | hidden | strength (1: the far end of the prior range) | found | λ | longer | diagnosis |\n|---|---|---|---|---|---|---|\n";
   for (const Marked& m : page.sets) {
     std::string strength;
@@ -204,10 +203,9 @@ std::string misses_text(const Page& page) {
   if (std::none_of(page.sets.begin(), page.sets.end(), missed)) return out;
   out +=
       "## Misses\n\nAll sets whose diagnosis is not what is hidden: something missing where nothing is, one effect that is not listed "
-      "alone "
-      "or in a class of two, two that are not named together, what lies outside not said to, a decoy taken for physics or said to lie "
-      "outside, and those "
-      "that failed. The remarks are of whoever looked into them, after opening.\n\n"
+      "alone or in a class of two, two that are not named together, what lies outside not said to, a decoy taken for physics or said to "
+      "lie "
+      "outside, and those that failed. The remarks are of whoever looked into them, after opening.\n\n"
       "| set | hidden | λ | diagnosis | remark |\n|---|---|---|---|---|\n";
   for (const Marked& m : page.sets) {
     if (missed(m))
