@@ -69,6 +69,11 @@ def changed_since(commit, until=None):
     return differ.split() + ([] if until else [line[3:] for line in (git("status", "--porcelain", "--", *DECIDES) or "").splitlines()])
 
 
+def last_that_decides():
+    """The commit that changed something that decides verdicts last; what changed since, pages for instance, makes no other program."""
+    return git("log", "-1", "--format=%H", "HEAD", "--", *DECIDES)
+
+
 def built_from(binary):
     """The commit that a program was built from, which has to be a clean one."""
     done = subprocess.run([str(binary), "--version"], capture_output=True, text=True)
@@ -166,7 +171,7 @@ class Batch:
 
     def publish(self):
         """Of sets that were made whole by this commit; what another commit left is made again, with a seed of its own."""
-        commit, mark = git("rev-parse", "HEAD"), self.work / "commit.txt"
+        commit, mark = last_that_decides(), self.work / "commit.txt"
         self.check_program(commit)
         if not mark.exists() or mark.read_text() != commit:
             shutil.rmtree(self.work, ignore_errors=True)

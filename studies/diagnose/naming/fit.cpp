@@ -4,9 +4,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "kernel/base/error.hpp"
@@ -18,8 +18,12 @@ constexpr int kIterations = 40;
 constexpr double kFinished = 1e-9;   // of Q, relative
 constexpr double kRounding = 1e-13;  // of the largest diagonal element, where more coefficients than observables leave G singular
 constexpr double kReliable = 0.3;    // of 1 − μ: below it the correction fades, chosen on made-up banks
+constexpr double kSure = 1 - kReliable;
 constexpr std::size_t kDescents = 3;
 constexpr int kLevels = 3;  // of the grid of starting points, for each flat coordinate
+
+/// Whether every μ of A V = B V diag(μ) lies below a limit, B positive definite.
+bool below(double limit, const MatrixXd& a, const MatrixXd& b) { return Eigen::LLT<MatrixXd>(limit * b - a).info() == Eigen::Success; }
 
 }  // namespace
 
@@ -44,13 +48,13 @@ Weighting::Weighting(const MatrixXd& recording, const Surrogate& surrogate, doub
 
 Model::Model(const BankData& data, const Surrogate& surrogate, const Weighting& weighting, const Switched& switched)
     : surrogate_(&surrogate),
-      features_(&surrogate.features()),
       weighting_(&weighting),
       active_(switched.on),
       columns_(surrogate.features().columns(switched.on)),
       exact_(switched.exact),
       theta_(std::ssize(data.theta)) {
-  use(surrogate.coefficients());
+  count_factors();
+  use(weighting.whitener * surrogate.coefficients().transpose());
   const Index all = theta_ + std::ssize(active_);
   low_ = VectorXd::Constant(all, -1), high_ = VectorXd::Constant(all, 1);
   prior_ = VectorXd::Zero(all), weight_ = VectorXd::Zero(all);
@@ -67,13 +71,23 @@ Model::Model(const BankData& data, const Surrogate& surrogate, const Weighting& 
   }
 }
 
-void Model::use(const MatrixXd& coefficients) {
-  const MatrixXd& w = weighting_->whitener;
-  const Index kept = std::min<Index>(std::ssize(columns_), w.rows());
-  const Eigen::HouseholderQR<MatrixXd> qr(w * coefficients(columns_, Eigen::all).transpose());
-  r_ = qr.matrixQR().topRows(kept).triangularView<Eigen::Upper>();
-  qt_ = (qr.householderQ() * MatrixXd::Identity(w.rows(), kept)).transpose();
-  if (!exact_ && r_.cols() > features_->base_size() && r_.rows() == r_.cols()) correct();
+void Model::count_factors() {
+  const Features& features = surrogate_->features();
+  std::vector<Index> place(features.factors(), 0);
+  for (Index i = 0; i < theta_; ++i) place[features.factor_of_coordinate(i)] = 1 + i;
+  for (Index k = 0; k < std::ssize(active_); ++k) place[features.factor_of_strength(active_[k])] = 1 + theta_ + k;
+  for (const Index column : columns_) {
+    const Product& p = features.of_column(column);
+    products_.push_back({place[p.one], place[p.other]});
+  }
+}
+
+void Model::use(const MatrixXd& whitened) {
+  qr_.compute(whitened(Eigen::all, columns_));
+  const Index kept = std::min(qr_.rows(), qr_.cols());
+  r_ = qr_.matrixQR().topRows(kept).triangularView<Eigen::Upper>();
+  corrected_ = !exact_ && r_.cols() > surrogate_->features().base_size() && r_.rows() == r_.cols();
+  if (corrected_) correct();
 }
 
 /// tr(Σ⁻¹ S) (h(u, s) − h(u, 0)) = xᵀ D x with the features x and D = tr(Σ⁻¹ S) C less its block of the base. What of the candidates'
@@ -81,13 +95,16 @@ void Model::use(const MatrixXd& coefficients) {
 /// reliable by 1 − μ, about the part of its square that is no chance. Where that is below `kReliable` chance alone often leaves as much,
 /// and D has less and less of it, nothing at μ = 1: D = [0, C_be T; Tᵀ C_eb, Tᵀ C_e T], T = V diag(t) Vᵀ G_e.
 MatrixXd Model::chance_of_slopes(double ridge) const {
-  const Index base = features_->base_size(), own = r_.cols() - base;
+  const Index base = surrogate_->features().base_size(), own = r_.cols() - base;
   const MatrixXd c = weighting_->run_noise * surrogate_->coefficient_error()(columns_, columns_);
   const MatrixXd slopes = r_.bottomRightCorner(own, own), c_e = c.bottomRightCorner(own, own);
   const MatrixXd g_e = slopes.transpose() * slopes + ridge * MatrixXd::Identity(own, own);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(c_e, g_e);
-  const VectorXd t = ((1 - solver.eigenvalues().array()) / kReliable).max(0).min(1).sqrt();
-  const MatrixXd taper = solver.eigenvectors() * t.asDiagonal() * solver.eigenvectors().transpose() * g_e;
+  MatrixXd taper = MatrixXd::Identity(own, own);
+  if (!below(kSure, c_e, g_e)) {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(c_e, g_e);
+    const VectorXd t = ((1 - solver.eigenvalues().array()) / kReliable).max(0).min(1).sqrt();
+    taper = solver.eigenvectors() * t.asDiagonal() * solver.eigenvectors().transpose() * g_e;
+  }
   MatrixXd d = MatrixXd::Zero(r_.cols(), r_.cols());
   d.topRightCorner(base, own) = c.topRightCorner(base, own) * taper;
   d.bottomLeftCorner(own, base) = d.topRightCorner(base, own).transpose();
@@ -95,86 +112,105 @@ MatrixXd Model::chance_of_slopes(double ridge) const {
   return d;
 }
 
-/// |W (y − Bᵀx)|² − xᵀ D x is a sum of squares and a constant, too: with G = RᵀR, D V = G V diag(μ) and Vᵀ G V = 1
+/// |W (y − Bᵀx)|² − xᵀ D x is a sum of squares and a constant, too: with G = RᵀR
 ///
-///   |R x − z|² − xᵀ D x = |R' x − z'|² + |z|² − |z'|²,  R' = (1 − μ)^½ Vᵀ G,  z' = (1 − μ)^−½ Vᵀ Rᵀ z
+///   |R x − z|² − xᵀ D x = |R' x − z'|² + |z|² − |z'|²,  R'ᵀR' = G − D, R'ᵀz' = Rᵀz
+///
+/// Rarely a direction has nothing that is sure, D V = G V diag(μ) with a μ above 1 − `kReliable`; then less of D is taken.
 void Model::correct() {
   MatrixXd g = r_.transpose() * r_;
   const double ridge = kRounding * g.diagonal().maxCoeff();
   g.diagonal().array() += ridge;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(chance_of_slopes(ridge), g);
-  const Eigen::ArrayXd mu = solver.eigenvalues().array();
-  const double sure = 1 - kReliable, whole = std::min(1.0, sure / std::max(sure, mu.maxCoeff()));  // rarely less than 1
-  const VectorXd root = (1 - whole * mu).sqrt();
-  const MatrixXd vt = solver.eigenvectors().transpose();
-  qt_ = (root.cwiseInverse().asDiagonal() * vt * r_.transpose() * qt_).eval();
-  r_ = root.asDiagonal() * vt * g;
+  const MatrixXd d = chance_of_slopes(ridge);
+  double whole = 1;
+  if (!below(kSure, d, g)) {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(d, g, Eigen::EigenvaluesOnly | Eigen::Ax_lBx);
+    whole = std::min(1.0, kSure / solver.eigenvalues().maxCoeff());
+  }
+  r_ = Eigen::LLT<MatrixXd>(g - whole * d).matrixU();
 }
 
-Model Model::with(const MatrixXd& coefficients) const {
+/// z, or z', of observations in noise units.
+VectorXd Model::target(const VectorXd& white) const {
+  VectorXd z = white;
+  z.applyOnTheLeft(qr_.householderQ().adjoint());
+  z.conservativeResize(r_.rows());
+  if (!corrected_) return z;
+  const auto first = qr_.matrixQR().topRows(r_.rows()).triangularView<Eigen::Upper>();
+  return r_.triangularView<Eigen::Upper>().transpose().solve(VectorXd(first.transpose() * z));
+}
+
+Model Model::with(const MatrixXd& whitened) const {
   Model out = *this;
-  out.use(coefficients);
+  out.use(whitened);
   return out;
 }
 
-VectorXd Model::features(const VectorXd& t) const {
-  const VectorXd u = t.head(theta_);
-  VectorXd x(r_.cols());
-  x.head(features_->base_size()) = features_->base(u);
-  Index next = features_->base_size();
-  for (Index k = 0; k < std::ssize(active_); ++k) {
-    const Index n = features_->count(active_[k]);
-    x.segment(next, n) = features_->block(active_[k], u, t[theta_ + k]);
-    next += n;
+/// What a fit works in, so that none of its steps asks for memory.
+struct Model::Work {
+  VectorXd z, factor, feature, residual, tried, gradient, next;
+  MatrixXd jacobian, normal, damped;
+  Eigen::LDLT<MatrixXd> damped_factor;
+
+  /// Factors of t: 1 before it.
+  void at(const VectorXd& t) {
+    factor.resize(1 + t.size());
+    factor[0] = 1;
+    factor.tail(t.size()) = t;
   }
-  if (next < x.size()) x[next] = t[theta_] * t[theta_ + 1];  // the product of two that have runs together
-  return x;
+};
+
+void Model::residual(const VectorXd& t, Work& work, VectorXd& out) const {
+  const Index fitted = r_.rows();
+  work.at(t);
+  work.feature.resize(r_.cols());
+  for (Index k = 0; k < r_.cols(); ++k) work.feature[k] = work.factor[products_[k].one] * work.factor[products_[k].other];
+  out.resize(fitted + theta_);
+  out.head(fitted) = -work.z;
+  out.head(fitted).noalias() += r_ * work.feature;
+  out.tail(theta_) = weight_.head(theta_).cwiseProduct(t.head(theta_) - prior_.head(theta_));
 }
 
-VectorXd Model::residual(const VectorXd& t, const Target& target) const {
-  VectorXd out(r_.rows() + theta_);
-  out.head(r_.rows()) = r_ * features(t) - target.z;
-  out.tail(theta_) = (weight_.array() * (t - prior_).array()).matrix().head(theta_);
-  return out;
-}
-
-/// Features are quadratic in every coordinate: central differences are exact but for rounding.
-MatrixXd Model::jacobian(const VectorXd& t) const {
-  constexpr double kStep = 0.5;
-  MatrixXd out = MatrixXd::Zero(r_.rows() + theta_, t.size());
-  for (Index i = 0; i < t.size(); ++i) {
-    VectorXd up = t, down = t;
-    up[i] += kStep, down[i] -= kStep;
-    out.col(i).head(r_.rows()) = r_ * (features(up) - features(down));
-    if (i < theta_) out(r_.rows() + i, i) = weight_[i];
+void Model::jacobian(const VectorXd& t, Work& work) const {
+  const Index fitted = r_.rows();
+  work.at(t);
+  work.jacobian.setZero(fitted + theta_, t.size());
+  for (Index k = 0; k < r_.cols(); ++k) {
+    const auto [one, other] = products_[k];
+    if (one > 0) work.jacobian.col(one - 1).head(fitted) += work.factor[other] * r_.col(k);
+    if (other > 0) work.jacobian.col(other - 1).head(fitted) += work.factor[one] * r_.col(k);
   }
-  return out;
+  for (Index i = 0; i < theta_; ++i) work.jacobian(fitted + i, i) = weight_[i];
 }
 
 /// Levenberg's and Marquardt's steps, coordinates at a limit held while the gradient pushes outward.
-double Model::descend(VectorXd& t, const Target& target) const {
-  VectorXd r = residual(t, target);
+double Model::descend(const Limits& limits, VectorXd& t, Work& work) const {
+  auto& [z, factor, feature, r, tried, gradient, next, j, normal, damped, solver] = work;
+  residual(t, work, r);
   double q = r.squaredNorm(), damping = 1e-3;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    const MatrixXd j = jacobian(t);
-    VectorXd gradient = j.transpose() * r;
-    MatrixXd normal = j.transpose() * j;
+    jacobian(t, work);
+    gradient = j.transpose().lazyProduct(r);
+    normal = j.transpose().lazyProduct(j);
     for (Index i = 0; i < t.size(); ++i) {
-      const bool held = low_[i] == high_[i] || (t[i] <= low_[i] && gradient[i] > 0) || (t[i] >= high_[i] && gradient[i] < 0);
+      const bool held =
+          limits.low[i] == limits.high[i] || (t[i] <= limits.low[i] && gradient[i] > 0) || (t[i] >= limits.high[i] && gradient[i] < 0);
       if (held) normal.row(i).setZero(), normal.col(i).setZero(), normal(i, i) = 1, gradient[i] = 0;
     }
     bool better = false;
     for (; damping < 1e8 && !better; damping *= 8) {
-      MatrixXd damped = normal;
+      damped = normal;
       damped.diagonal() += damping * (normal.diagonal().array() + 1e-9).matrix();
-      const VectorXd next = (t - damped.ldlt().solve(gradient)).cwiseMax(low_).cwiseMin(high_);
-      const VectorXd r_next = residual(next, target);
-      const double q_next = r_next.squaredNorm();
+      solver.compute(damped);
+      next = solver.solve(gradient);
+      next = (t - next).cwiseMax(limits.low).cwiseMin(limits.high);
+      residual(next, work, tried);
+      const double q_next = tried.squaredNorm();
       if (!(q_next < q)) continue;
       better = true;
       damping /= 64;
       const bool finished = q - q_next < kFinished * (1 + q);
-      t = next, r = r_next, q = q_next;
+      t.swap(next), r.swap(tried), q = q_next;
       if (finished) return q;
     }
     if (!better) return q;
@@ -182,39 +218,41 @@ double Model::descend(VectorXd& t, const Target& target) const {
   return q;
 }
 
-std::vector<VectorXd> Model::starts() const {
-  std::vector<VectorXd> out{prior_.cwiseMax(low_).cwiseMin(high_)};
-  for (Index i = 0; i < low_.size(); ++i) {
-    if (weight_[i] > 0 || low_[i] == high_[i]) continue;
-    std::vector<VectorXd> more;
-    for (const VectorXd& t : out) {
-      for (int level = 0; level < kLevels; ++level) {
-        more.push_back(t);
-        more.back()[i] = low_[i] + (high_[i] - low_[i]) * (0.5 + level) / kLevels;
-      }
+/// A grid over the flat coordinates, the others at their priors: one starting point a column.
+MatrixXd Model::starts(const Limits& limits) const {
+  MatrixXd out = prior_.cwiseMax(limits.low).cwiseMin(limits.high);
+  for (Index i = 0; i < prior_.size(); ++i) {
+    if (weight_[i] > 0 || limits.low[i] == limits.high[i]) continue;
+    const Index each = out.cols();
+    out = out.replicate(1, kLevels).eval();
+    for (Index k = 0; k < out.cols(); ++k) {
+      const auto level = static_cast<double>(k / each);
+      out(i, k) = limits.low[i] + (limits.high[i] - limits.low[i]) * (0.5 + level) / kLevels;
     }
-    out = std::move(more);
   }
   return out;
 }
 
-FitResult Model::fit(const VectorXd& observed) const {
+FitResult Model::fit_within(const Limits& limits, const VectorXd& observed) const {
   const VectorXd white = weighting_->whitener * observed;
-  Target target{qt_ * white, 0};
-  target.beyond = white.squaredNorm() - target.z.squaredNorm();
-  std::vector<std::pair<double, VectorXd>> tried;
-  for (VectorXd& t : starts()) {
-    const double q = residual(t, target).squaredNorm();
-    tried.emplace_back(q, std::move(t));
+  Work work;
+  work.z = target(white);
+  const double beyond = white.squaredNorm() - work.z.squaredNorm();  // Q less the sum of squares
+  const MatrixXd start = starts(limits);
+  std::vector<std::pair<double, Index>> tried;
+  VectorXd t;
+  for (Index k = 0; k < start.cols(); ++k) {
+    t = start.col(k);
+    residual(t, work, work.residual);
+    tried.emplace_back(work.residual.squaredNorm(), k);
   }
   const std::size_t descents = std::min(kDescents, tried.size());
-  std::partial_sort(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(descents), tried.end(),
-                    [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::partial_sort(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(descents), tried.end());
   FitResult best;
   best.q = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < descents; ++k) {
-    VectorXd t = tried[k].second;
-    const double q = descend(t, target) + target.beyond;
+    t = start.col(tried[k].second);
+    const double q = descend(limits, t, work) + beyond;
     if (q >= best.q) continue;
     best.q = q;
     best.coded = t.head(theta_);
@@ -224,9 +262,9 @@ FitResult Model::fit(const VectorXd& observed) const {
 }
 
 FitResult Model::fit_holding(Index coordinate, double value, const VectorXd& observed) const {
-  Model held = *this;
-  held.low_[coordinate] = held.high_[coordinate] = value;
-  return held.fit(observed);
+  Limits limits{low_, high_};
+  limits.low[coordinate] = limits.high[coordinate] = value;
+  return fit_within(limits, observed);
 }
 
 std::vector<ActiveCandidate> Model::active(const FitResult& fit) const {

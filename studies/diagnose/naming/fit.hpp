@@ -12,7 +12,7 @@
 // fit costs the number of coefficients, not of observables.
 #pragma once
 
-#include <memory>
+#include <Eigen/QR>
 #include <optional>
 #include <vector>
 
@@ -69,9 +69,9 @@ class Model {
   Model(const BankData&, const Surrogate&, Weighting&&, const Switched&) = delete;
   Model(const BankData&, Surrogate&&, const Weighting&, const Switched&) = delete;
 
-  /// The same on a bank that has turned out other: coefficients of all features × observables.
-  Model with(const MatrixXd& coefficients) const;
-  FitResult fit(const VectorXd& observed) const;
+  /// The same on a bank that has turned out other: W times its coefficients, observables × all features.
+  Model with(const MatrixXd& whitened) const;
+  FitResult fit(const VectorXd& observed) const { return fit_within({low_, high_}, observed); }
   /// The same with one of θ and the strengths, in that order, held at a value within its limits.
   FitResult fit_holding(Index coordinate, double value, const VectorXd& observed) const;
   double low(Index coordinate) const { return low_[coordinate]; }
@@ -79,25 +79,29 @@ class Model {
   std::vector<ActiveCandidate> active(const FitResult& fit) const;
 
  private:
-  struct Target {
-    VectorXd z;         ///< Qᵀ W y
-    double beyond = 0;  ///< Q less the sum of squares of the residual
+  struct Limits {
+    VectorXd low, high;
   };
-  void use(const MatrixXd& coefficients);
+  struct Work;
+  void count_factors();
+  void use(const MatrixXd& whitened);
   MatrixXd chance_of_slopes(double ridge) const;
   void correct();
-  VectorXd features(const VectorXd& t) const;
-  VectorXd residual(const VectorXd& t, const Target& target) const;
-  MatrixXd jacobian(const VectorXd& t) const;
-  double descend(VectorXd& t, const Target& target) const;
-  std::vector<VectorXd> starts() const;
+  VectorXd target(const VectorXd& white) const;
+  void residual(const VectorXd& t, Work& work, VectorXd& out) const;
+  void jacobian(const VectorXd& t, Work& work) const;
+  double descend(const Limits& limits, VectorXd& t, Work& work) const;
+  MatrixXd starts(const Limits& limits) const;
+  FitResult fit_within(const Limits& limits, const VectorXd& observed) const;
 
   const Surrogate* surrogate_;
-  const Features* features_;
   const Weighting* weighting_;
-  MatrixXd r_, qt_;
+  Eigen::HouseholderQR<MatrixXd> qr_;  ///< of W Bᵀ
+  MatrixXd r_;                         ///< its R, or R' where the bank's chance is taken off
+  bool corrected_ = false;
   std::vector<Index> active_;
-  std::vector<Index> columns_;  ///< of all features those that are in use
+  std::vector<Index> columns_;     ///< of all features those that are in use
+  std::vector<Product> products_;  ///< the same, their factors counted 1, θ, strengths of `active_`
   bool exact_ = false;
   VectorXd low_, high_, prior_, weight_;  ///< of (u, s); weight 1/σ in coded units, 0: flat
   Index theta_ = 0;

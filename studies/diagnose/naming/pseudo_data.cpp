@@ -42,7 +42,7 @@ PseudoData::PseudoData(const Problem& problem, const Options& options)
   surrogate_ = std::make_unique<Surrogate>(data, *features_, all);
   chance_ = surrogate_->chance(problem.covariance);
   weighting_ = std::make_unique<Weighting>(problem.covariance, *surrogate_);
-  run_factor_ = root_of(weighting_->run).factor;
+  run_white_ = weighting_->whitener * root_of(weighting_->run).factor;
   for (const MatrixXd& law : problem.noise) noise_factors_.push_back(factor(law));
   if (noise_factors_.empty()) noise_factors_.push_back(factor(problem.covariance));
   std::size_t base = 0;
@@ -139,7 +139,7 @@ VectorXd PseudoData::rise(const Model& model, const Truth& truth, double least, 
 }
 
 PseudoData::Refit PseudoData::refit(const LeftOut& left, const Truth& truth, const std::vector<Choice>& choices) const {
-  Refit out{&left, left.surrogate->coefficients(), {}, {}};
+  Refit out{&left, left.surrogate->coefficients(), {}, {}, {}};
   for (const Choice& choice : choices) out.models.push_back(model(*left.surrogate, choice));
   if (truth.active.empty()) return out;
   std::vector<Index> on;
@@ -157,6 +157,7 @@ PseudoData::Refit PseudoData::refit(const LeftOut& left, const Truth& truth, con
   const std::vector<Index> columns = features_->columns(on);
   const MatrixXd& error = left.surrogate->coefficient_error();
   out.again = error(Eigen::all, columns) * root_of(error(columns, columns)).inverse;
+  out.whitened = weighting_->whitener * out.coefficients.transpose();
   return out;
 }
 
@@ -167,21 +168,19 @@ PseudoData::Drawn PseudoData::drawn(const Refit& refit, const Truth& truth, cons
   const Index n = left.deviation.size();
   const VectorXd y = refit.coefficients.transpose() * features_->all(at.coded, at.active) +
                      part_of(left, at, how.for_intervals ? 0 : chance_) * left.deviation + noise_factors_[b % laws()] * random.normals(n);
-  MatrixXd coefficients = refit.coefficients;
+  std::vector<Model> again;
   if (refit.again.size() > 0) {
     const Index k = refit.again.cols();
-    coefficients += refit.again * random.normals(k * n).reshaped(k, n) * run_factor_.transpose();
+    const MatrixXd normals = random.normals(k * n).reshaped(k, n);
+    const MatrixXd whitened = refit.whitened + (run_white_ * normals.transpose()) * refit.again.transpose();
+    for (const Model& fixed : refit.models) again.push_back(fixed.with(whitened));
   }
+  const std::vector<Model>& models = again.empty() ? refit.models : again;
   Drawn out;
-  std::optional<Model> first;
-  for (const Model& fixed : refit.models) {
-    const Model again = refit.again.size() > 0 ? fixed.with(coefficients) : fixed;
-    out.fit.push_back(again.fit(y));
-    if (!first) first = again;
-  }
+  for (const Model& model : models) out.fit.push_back(model.fit(y));
   const FitResult& found = out.fit.front();
-  out.residual = y - coefficients.transpose() * features_->all(found.coded, first->active(found));
-  if (how.for_intervals) out.rise = rise(*first, at, found.q, y);
+  if (again.empty()) out.residual = y - refit.coefficients.transpose() * features_->all(found.coded, models.front().active(found));
+  if (how.for_intervals) out.rise = rise(models.front(), at, found.q, y);
   return out;
 }
 

@@ -50,7 +50,7 @@ class PseudoData {
   /// questions apart.
   struct Drawn {
     std::vector<FitResult> fit;
-    VectorXd residual;  ///< of the first choice: y* − m
+    VectorXd residual;  ///< of the first choice, y* − m; empty where the bank was drawn again
     VectorXd rise;      ///< of its Q when one of θ and the strengths is held at its truth; empty unless for intervals
   };
   struct Draws {
@@ -75,6 +75,7 @@ class PseudoData {
     const LeftOut* left = nullptr;
     MatrixXd coefficients;  ///< of m°₋r
     MatrixXd again;         ///< E = again · normals · Lᵀ with S = L Lᵀ; empty: the truth has no candidate
+    MatrixXd whitened;      ///< W times the coefficients, observables × features; empty as well
     std::vector<Model> models;
   };
   Refit refit(const LeftOut& left, const Truth& truth, const std::vector<Choice>& choices) const;
@@ -101,7 +102,7 @@ class PseudoData {
   std::vector<LeftOut> left_out_;
   double chance_ = 0;  ///< ρ
   std::unique_ptr<Weighting> weighting_;
-  MatrixXd run_factor_;  ///< L Lᵀ = S
+  MatrixXd run_white_;  ///< W L with L Lᵀ = S
   std::vector<MatrixXd> noise_factors_;
 };
 

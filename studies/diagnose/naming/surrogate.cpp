@@ -130,23 +130,23 @@ bool BankData::usual(const BankRow& row) const {
   return true;
 }
 
-Features::Features(const BankData& data) {
-  const Index d = std::ssize(data.theta);
+Features::Features(const BankData& data) : coordinates_(std::ssize(data.theta)), candidates_(data.candidates) {
+  const Index d = coordinates_;
   const auto multiplied = [&](Index i, Index j) {
     const Coordinate &a = data.theta[i], &b = data.theta[j];
     if (a.products == Products::none || b.products == Products::none) return false;
     return (a.products == Products::all || !b.nuisance()) && (b.products == Products::all || !a.nuisance());
   };
+  products_.push_back({});
+  for (Index i = 0; i < d; ++i) products_.push_back({0, factor_of_coordinate(i)});
   for (Index i = 0; i < d; ++i) {
     for (Index j = i; j < d; ++j) {
-      if (i == j || multiplied(i, j)) products_.emplace_back(i, j);
+      if (i == j || multiplied(i, j)) products_.push_back({factor_of_coordinate(i), factor_of_coordinate(j)});
     }
   }
-  coordinates_ = d;
-  base_size_ = 1 + d + std::ssize(products_);
-  size_ = base_size_;
-  for (Index j = 0; j < data.candidates; ++j) add_candidate(data, j);
-  add_products(data);
+  base_size_ = size();
+  for (Index j = 0; j < candidates_; ++j) add_candidate(data, j);
+  add_both(data);
 }
 
 /// Its runs decide which columns it has: first those of nuisances that some of them vary apart, then those of the parameters, all or none.
@@ -171,20 +171,23 @@ void Features::add_candidate(const BankData& data, Index candidate) {
     if (!data.theta[i].nuisance()) parameters.push_back(i);
   }
   if (alone >= 1 + (square ? 1 : 0) + parameters.size() + kSpare) multiply.insert(multiply.end(), parameters.begin(), parameters.end());
-  first_.push_back(size_);
-  count_.push_back(runs == 0 ? 0 : 1 + (square ? 1 : 0) + std::ssize(multiply));
-  size_ += count_.back();
-  square_.push_back(square);
-  multiply_.push_back(std::move(multiply));
+  first_.push_back(size());
+  const Index strength = factor_of_strength(candidate);
+  if (runs > 0) products_.push_back({0, strength});
+  if (square) products_.push_back({strength, strength});
+  for (const Index i : multiply) products_.push_back({strength, factor_of_coordinate(i)});
+  count_.push_back(size() - first_.back());
 }
 
-void Features::add_products(const BankData& data) {
+void Features::add_both(const BankData& data) {
   std::map<std::pair<Index, Index>, Index> runs;
   for (const BankRow& row : data.rows) {
     if (row.active.size() == 2) ++runs[std::minmax(row.active[0].candidate, row.active[1].candidate)];
   }
   for (const auto& [both, count] : runs) {
-    if (count >= kLeastTogether) together_[both] = size_++;
+    if (count < kLeastTogether) continue;
+    together_[both] = size();
+    products_.push_back({factor_of_strength(both.first), factor_of_strength(both.second)});
   }
 }
 
@@ -207,32 +210,12 @@ std::vector<Index> Features::product_columns() const {
   return out;
 }
 
-VectorXd Features::base(const VectorXd& u) const {
-  VectorXd x(base_size_);
-  Index k = 0;
-  x[k++] = 1;
-  for (Index i = 0; i < u.size(); ++i) x[k++] = u[i];
-  for (const auto& [i, j] : products_) x[k++] = u[i] * u[j];
-  return x;
-}
-
-VectorXd Features::block(Index j, const VectorXd& u, double strength) const {
-  VectorXd x(count_[j]);
-  if (x.size() == 0) return x;
-  Index k = 0;
-  x[k++] = strength;
-  if (square_[j]) x[k++] = strength * strength;
-  for (const Index i : multiply_[j]) x[k++] = strength * u[i];
-  return x;
-}
-
 VectorXd Features::all(const VectorXd& u, const std::vector<ActiveCandidate>& active) const {
-  VectorXd x = VectorXd::Zero(size_);
-  x.head(base_size_) = base(u);
-  for (const ActiveCandidate& e : active) x.segment(first(e.candidate), count(e.candidate)) = block(e.candidate, u, e.strength);
-  if (active.size() == 2) {
-    if (const auto column = product(active[0].candidate, active[1].candidate)) x[*column] = active[0].strength * active[1].strength;
-  }
+  VectorXd factor = VectorXd::Zero(factors()), x(size());
+  factor[0] = 1;
+  factor.segment(factor_of_coordinate(0), coordinates_) = u;
+  for (const ActiveCandidate& e : active) factor[factor_of_strength(e.candidate)] = e.strength;
+  for (Index k = 0; k < x.size(); ++k) x[k] = factor[products_[k].one] * factor[products_[k].other];
   return x;
 }
 

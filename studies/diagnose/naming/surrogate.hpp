@@ -14,20 +14,27 @@
 
 namespace millscope::naming {
 
+/// A feature: the product of two factors, which are counted 1, coordinates, strengths of all candidates.
+struct Product {
+  Index one = 0, other = 0;
+};
+
 /// Which columns the model has.
 class Features {
  public:
   explicit Features(const BankData& data);
 
-  Index size() const { return size_; }
+  Index size() const { return std::ssize(products_); }
   Index coordinates() const { return coordinates_; }
-  Index candidates() const { return std::ssize(first_); }
+  Index candidates() const { return candidates_; }
   Index base_size() const { return base_size_; }
-  VectorXd base(const VectorXd& coded) const;
   /// First column of a candidate's block and its length; 0: the bank has no run with it.
   Index first(Index candidate) const { return first_[candidate]; }
   Index count(Index candidate) const { return count_[candidate]; }
-  VectorXd block(Index candidate, const VectorXd& coded, double strength) const;
+  const Product& of_column(Index column) const { return products_[column]; }
+  Index factors() const { return 1 + coordinates_ + candidates_; }
+  Index factor_of_coordinate(Index i) const { return 1 + i; }
+  Index factor_of_strength(Index candidate) const { return 1 + coordinates_ + candidate; }
   VectorXd all(const VectorXd& coded, const std::vector<ActiveCandidate>& active) const;
   /// Column of the product of two candidates' strengths; nothing: too few runs have both.
   std::optional<Index> product(Index a, Index b) const;
@@ -41,13 +48,11 @@ class Features {
 
  private:
   void add_candidate(const BankData& data, Index candidate);
-  void add_products(const BankData& data);
+  void add_both(const BankData& data);
 
-  Index size_ = 0, base_size_ = 0, coordinates_ = 0;
-  std::vector<std::pair<Index, Index>> products_;  ///< of coordinates, squares among them
+  Index base_size_ = 0, coordinates_ = 0, candidates_ = 0;
+  std::vector<Product> products_;  ///< of columns
   std::vector<Index> first_, count_;
-  std::vector<bool> square_;                  ///< of candidates: enough different strengths
-  std::vector<std::vector<Index>> multiply_;  ///< of candidates: coordinates that multiply the strength, as far as there are runs enough
   std::map<std::pair<Index, Index>, Index> together_;  ///< of two candidates, the lower first: column of their product
 };
 
