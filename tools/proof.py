@@ -69,9 +69,11 @@ def changed_since(commit, until=None):
     return differ.split() + ([] if until else [line[3:] for line in (git("status", "--porcelain", "--", *DECIDES) or "").splitlines()])
 
 
-def last_that_decides():
-    """The commit that changed something that decides verdicts last; what changed since, pages for instance, makes no other program."""
-    return git("log", "-1", "--format=%H", "HEAD", "--", *DECIDES)
+def last_that_decides(challenge):
+    """The commit that changed what decides a challenge's verdicts last. What changed since, pages for instance, makes no other program."""
+    program = git("log", "-1", "--format=%H", "HEAD", "--", *DECIDES, ":(exclude)configs")
+    read = git("log", "-1", "--format=%H", "HEAD", "--", *(str(path) for path in read_by(challenge.resolve()) if ROOT in path.parents))
+    return max(filter(None, (program, read)), key=lambda commit: int(git("rev-list", "--count", commit)))
 
 
 def built_from(binary):
@@ -171,7 +173,7 @@ class Batch:
 
     def publish(self):
         """Of sets that were made whole by this commit; what another commit left is made again, with a seed of its own."""
-        commit, mark = last_that_decides(), self.work / "commit.txt"
+        commit, mark = last_that_decides(self.challenge), self.work / "commit.txt"
         self.check_program(commit)
         if not mark.exists() or mark.read_text() != commit:
             shutil.rmtree(self.work, ignore_errors=True)

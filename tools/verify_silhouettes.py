@@ -1,6 +1,5 @@
 """Which physics do measured pictures of a drum ask for? For verify.py: the study of configs/measured_drums/silhouettes, with finer beads as a check."""
 
-import json
 import os
 import shutil
 
@@ -14,7 +13,7 @@ FITTED, HELD_OUT = (15, 45), (10, 30)  # rpm
 PATHS = {"bead_friction": "pairs.default.static_friction", "filling": "fill.filling", "disc_friction": "pairs.cellulose~disc.static_friction"}
 KINDS = {"rolling_friction": "rolling_constant_torque", "bead_shape": "bead_shape"}  # of candidates, the plugin
 FINER = "beads.cellulose.diameter=2 mm"
-ERRORS = {"r": 0.5, "wide": 2}  # degrees, of a picture's directions: how level its camera stood; what beads of another size change beside it
+ERRORS = {"camera": 0.5, "size": 2}  # degrees, of a picture's directions: how level its camera stood; what beads of another size change beside it
 PICTURE = "gd_nature_%drpm_averaged.bmp"
 
 
@@ -87,4 +86,4 @@ def silhouettes(bench):
               "bear it: such runs made energy). The same bank is asked twice. With ± 0.5° only the camera may stand aside. With ± 2° the coarse beads may lie otherwise, too.",
               sources("granudrum/gd"))
     rows = [dict(r, what="± %g°: %s" % (error, r["what"])) for name, error in ERRORS.items() for r in hypothesis_rows(found[name])]
-    return rows + angle_rows(bench, folder, found["wide"])
+    return rows + angle_rows(bench, folder, found["size"])

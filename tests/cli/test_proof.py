@@ -88,6 +88,19 @@ class Proof(unittest.TestCase):
     def public(self, path):
         return self.root / "docs/proof/part_1" / path
 
+    def test_a_batch_is_for_the_commit_that_decides_whatever_pages_and_other_challenges_changed_since(self):
+        self.assertEqual(self.proof("part_1", "--until", "publish"), (0, ""))
+        first = json.loads(self.public("frozen.json").read_text())["commit"]
+        for path, same in (("docs/page.md", True), ("configs/other.yaml", True), ("configs/proof/part.yaml", False), ("kernel/a.cpp", False)):
+            shutil.rmtree(self.public("").parent)
+            shutil.rmtree(self.root / "build/release/proof")
+            file = self.root / path
+            file.write_text((file.read_text() if file.exists() else "") + "\n")
+            self.commit()
+            self.assertEqual(self.proof("part_1", "--until", "publish"), (0, ""), path)
+            (self.assertEqual if same else self.assertNotEqual)(json.loads(self.public("frozen.json").read_text())["commit"], first, path)
+            first = json.loads(self.public("frozen.json").read_text())["commit"]
+
     def test_a_batch_is_published_diagnosed_opened_and_scored_in_this_order(self):
         self.assertEqual(self.proof("part_1", "--until", "publish"), (0, ""))
         frozen = json.loads(self.public("frozen.json").read_text())

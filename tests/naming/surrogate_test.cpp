@@ -1,6 +1,7 @@
 // The surrogate of the bank and fits with it, on a mill that is a formula.
 #include "studies/diagnose/naming/surrogate.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -184,6 +185,43 @@ TEST_CASE("a fit finds its truth without noise, at limits too") {
     CHECK_THAT(f.coded[1], WithinAbs(-0.6, 1e-3));
     CHECK_THAT(f.strengths[0], WithinAbs(strength, 1e-3));
     CHECK(f.q < 1e-3);
+  }
+}
+
+namespace {
+
+/// Q of data without noise, from predictions alone.
+double misfit(const Problem& p, const Surrogate& s, const Weighting& w, const VectorXd& u, const std::vector<ActiveCandidate>& active) {
+  double q = (w.whitener * (p.observed - s.at(u, active))).squaredNorm();
+  for (Index i = 0; i < u.size(); ++i) {
+    const Coordinate& c = p.data.theta[i];
+    if (c.nuisance()) q += std::pow((u[i] - c.coded(c.prior_mean)) * c.prior_weight(), 2);
+  }
+  return q;
+}
+
+}  // namespace
+
+TEST_CASE("a fit's Q is the misfit as it is written, and nowhere within the limits is less") {
+  MadeUp mill;
+  mill.runs = 48, mill.each = 24;
+  base::RandomStream random(5, 0);
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Problem p = made_up_problem(mill, point(0.3, -0.2, 0), {0.6, 0, 0}, seed);
+    const Surrogate s(p.data);
+    const Weighting w(p.covariance, s);
+    for (const std::vector<Index>& on : {std::vector<Index>{}, {0}, {0, 1}, {1, 2}}) {
+      const Model model(p.data, s, w, {.on = on, .ranges = std::vector<StrengthRange>(3), .exact = true});
+      const FitResult found = model.fit(p.observed);
+      CHECK_THAT(found.q, WithinRel(misfit(p, s, w, found.coded, model.active(found)), 1e-8));
+      for (int k = 0; k < 500; ++k) {
+        const double near = k < 250 ? 0.05 : 1;
+        FitResult other = found;
+        for (Index i = 0; i < other.coded.size(); ++i) other.coded[i] = std::clamp(other.coded[i] + near * random.normal(), -1.0, 1.0);
+        for (double& strength : other.strengths) strength = std::clamp(strength + near * random.normal(), 0.0, 1.0);
+        CHECK(misfit(p, s, w, other.coded, model.active(other)) >= found.q - 1e-6 * (1 + std::fabs(found.q)));
+      }
+    }
   }
 }
 

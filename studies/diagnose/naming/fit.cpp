@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -16,7 +17,7 @@ namespace {
 
 constexpr int kIterations = 40;
 constexpr double kFinished = 1e-9;   // of Q, relative
-constexpr double kRounding = 1e-13;  // of the largest diagonal element, where more coefficients than observables leave G singular
+constexpr double kRounding = 1e-13;  // of the largest diagonal element, where columns that go together leave G singular
 constexpr double kReliable = 0.3;    // of 1 − μ: below it the correction fades, chosen on made-up banks
 constexpr double kSure = 1 - kReliable;
 constexpr std::size_t kDescents = 3;
@@ -53,8 +54,8 @@ Model::Model(const BankData& data, const Surrogate& surrogate, const Weighting& 
       columns_(surrogate.features().columns(switched.on)),
       exact_(switched.exact),
       theta_(std::ssize(data.theta)) {
-  count_factors();
-  use(weighting.whitener * surrogate.coefficients().transpose());
+  list_products();
+  use(weighting.whitener * surrogate.coefficients()(columns_, Eigen::all).transpose());
   const Index all = theta_ + std::ssize(active_);
   low_ = VectorXd::Constant(all, -1), high_ = VectorXd::Constant(all, 1);
   prior_ = VectorXd::Zero(all), weight_ = VectorXd::Zero(all);
@@ -71,9 +72,10 @@ Model::Model(const BankData& data, const Surrogate& surrogate, const Weighting& 
   }
 }
 
-void Model::count_factors() {
+void Model::list_products() {
   const Features& features = surrogate_->features();
-  std::vector<Index> place(features.factors(), 0);
+  std::vector<Index> place(features.factors(), -1);  // strengths that are not on have none
+  place[0] = 0;
   for (Index i = 0; i < theta_; ++i) place[features.factor_of_coordinate(i)] = 1 + i;
   for (Index k = 0; k < std::ssize(active_); ++k) place[features.factor_of_strength(active_[k])] = 1 + theta_ + k;
   for (const Index column : columns_) {
@@ -83,7 +85,7 @@ void Model::count_factors() {
 }
 
 void Model::use(const MatrixXd& whitened) {
-  qr_.compute(whitened(Eigen::all, columns_));
+  qr_.compute(whitened);
   const Index kept = std::min(qr_.rows(), qr_.cols());
   r_ = qr_.matrixQR().topRows(kept).triangularView<Eigen::Upper>();
   corrected_ = !exact_ && r_.cols() > surrogate_->features().base_size() && r_.rows() == r_.cols();
@@ -116,7 +118,7 @@ MatrixXd Model::chance_of_slopes(double ridge) const {
 ///
 ///   |R x − z|² − xᵀ D x = |R' x − z'|² + |z|² − |z'|²,  R'ᵀR' = G − D, R'ᵀz' = Rᵀz
 ///
-/// Rarely a direction has nothing that is sure, D V = G V diag(μ) with a μ above 1 − `kReliable`; then less of D is taken.
+/// Rarely less than `kReliable` of a direction is sure, D V = G V diag(μ) with a μ above `kSure`; then less of D is taken.
 void Model::correct() {
   MatrixXd g = r_.transpose() * r_;
   const double ridge = kRounding * g.diagonal().maxCoeff();
@@ -125,9 +127,11 @@ void Model::correct() {
   double whole = 1;
   if (!below(kSure, d, g)) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(d, g, Eigen::EigenvaluesOnly | Eigen::Ax_lBx);
-    whole = std::min(1.0, kSure / solver.eigenvalues().maxCoeff());
+    whole = kSure / std::max(kSure, solver.eigenvalues().maxCoeff());
   }
-  r_ = Eigen::LLT<MatrixXd>(g - whole * d).matrixU();
+  const Eigen::LLT<MatrixXd> rest(g - whole * d);
+  assert(rest.info() == Eigen::Success && "a part of G is never all of it");
+  r_ = rest.matrixU();
 }
 
 /// z, or z', of observations in noise units.
@@ -142,7 +146,7 @@ VectorXd Model::target(const VectorXd& white) const {
 
 Model Model::with(const MatrixXd& whitened) const {
   Model out = *this;
-  out.use(whitened);
+  out.use(whitened(Eigen::all, columns_));
   return out;
 }
 
@@ -185,7 +189,9 @@ void Model::jacobian(const VectorXd& t, Work& work) const {
 
 /// Levenberg's and Marquardt's steps, coordinates at a limit held while the gradient pushes outward.
 double Model::descend(const Limits& limits, VectorXd& t, Work& work) const {
-  auto& [z, factor, feature, r, tried, gradient, next, j, normal, damped, solver] = work;
+  VectorXd &r = work.residual, &tried = work.tried, &gradient = work.gradient, &next = work.next;
+  MatrixXd &normal = work.normal, &damped = work.damped;
+  const MatrixXd& j = work.jacobian;
   residual(t, work, r);
   double q = r.squaredNorm(), damping = 1e-3;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -201,8 +207,8 @@ double Model::descend(const Limits& limits, VectorXd& t, Work& work) const {
     for (; damping < 1e8 && !better; damping *= 8) {
       damped = normal;
       damped.diagonal() += damping * (normal.diagonal().array() + 1e-9).matrix();
-      solver.compute(damped);
-      next = solver.solve(gradient);
+      work.damped_factor.compute(damped);
+      next = work.damped_factor.solve(gradient);
       next = (t - next).cwiseMax(limits.low).cwiseMin(limits.high);
       residual(next, work, tried);
       const double q_next = tried.squaredNorm();

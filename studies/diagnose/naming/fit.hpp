@@ -69,7 +69,7 @@ class Model {
   Model(const BankData&, const Surrogate&, Weighting&&, const Switched&) = delete;
   Model(const BankData&, Surrogate&&, const Weighting&, const Switched&) = delete;
 
-  /// The same on a bank that has turned out other: W times its coefficients, observables × all features.
+  /// The same on a bank that has turned out other: its coefficients times W, observables × all features.
   Model with(const MatrixXd& whitened) const;
   FitResult fit(const VectorXd& observed) const { return fit_within({low_, high_}, observed); }
   /// The same with one of θ and the strengths, in that order, held at a value within its limits.
@@ -83,7 +83,7 @@ class Model {
     VectorXd low, high;
   };
   struct Work;
-  void count_factors();
+  void list_products();
   void use(const MatrixXd& whitened);
   MatrixXd chance_of_slopes(double ridge) const;
   void correct();

@@ -5,7 +5,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "kernel/base/error.hpp"
 #include "kernel/base/parallel.hpp"
@@ -185,8 +184,10 @@ PseudoData::Drawn PseudoData::drawn(const Refit& refit, const Truth& truth, cons
 }
 
 std::vector<PseudoData::Drawn> PseudoData::draw(const Truth& truth, const std::vector<Choice>& choices, const Draws& how) const {
-  std::vector<Refit> refits;
-  for (const LeftOut* left : runs_for(truth, how.for_intervals)) refits.push_back(refit(*left, truth, choices));
+  const std::vector<const LeftOut*> runs = runs_for(truth, how.for_intervals);
+  std::vector<Refit> refits(runs.size());
+  base::for_each_item(refits.size(), base::worker_count(options_.threads, refits.size()),
+                      [&](std::size_t r, std::size_t) { refits[r] = refit(*runs[r], truth, choices); });
   std::vector<Drawn> out(how.count);
   base::for_each_item(out.size(), base::worker_count(options_.threads, out.size()),
                       [&](std::size_t b, std::size_t) { out[b] = drawn(refits[b / laws() % refits.size()], truth, how, b); });
