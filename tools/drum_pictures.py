@@ -1,4 +1,4 @@
-"""Two drawings for docs/validation.md, in plain SVG; for verify_drums.py."""
+"""Drawings for docs/validation.md, in plain SVG; for the files that verify drums."""
 
 from svg_panels import LEFT, WIDTH, Panel, save
 
@@ -32,3 +32,21 @@ def free_surface(path, points, ours):
         panel.dot(point, "#e9a23b", size=3)
     panel.line(list(zip(ours[0], ours[1])), "#3b6fb6")
     save(path, "Velocity along the free surface of Alizadeh's drum: measured (dots) and ours (line)", [panel], [("#e9a23b", "dot", "measured"), ("#3b6fb6", "line", "ours")])
+
+
+def speeds(path, measured, angles, fitted):
+    """measured: rpm → angle; angles: (model, rpm) → angle, error; fitted: rpm."""
+    panel = Panel((0, 0), "surface of the bed", (5, 50), (30, 56), ("rpm; fitted: " + ", ".join("%d" % rpm for rpm in fitted), "angle, deg"))
+    panel.ticks([(rpm, "%d" % rpm) for rpm in sorted(measured)], range(30, 56, 5))
+    legend = []
+    models = list(dict.fromkeys(model for model, _ in angles))
+    kinds = list(dict.fromkeys(model.split(",")[0] for model in models))
+    for model in models:
+        colour = COLOURS[2 * kinds.index(model.split(",")[0])]
+        panel.line([(rpm, angles[model, rpm][0]) for rpm in sorted(measured)], colour, "5 4" if "finer" in model else "")
+        for rpm in measured:
+            panel.dot((rpm, angles[model, rpm][0]), colour, angles[model, rpm][1], size=2.5)
+        legend.append((colour, "dashes" if "finer" in model else "line", model.replace("_", " ")))
+    for rpm, angle in measured.items():
+        panel.dot((rpm, angle), "#e9a23b", 0.5)
+    save(path, "Surface angle of a drum at four speeds: measured (dots) and simulated (lines)", [panel], legend + [("#e9a23b", "dot", "measured")])

@@ -1,8 +1,10 @@
 """Which physics do measured pictures of a drum ask for? For verify.py: the study of configs/measured_drums/silhouettes, with finer beads as a check."""
 
 import os
+import re
 import shutil
 
+import drum_pictures
 from verify_diagnose import diagnosis_of
 from verify_drums import DATA, ROOT, angle_of, not_run, sources
 from verify_granudrum import BORE, WINDOWS, pictured_angles
@@ -38,13 +40,13 @@ def diagnosis_with(bench, folder, name):
 
 
 def slope(bench, case, name, rpm, *settings):
-    """Angle of the bed's outline in a run, with its standard error; read as the pictures are."""
+    """Angle of the bed's outline in a run and its standard error, degrees; read as the pictures are."""
     out = "silhouettes_%s_%d" % (name, rpm)
     start, end = WINDOWS[rpm]  # as in the study
     bench.run(out, os.path.relpath(case, ROOT), "mill.speed=%d rpm" % rpm, "time.end_s=%g" % end, "time.analyze_from_s=%g" % start,
               "output={frames: {every_s: 0.02, from_s: %g}}" % start, *settings)
     found = angle_of(bench.folder / out, BORE)
-    return "%.1f ± %.1f°" % (found["outline"], found["outline_error"])
+    return found["outline"], found["outline_error"]
 
 
 def hypothesis_rows(found):
@@ -53,7 +55,7 @@ def hypothesis_rows(found):
         strength = ", ".join("%s %.3g" % (name, p["value"]) for name, p in h["parameters"].items())
         rows.append(row("%s (%s)" % (h["name"], strength), "ΔQ %.3g, p %.2g; %s" % (h["delta_q"], h["p_value"], h["class"])))
     for held in found["held_out"]:
-        misfits = ", ".join("%s %.3g" % (m["model"], m["misfit"]) for m in held["models"])
+        misfits = ", ".join("%s %.3g%s" % (m["model"], m["misfit"], " (simulated)" if m["simulated"] else "") for m in held["models"])
         rows.append(row("%s, held out: misfit a number" % held["condition"], misfits, "about 1 where only chance is left"))
     return rows
 
@@ -68,12 +70,12 @@ def angle_rows(bench, folder, found):
     effect = ["contact.interactions={it: {kind: %s}}" % KINDS[best["name"]]] \
         + ["pairs.%s.%s=%.6g" % (pair, name, p["value"]) for pair in ("default", "cellulose~disc") for name, p in best["parameters"].items()]
     models = {"base": settings_of(found["contact_parameters"]["retuned"]), best["name"]: effect + settings_of(best["contact_parameters"])}
-    measured, rows = pictured_angles(), []
-    for rpm in FITTED + HELD_OUT:
-        angles = ["%s %s, with finer beads %s" % (model, slope(bench, case, model, rpm, *settings), slope(bench, case, model + "_finer", rpm, *settings, FINER))
-                  for model, settings in models.items()]
-        rows.append(row("surface at %d rpm (%s)" % (rpm, "fitted" if rpm in FITTED else "held out"), "; ".join(angles), "%.1f° (measured)" % measured[rpm]))
-    return rows
+    models.update({model + ", finer": settings + [FINER] for model, settings in list(models.items())})
+    angles = {(model, rpm): slope(bench, case, re.sub(r"\W+", "_", model), rpm, *settings) for rpm in FITTED + HELD_OUT for model, settings in models.items()}
+    measured = pictured_angles()
+    drum_pictures.speeds(ROOT / "docs" / "drum_silhouettes.svg", measured, angles, FITTED)
+    return [row("surface at %d rpm (%s)" % (rpm, "fitted" if rpm in FITTED else "held out"), "; ".join("%s %.1f ± %.1f°" % (m, *angles[m, rpm]) for m in models),
+                "%.1f° (measured)" % measured[rpm]) for rpm in FITTED + HELD_OUT]
 
 
 def silhouettes(bench):
