@@ -42,7 +42,7 @@ def diagnosis_with(bench, folder, name):
 def slope(bench, case, name, rpm, *settings):
     """Angle of the bed's outline in a run and its standard error, degrees; read as the pictures are."""
     out = "silhouettes_%s_%d" % (name, rpm)
-    start, end = WINDOWS[rpm]  # as in the study
+    start, end = WINDOWS[rpm]
     bench.run(out, os.path.relpath(case, ROOT), "mill.speed=%d rpm" % rpm, "time.end_s=%g" % end, "time.analyze_from_s=%g" % start,
               "output={frames: {every_s: 0.02, from_s: %g}}" % start, *settings)
     found = angle_of(bench.folder / out, BORE)
@@ -79,7 +79,7 @@ def angle_rows(bench, folder, found):
 
 
 def silhouettes(bench):
-    """Which physics four measured pictures of beads that are not round ask for (an hour of two cores)"""
+    """Which physics four measured pictures of beads that are not round ask for (two hours of two cores)"""
     if not_run("granudrum"):
         return not_run("granudrum")
     folder = folder_of(bench)
