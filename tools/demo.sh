@@ -42,7 +42,7 @@ quietly analyze recording55.yaml -o as-recorded --no-pictures
 quietly analyze retuned.yaml -o as-retuned --no-pictures
 "$millscope" compare as-recorded as-retuned -o difference -q
 
-chapter "Which physics was left out (about three minutes)"
+chapter "Which physics was left out (a minute or two)"
 quietly diagnose "$story/study.yaml" -o diagnosis "$@"
 sed -n 3p diagnosis/diagnosis.md
 
