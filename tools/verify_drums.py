@@ -6,7 +6,7 @@ import math
 import sys
 
 from public_data import DATA, ROOT
-from verify_rows import row
+from verify_rows import absent, row
 
 sys.path.insert(0, str(ROOT / "python"))
 SOURCES = {  # in DATA: where they are public, and their licence
@@ -25,11 +25,11 @@ def not_run(folder):
     """Why an item cannot be run, as its only row; none: it can be."""
     lacking = [name for name in SOURCES if name.startswith(folder) and not (DATA / name).exists()]
     if lacking:
-        return [row(", ".join(lacking), "absent from the folder of MILLSCOPE_DATA: not run")]
+        return absent(", ".join(lacking), "absent from the folder of MILLSCOPE_DATA: not run")
     try:
         import h5py, numpy, pandas, yaml  # noqa: E401, F401
     except ImportError as reason:
-        return [row("the analysis of frames", "%s: not run; it needs python3-h5py, python3-pandas, python3-yaml" % reason)]
+        return absent("the analysis of frames", "%s: not run; it needs python3-h5py, python3-pandas, python3-yaml" % reason)
     return []
 
 

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 from verify_diagnose import diagnosis_of, friction_rows, held_rows, text_of, verdict_rows
-from verify_rows import row
+from verify_rows import absent, row
 
 ROOT = Path(__file__).resolve().parent.parent
 RECORDINGS = ROOT.parent / "shared" / "recordings"
@@ -28,7 +28,7 @@ def candidate_rows(found):
 def drum(bench):
     """A published velocity profile of a drum against coarse-bead drums whose end faces stand still, though the real ones turned"""
     if not PROFILE.exists():
-        return [row("the drum's profile", "absent: not checked")]
+        return absent("the drum's profile", "absent: not checked")
     folder = bench.folder / "drum"
     folder.mkdir(exist_ok=True)
     text = (ROOT / "configs/drum/profile.yaml").read_text().replace("points.csv", os.path.relpath(PROFILE, folder))
@@ -98,7 +98,7 @@ def kept_when_fast(found):
 def uct(bench):
     """A real recording of 92 s of one tracer in a mill of which little is known: as it is, and with errors that were put in"""
     if not TRACK.exists():
-        return [row("the recording", "absent: not checked")]
+        return absent("the recording", "absent: not checked")
     folder = bench.folder / "uct"
     folder.mkdir(exist_ok=True)
     rows, kept_as_is = [], 100
@@ -136,7 +136,7 @@ ROLLING = 0.1  # rolling friction of B, elastic-plastic
 def worked(bench):
     """An independent code's mill, as it is (A) and with rolling friction that the power at 75 % conceals (B)"""
     if not list(RECORDINGS.glob("mill10_A_75_*.a")):
-        return [row("the recordings", "absent: not checked")]
+        return absent("the recordings", "absent: not checked")
     rows = []
     for name, (files, powers, hidden, friction) in WORKED.items():
         found = diagnosed_mill10(bench, name, files, powers)

@@ -8,7 +8,7 @@ import subprocess
 import round_robin_files
 from public_data import ROOT
 from round_robin_picture import picture
-from verify_rows import row
+from verify_rows import absent, row
 
 PICTURE = ROOT / "docs" / "validation_round_robin.svg"
 OURS, THEIRS, HALF, STIFF = "millscope", "LIGGGHTS", "half the step", "true stiffness"
@@ -145,11 +145,11 @@ def round_robin(bench):
     """The round robin of Dosta 2024: beads of two sizes mix in a drum, in LIGGGHTS and in millscope (three quarters of an hour of one core)"""
     data = round_robin_files.data_folder()
     if data is None:
-        return [row("beads and walls", "absent: not run")]
+        return absent("beads and walls", "absent: not run")
     try:
         import h5py  # noqa: F401
     except ImportError:
-        return [row("the counts", "Python has no h5py: not run")]
+        return absent("the counts", "Python has no h5py: not run")
     round_robin_files.write(data, bench.folder / "round_robin")
     folders = {name: one_run(bench, name) for name in RUNS}
     found = {name: Counts(folder) for name, folder in folders.items()}

@@ -9,6 +9,14 @@ def row(what, found, wanted="", good=None):
     return {"what": what, "found": found, "wanted": wanted, "good": good}
 
 
+class Absent(dict):
+    """The only row of an item that cannot be run here; what the page says of the item stays."""
+
+
+def absent(what, why):
+    return [Absent(row(what, why))]
+
+
 def show(value, error, unit):
     return "%.4g ± %.2g %s" % (value, error, unit)
 
