@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "dem/support.hpp"
 #include "kernel/base/error.hpp"
@@ -75,6 +76,22 @@ TEST_CASE("of a liner longer than the slice only the slice counts") {
 TEST_CASE("a number of pitches that a liner has not is refused with what they differ by") {
   const Assembly a = mill("lifters: 10, lifter_height: 8 mm, lifter_width: 20 mm");
   CHECK_THROWS_WITH(profile(a, {1e-3, 1, 7}), Contains("does not repeat 7 times") && Contains("--pitches"));
+}
+
+TEST_CASE("lifters that wind along the mill are refused for one row, and taken with several") {
+  const Assembly a = mill("lifters: 10, lifter_height: 8 mm, lifter_width: 20 mm");
+  millscope::Surface s = a.geometries[0].surface;
+  std::vector<double> wound(s.vertices, s.vertices + 3 * s.vertex_count);
+  for (std::size_t v = 0; v < wound.size(); v += 3) {
+    const double angle = 0.5 * wound[v + 2] / 0.04, c = std::cos(angle), sine = std::sin(angle);
+    const double x = wound[v], y = wound[v + 1];
+    wound[v] = c * x - sine * y;
+    wound[v + 1] = sine * x + c * y;
+  }
+  s.vertices = wound.data();
+  const auto with = [&](std::size_t rows) { return profile_of(s, a.geometries[0].interior, {1e-3, rows, 0}, "liner"); };
+  CHECK_THROWS_WITH(with(1), Contains("geometry.liner") && Contains("not the same along the mill") && Contains("--rows"));
+  CHECK(with(8).pitches == 10);
 }
 
 TEST_CASE("a profile as triangles has the same profile, the volume of its liner and materials on both sides of a border") {
