@@ -113,8 +113,37 @@ void add_p_values(const char* of, const std::vector<double>& p, std::string& out
       of, median_of(p), *std::min_element(p.begin(), p.end()), low_p(p), high_p(p));
 }
 
+/// "3 of 4"; nothing where none was tried.
+std::string brief(const Count& c) { return c.of == 0 ? std::string() : fmt::format("{} of {}", c.hits, c.of); }
+
+/// Of all quantities together.
+Count covered_by_intervals(const Score& s) {
+  Count all;
+  for (const Coverage& c : s.coverage) {
+    if (c.varies) all.hits += c.inside.hits, all.of += c.inside.of;
+  }
+  return all;
+}
+
+/// The same by who played and by program: how many beads are recorded at once hangs on the challenge.
+void add_calibration_of_groups(const Page& page, std::string& out) {
+  const std::vector<Group> groups = groups_of(page.sets);
+  if (groups.size() < 2) return;
+  out +=
+      "| sets of | nothing hidden | p of the base: half above | so high by chance | smallest p of a hypothesis: half above | so high by "
+      "chance | misfit, median | 90 % intervals that hold |\n|---|---|---|---|---|---|---|---|\n";
+  for (const Group& g : groups) {
+    const Score s = score(g.sets);
+    if (s.empty_p.empty() || s.empty_base_p.empty() || s.empty_base_q.empty()) continue;
+    add(out, "| {} | {} | {:.2f} | {:.2g} | {:.2f} | {:.2g} | {:.2f} | {} |\n", g.folders, s.empty_base_p.size(), median_of(s.empty_base_p),
+        high_p(s.empty_base_p), median_of(s.empty_p), high_p(s.empty_p), median_of(s.empty_base_q), brief(covered_by_intervals(s)));
+  }
+  out += "\n";
+}
+
 /// Whether errors are as large as they are said to be.
-void add_calibration(const Score& s, std::string& out) {
+void add_calibration(const Page& page, std::string& out) {
+  const Score& s = page.score;
   if (s.empty_p.empty() && s.empty_base_p.empty()) return;
   out +=
       "## Are the errors right?\n\nIn the sets with nothing hidden the p-values should lie evenly between 0 and 1. Low ones mean false "
@@ -127,12 +156,10 @@ void add_calibration(const Score& s, std::string& out) {
         "itself takes; far below that, errors are taken for larger than they are.\n",
         median_of(s.empty_base_q), *std::min_element(s.empty_base_q.begin(), s.empty_base_q.end()),
         *std::max_element(s.empty_base_q.begin(), s.empty_base_q.end()));
-  Count all;
-  for (const Coverage& c : s.coverage) {
-    if (c.varies) all.hits += c.inside.hits, all.of += c.inside.of;
-  }
+  const Count all = covered_by_intervals(s);
   if (all.of > 0) add(out, "- **90 % intervals** hold the truth in {} of {}, all quantities above together.\n", all.hits, all.of);
   out += "\n";
+  add_calibration_of_groups(page, out);
 }
 
 /// The counts that matter most, by who played which mill and which program diagnosed it; nothing where all is one.
@@ -142,7 +169,6 @@ void add_groups(const Page& page, std::string& out) {
   out +=
       "| played by | diagnosed by commit | sets of | nothing hidden: physics listed | one effect, λ ≥ 30: listed, alone or in a class of "
       "two | two: both named, together | outside: said so | decoy: physics listed |\n|---|---|---|---|---|---|---|---|\n";
-  const auto brief = [](const Count& c) { return c.of == 0 ? std::string() : fmt::format("{} of {}", c.hits, c.of); };
   for (const Group& g : groups) {
     const Score s = score(g.sets);
     Count strong;
@@ -239,7 +265,7 @@ std::string page_text(const Page& page) {
   out += misses_text(page);
   add_counts(s, out);
   out += figures_text(page);
-  add_calibration(s, out);
+  add_calibration(page, out);
   out += sets_text(page);
   add(out, "## Hashes\n\nEvery answer has the hash that its manifest gives it; {}.\n", manifests_text(page));
   return out;

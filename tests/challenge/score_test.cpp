@@ -1,4 +1,6 @@
 // The score's arithmetic on diagnoses that were made up, against numbers worked out by hand.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -250,12 +252,16 @@ TEST_CASE("sets of two mills, engines and programs are counted apart") {
   sets[2].answer.made = {{"fast", {{"settings", {"a=1"}}}}};
   sets[3].study = "other";
   sets[4].program = "c3dc7bf";
+  sets[1].found->base_p = 0.96;
+  sets[1].found->base_q = 0.6;
+  sets[1].found->hypotheses = {{"rolling", "best", {}, {}, true, true, 0.7}};
   const std::vector<Group> groups = groups_of(sets);
   CHECK(groups.size() == 5);  // those that tell nothing of how they were made are of no engine
   const std::string text = page_text({sets, score(sets), "", {{"sets", "cafe"}}});
   CHECK(text.find("| liggghts |  |  | 1 of 1 |") != std::string::npos);
   CHECK(text.find("| millscope |  |  | 0 of 1 |") != std::string::npos);
   CHECK(text.find("|  | c3dc7bf |  |") != std::string::npos);
+  CHECK(text.find(fmt::format("|  | 1 | 0.96 | {:.2g} | 0.70 | {:.2g} | 0.60 |  |", high_p({0.96}), high_p({0.7}))) != std::string::npos);
 }
 
 TEST_CASE("what a diagnosis says is right, right in part, or wrong") {
