@@ -1,6 +1,7 @@
 #include "studies/calibrate/observe.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -174,14 +175,22 @@ Observer::Observer(const Study& study, const host::Registry& registry, Recording
     : impl_(new Impl{
           {study, registry, options.threads, analyzers_of(study, registry), false}, std::move(options.cache), std::move(recordings)}) {
   fs::create_directories(impl_->cache);
-  for (std::size_t c = 0; c < study.conditions.size(); ++c) {
+  const std::size_t conditions = study.conditions.size();
+  if (options.say) {
+    std::vector<std::string> names;
+    for (const Condition& condition : study.conditions) names.push_back(condition.name);
+    options.say(fmt::format("looking at what was recorded: {}", fmt::join(names, ", ")));
+  }
+  impl_->recorded.resize(conditions);
+  base::for_each_item(conditions, base::worker_count(options.threads, conditions), [&](std::size_t c, std::size_t) {
+    impl_->recorded[c] = look_at_recording(c, *impl_->recordings[c], impl_->how, impl_->cache);
+  });
+  for (std::size_t c = 0; c < conditions; ++c) {
     const std::string& name = study.conditions[c].name;
-    if (options.say) options.say(fmt::format("looking at the recording of condition '{}'", name));
-    const Recorded& recorded = *impl_->recordings[c];
-    impl_->recorded.push_back(look_at_recording(c, recorded, impl_->how, impl_->cache));
     const std::string where = study.observing.camera_is_file() ? study.observing.camera : fmt::format("camera of condition '{}'", name);
-    impl_->camera.push_back(recorded.of_tracks() ? without_frame(camera::parse_camera(impl_->recorded[c].camera, where, registry))
-                                                 : camera::Camera());
+    impl_->camera.push_back(impl_->recordings[c]->of_tracks()
+                                ? without_frame(camera::parse_camera(impl_->recorded[c].camera, where, registry))
+                                : camera::Camera());
     impl_->mill.push_back(analysis::read_mill_of_case(study.base, registry, study.conditions[c].settings).context);
   }
 }

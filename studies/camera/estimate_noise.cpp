@@ -41,13 +41,15 @@ struct Estimator {
   /// Of each stretch, with weights of the ladder learnt from all. Were these the likeliest, the errors from the stretches' gradients and
   /// the curvature of the sum would be those of a fit of weights and parameters together; they nearly are.
   std::vector<double> likelihoods(const std::vector<Stretch>& stretches, const NoisePoint& p) const {
+    std::array<NoiseStrength, 3> noise;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double white = kWhiteScale * std::exp(p.white[axis]);
+      noise[axis] = {white, white * std::exp(p.ratio)};
+    }
     std::vector<Rungs> rungs;
     for (const Stretch& s : stretches) {
       const Steps steps(s, time_scale * std::exp(p.time), time_scale * std::exp(p.memory), p.growth / kLengthScale);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double white = kWhiteScale * std::exp(p.white[axis]);
-        rungs.push_back(rung_likelihoods(s, axis, steps, {white, white * std::exp(p.ratio)}));
-      }
+      for (const Rungs& axis : rung_likelihoods(s, steps, noise)) rungs.push_back(axis);
     }
     const std::vector<double> each = averaged_over_ladder(rungs);
     std::vector<double> sums;

@@ -44,14 +44,11 @@ struct Steps {
   std::vector<double> factor;
 };
 
-/// Restricted log-likelihood of one axis of a stretch for one strength of the wandering, m/s^1.5.
-double stretch_likelihood(const Stretch& stretch, std::size_t axis, const Steps& steps, const NoiseStrength& noise, double strength);
-
 /// A number for every strength of the ladder.
 using Rungs = std::array<double, 9>;
 
-/// The same for every strength.
-Rungs rung_likelihoods(const Stretch& stretch, std::size_t axis, const Steps& steps, const NoiseStrength& noise);
+/// Restricted log-likelihood of each axis of a stretch for every strength of the wandering; NaN where the noise is none.
+std::array<Rungs, 3> rung_likelihoods(const Stretch& stretch, const Steps& steps, const std::array<NoiseStrength, 3>& noise);
 
 /// Log-likelihoods, one from those of each ladder: averaged with weights of the rungs that make all of them together likely.
 std::vector<double> averaged_over_ladder(const std::vector<Rungs>& logs);

@@ -39,7 +39,7 @@ double log_likelihood(const std::vector<camera::Stretch>& stretches, const Tried
   std::vector<camera::Rungs> rungs;
   for (const camera::Stretch& s : stretches) {
     const camera::Steps steps(s, tried.time, tried.memory, 0);
-    for (std::size_t axis = 0; axis < 3; ++axis) rungs.push_back(camera::rung_likelihoods(s, axis, steps, tried.noise));
+    for (const camera::Rungs& axis : camera::rung_likelihoods(s, steps, {tried.noise, tried.noise, tried.noise})) rungs.push_back(axis);
   }
   const std::vector<double> each = camera::averaged_over_ladder(rungs);
   return std::accumulate(each.begin(), each.end(), 0.0);
