@@ -90,7 +90,7 @@ std::vector<std::vector<double>> sandwich(const Derivatives& d) {
 
 double Fit::error(std::size_t i) const { return std::sqrt(covariance[i][i]); }
 
-Fit maximise(const LogLikelihood& groups, const std::vector<FitParameter>& parameters) {
+Fit likeliest(const LogLikelihood& groups, const std::vector<FitParameter>& parameters) {
   const auto n = static_cast<unsigned>(parameters.size());
   const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> search(nlopt_create(NLOPT_LN_BOBYQA, n), nlopt_destroy);
   Fit fit;
@@ -109,6 +109,11 @@ Fit maximise(const LogLikelihood& groups, const std::vector<FitParameter>& param
   nlopt_set_xtol_abs1(search.get(), 1e-3);
   nlopt_set_maxeval(search.get(), 2000);
   nlopt_optimize(search.get(), fit.value.data(), &fit.log_likelihood);
+  return fit;
+}
+
+Fit maximise(const LogLikelihood& groups, const std::vector<FitParameter>& parameters) {
+  Fit fit = likeliest(groups, parameters);
   fit.covariance = sandwich(derivatives(groups, parameters, fit.value));
   return fit;
 }
