@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kernel/base/parallel.hpp"
 #include "studies/analysis/mirror.hpp"
@@ -110,6 +111,12 @@ void find_axis(const RecordedCondition& r, double angular_velocity, recording::R
   recording.frame->axis = *found;
 }
 
+/// The study's own section `analyzers` as text; empty: it has none.
+std::string own_analyzers_of(const Study& study) {
+  const auto own = study.root.valid() ? study.root.find("analyzers") : std::nullopt;
+  return own ? dump(*own) : std::string();
+}
+
 /// At a finished run. `camera`: text of links before those of the recording's camera; may be empty.
 struct Look {
   const campaign::Outcome& run;
@@ -172,8 +179,9 @@ struct Observer::Impl {
 };
 
 Observer::Observer(const Study& study, const host::Registry& registry, Recordings recordings, ObserverOptions options)
-    : impl_(new Impl{
-          {study, registry, options.threads, analyzers_of(study, registry), false}, std::move(options.cache), std::move(recordings)}) {
+    : impl_(new Impl{{study, registry, options.threads, analyzers_of(study, registry), own_analyzers_of(study), false},
+                     std::move(options.cache),
+                     std::move(recordings)}) {
   fs::create_directories(impl_->cache);
   const std::size_t conditions = study.conditions.size();
   if (options.say) {
@@ -181,9 +189,13 @@ Observer::Observer(const Study& study, const host::Registry& registry, Recording
     for (const Condition& condition : study.conditions) names.push_back(condition.name);
     options.say(fmt::format("looking at what was recorded: {}", fmt::join(names, ", ")));
   }
+  // Side by side, each with its part of the threads.
+  const std::size_t workers = base::worker_count(options.threads, conditions);
+  Processing how = impl_->how;
+  how.threads = static_cast<int>(base::worker_count(options.threads, std::numeric_limits<std::size_t>::max()) / workers);
   impl_->recorded.resize(conditions);
-  base::for_each_item(conditions, base::worker_count(options.threads, conditions), [&](std::size_t c, std::size_t) {
-    impl_->recorded[c] = look_at_recording(c, *impl_->recordings[c], impl_->how, impl_->cache);
+  base::for_each_item(conditions, workers, [&](std::size_t c, std::size_t) {
+    impl_->recorded[c] = look_at_recording(c, *impl_->recordings[c], how, impl_->cache);
   });
   for (std::size_t c = 0; c < conditions; ++c) {
     const std::string& name = study.conditions[c].name;

@@ -48,6 +48,7 @@ struct Processing {
   int threads = 0;
   /// Read beforehand: what reads the study's file must not be done by several threads.
   std::vector<analysis::AskedAnalyzer> analyzers = {};
+  std::string own_analyzers = {};  ///< the study's section `analyzers` as text; empty: it has none
   bool all_uncertain = true;  ///< false: only what becomes a summary gets an uncertainty
 };
 

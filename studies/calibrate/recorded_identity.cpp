@@ -41,9 +41,9 @@ std::string identity_of(const recording::Recording& recording, const Processing&
   for (const recording::Run& run : recording.runs) parts.push_back(run.name + analysis::file_hash(run.source));
   for (const ObservableKind kind : study.objective.without) parts.push_back(fmt::format("without {}", name_of(kind)));
   for (const Term& term : study.objective.terms) parts.push_back(term.name());
-  if (const auto own = study.root.valid() ? study.root.find("analyzers") : std::nullopt) parts.push_back(dump(*own));
+  if (!how.own_analyzers.empty()) parts.push_back(how.own_analyzers);
   // A plugin that is not asked changes nothing; a study with analyzers of its own may ask any.
-  const bool own_analyzers = !study.objective.terms.empty() || (study.root.valid() && study.root.has("analyzers"));
+  const bool own_analyzers = !study.objective.terms.empty() || !how.own_analyzers.empty();
   for (const host::PluginRecord& r : how.registry.records()) {
     const bool asked = own_analyzers ||
                        std::any_of(kUsedAnalyzers.begin(), kUsedAnalyzers.end(), [&](const UsedAnalyzer& a) { return a.plugin == r.name; });

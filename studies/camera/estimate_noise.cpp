@@ -31,8 +31,8 @@ struct NoisePoint {
   double memory = 0.5;  ///< of the bead's wandering
 };
 
-/// Shape and size are found in turns. Errors are of use in the last one alone.
-enum class Turn { first, last };
+/// What a fit is to tell: its errors cost about as much again as the fit.
+enum class Errors { none, wanted };
 
 struct Estimator {
   std::vector<Stretch> all, quiet;
@@ -62,18 +62,18 @@ struct Estimator {
 
   /// Maximum over the numbers that `place` writes into the point; the others stay as they are.
   template <class Place>
-  Fit fit(const std::vector<Stretch>& stretches, const Place& place, const std::vector<FitParameter>& parameters, Turn turn) {
+  Fit fit(const std::vector<Stretch>& stretches, const Place& place, const std::vector<FitParameter>& parameters, Errors errors) {
     const LogLikelihood groups = [&](const std::vector<double>& x) {
       NoisePoint p = point;
       place(x, p);
       return likelihoods(stretches, p);
     };
-    Fit found = turn == Turn::last ? maximise(groups, parameters) : likeliest(groups, parameters);
+    Fit found = errors == Errors::wanted ? maximise(groups, parameters) : likeliest(groups, parameters);
     place(found.value, point);
     return found;
   }
 
-  void fit_shape(Turn turn) {
+  void fit_shape(Errors errors) {
     const auto place_white = [](const std::vector<double>& x, NoisePoint& q) { q.white = {x[0], x[0], x[0]}; };
     const auto place_all = [](const std::vector<double>& x, NoisePoint& q) {
       q.white = {x[0], x[0], x[0]};
@@ -82,18 +82,18 @@ struct Estimator {
     };
     const NoisePoint before = point;
     point.ratio = kNoCorrelation;
-    const Fit plain = fit(quiet, place_white, {{before.white[0], -6, 4}}, Turn::first);  // its errors nobody asks for
+    const Fit plain = fit(quiet, place_white, {{before.white[0], -6, 4}}, Errors::none);
     point = before;
     point.ratio = std::max(point.ratio, -1.0);
     const FitParameter time{point.time, std::log(0.1), std::log(4), kUsualTime, kTimeDeviation};
-    shape = fit(quiet, place_all, {{point.white[0], -6, 4}, {point.ratio, -4, 2}, time}, turn);
+    shape = fit(quiet, place_all, {{point.white[0], -6, 4}, {point.ratio, -4, 2}, time}, errors);
     // Left out only where it explains nothing at all, or fades before the next location comes, which makes it white: leaving a weak one
     // out would make the whole too small. The scale of time is two intervals.
     const double lasts = std::exp(-0.5 / std::exp(point.time));
     if (shape.log_likelihood - plain.log_likelihood < kNothing || lasts < 0.05) point.ratio = kNoCorrelation;
   }
 
-  void fit_size(Turn turn) {
+  void fit_size(Errors errors) {
     size = fit(
         all,
         [](const std::vector<double>& x, NoisePoint& q) {
@@ -106,7 +106,7 @@ struct Estimator {
          {point.white[2], -6, 4},
          {point.growth, 0, 50},
          {point.memory, std::log(0.1), std::log(20)}},
-        turn);
+        errors);
   }
 };
 
@@ -161,9 +161,9 @@ CameraNoise estimate_camera_noise(const recording::Recording& recording, const M
       stretches_over(recording, middle, pause, most_stretches), quiet_stretches(recording, middle, pause, most_stretches), 0, {}, {}, {}};
   const std::vector<double>& times = e.all[e.all.size() / 2].time;
   e.time_scale = 2 * times.back() / static_cast<double>(times.size());
-  for (const Turn turn : {Turn::first, Turn::last}) {  // the shape needs the growth, the growth the shape
-    e.fit_shape(turn);
-    e.fit_size(turn);
+  for (const Errors errors : {Errors::none, Errors::wanted}) {  // the shape needs the growth, the growth the shape
+    e.fit_shape(errors);
+    e.fit_size(errors);
   }
   return result_of(e);
 }

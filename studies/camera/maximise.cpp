@@ -3,6 +3,7 @@
 #include <nlopt.h>
 
 #include <Eigen/Dense>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -88,7 +89,10 @@ std::vector<std::vector<double>> sandwich(const Derivatives& d) {
 
 }  // namespace
 
-double Fit::error(std::size_t i) const { return std::sqrt(covariance[i][i]); }
+double Fit::error(std::size_t i) const {
+  assert(!covariance.empty());
+  return std::sqrt(covariance[i][i]);
+}
 
 Fit likeliest(const LogLikelihood& groups, const std::vector<FitParameter>& parameters) {
   const auto n = static_cast<unsigned>(parameters.size());

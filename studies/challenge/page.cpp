@@ -125,20 +125,26 @@ Count covered_by_intervals(const Score& s) {
   return all;
 }
 
-/// The same by who played and by program: how many beads are recorded at once hangs on the challenge.
+/// The same by who played which mill and by program: how many beads are recorded at once hangs on the challenge.
 void add_calibration_of_groups(const Page& page, std::string& out) {
   const std::vector<Group> groups = groups_of(page.sets);
-  if (groups.size() < 2) return;
-  out +=
-      "| sets of | nothing hidden | p of the base: half above | so high by chance | smallest p of a hypothesis: half above | so high by "
-      "chance | misfit, median | 90 % intervals that hold |\n|---|---|---|---|---|---|---|---|\n";
+  const auto p_values = [](const std::vector<double>& p) {
+    return p.empty() ? std::string(" | ") : fmt::format("{:.2f} | {:.2g}", median_of(p), high_p(p));
+  };
+  std::string rows;
   for (const Group& g : groups) {
     const Score s = score(g.sets);
-    if (s.empty_p.empty() || s.empty_base_p.empty() || s.empty_base_q.empty()) continue;
-    add(out, "| {} | {} | {:.2f} | {:.2g} | {:.2f} | {:.2g} | {:.2f} | {} |\n", g.folders, s.empty_base_p.size(), median_of(s.empty_base_p),
-        high_p(s.empty_base_p), median_of(s.empty_p), high_p(s.empty_p), median_of(s.empty_base_q), brief(covered_by_intervals(s)));
+    if (s.empty_p.empty() && s.empty_base_p.empty()) continue;
+    const std::string misfit = s.empty_base_q.empty() ? std::string() : fmt::format("{:.2f}", median_of(s.empty_base_q));
+    add(rows, "| {} | {} | {} | {} | {} | {} | {} | {} |\n", g.engine, g.program, g.folders, s.false_alarms.of, p_values(s.empty_base_p),
+        p_values(s.empty_p), misfit, brief(covered_by_intervals(s)));
   }
-  out += "\n";
+  if (groups.size() < 2 || rows.empty()) return;
+  out +=
+      "| played by | diagnosed by commit | sets of | nothing hidden | p of the base: half above | so high by chance | smallest p of a "
+      "hypothesis: half above | so high by chance | misfit, median | 90 % intervals that hold |\n"
+      "|---|---|---|---|---|---|---|---|---|---|\n" +
+      rows + "\n";
 }
 
 /// Whether errors are as large as they are said to be.

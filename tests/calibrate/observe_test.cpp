@@ -170,6 +170,24 @@ TEST_CASE("a recording is looked through anew when a file that its case includes
   CHECK(times_looked_through("4.1 mm") == 2);
 }
 
+TEST_CASE("conditions that are looked at side by side are seen as one after the other") {
+  const testing::Folder folder;
+  study_in(folder);
+  const calibrate::Study study = calibrate::read_study(
+      folder.write("two.yaml",
+                   "base: drum.yaml\nconditions: {dry: {recording: r.yaml, role: fit}, wet: {set: {pairs.glass~glass.restitution: 0.5}, "
+                   "recording: r.yaml, role: fit}}\nanalyzers: {shoulder: {kind: power}}\nobserve: {camera: recording}\n"
+                   "parameters: {pairs.glass~glass.static_friction: {range: [0.1, 0.8]}}\n"));
+  const auto with = [&](int threads) {
+    return Observer(study, registry(), calibrate::read_recordings(study), {folder.path / std::to_string(threads), threads, {}});
+  };
+  const Observer together = with(4), alone = with(1);
+  for (std::size_t c : {0, 1}) {
+    CHECK(together.recorded(c).value == alone.recorded(c).value);
+    CHECK(together.recorded(c).covariance == alone.recorded(c).covariance);
+  }
+}
+
 TEST_CASE("what was seen is seen again when a camera's code has changed, not when its comments have") {
   const testing::Folder folder;
   const std::filesystem::path run = folder.path / "run", cache = folder.path / "observations";

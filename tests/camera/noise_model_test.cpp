@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "millscope/observation_adapter.hpp"
+#include "studies/camera/stretch_wide.hpp"
 #include "support.hpp"
 
 using namespace camera_test;
@@ -60,6 +61,28 @@ TEST_CASE("of beads that do not wander it makes no difference how quickly they w
   CHECK(log_likelihood(stretches, {{kWhite, 0.8 * kCorrelated}, 0.5 * kTime, 3e-3}) < best + 2);
   CHECK(log_likelihood(stretches, {{0.9 * kWhite, kCorrelated}, kTime, 0.02}) < best - 20);
   CHECK(log_likelihood(stretches, {{1.1 * kWhite, kCorrelated}, kTime, 0.02}) < best - 20);
+}
+
+TEST_CASE("the axes of a stretch go side by side without touching one another, and every machine has the same bits") {
+  Random random(12);
+  const camera::Stretch s = straight(random);
+  const camera::Steps steps(s, kTime, 0.02, 11);
+  const std::array<camera::NoiseStrength, 3> noise{{{0.2e-3, 0.1e-3}, {0.3e-3, 0.2e-3}, {0.5e-3, 0.4e-3}}};
+  const std::array<camera::Rungs, 3> all = camera::rung_likelihoods(s, steps, noise);
+  camera::Stretch turned = s;
+  turned.value = {s.value[1], s.value[2], s.value[0]};
+  CHECK(camera::rung_likelihoods(turned, steps, {noise[1], noise[2], noise[0]}) == std::array{all[1], all[2], all[0]});
+  CHECK(all[0] != all[1]);
+  CHECK(all[1] != all[2]);
+  if (!__builtin_cpu_supports("x86-64-v3")) return;
+  const camera::StretchView view{s.time.data(),     s.value[0].data(),   s.value[1].data(),   s.value[2].data(), steps.dt.data(),
+                                 steps.kept.data(), steps.slowed.data(), steps.factor.data(), steps.memory,      s.time.size()};
+  const double white[3] = {0.2e-3, 0.3e-3, 0.5e-3}, correlated[3] = {0.1e-3, 0.2e-3, 0.4e-3};
+  std::array<double, 3> v2{}, v3{};
+  camera::wide_v2::stretch_likelihood(view, {white, correlated}, 0.3, v2.data());
+  camera::wide_v3::stretch_likelihood(view, {white, correlated}, 0.3, v3.data());
+  CHECK(v2 == v3);
+  CHECK(std::isfinite(v2[0]));
 }
 
 TEST_CASE("the weights of the ladder are those of its rungs among the stretches") {

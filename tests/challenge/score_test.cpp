@@ -261,7 +261,8 @@ TEST_CASE("sets of two mills, engines and programs are counted apart") {
   CHECK(text.find("| liggghts |  |  | 1 of 1 |") != std::string::npos);
   CHECK(text.find("| millscope |  |  | 0 of 1 |") != std::string::npos);
   CHECK(text.find("|  | c3dc7bf |  |") != std::string::npos);
-  CHECK(text.find(fmt::format("|  | 1 | 0.96 | {:.2g} | 0.70 | {:.2g} | 0.60 |  |", high_p({0.96}), high_p({0.7}))) != std::string::npos);
+  CHECK(text.find(fmt::format("| liggghts |  |  | 1 | 0.96 | {:.2g} | 0.70 | {:.2g} | 0.60 |  |", high_p({0.96}), high_p({0.7}))) !=
+        std::string::npos);
 }
 
 TEST_CASE("what a diagnosis says is right, right in part, or wrong") {
