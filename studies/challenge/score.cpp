@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "kernel/base/statistics.hpp"
 #include "studies/challenge/concealment.hpp"
@@ -98,15 +99,17 @@ Count& covered(Score& s, const std::string& of) {
   return row != s.coverage.end() ? row->inside : s.coverage.emplace_back(Coverage{of, {}}).inside;
 }
 
-/// Whether a parameter of the answers is another one in some two sets of a study.
+/// Whether a parameter's truth is drawn for each set. What a challenge gives all of its sets takes few values, each of which is one trial.
 bool varies(const std::vector<Marked>& sets, const std::string& parameter) {
-  std::map<std::string, double> first;
+  constexpr std::size_t kMany = 10;
+  std::set<double> values;
+  std::size_t of = 0;
   for (const Marked& m : sets) {
     for (const auto& [name, value] : m.answer.theta) {
-      if (name == parameter && first.emplace(m.study, value).first->second != value) return true;
+      if (name == parameter) values.insert(value), ++of;
     }
   }
-  return false;
+  return values.size() > std::max<std::size_t>(1, std::min(kMany, of / 2));
 }
 
 void judge_coverage(const std::vector<Marked>& sets, Score& s) {

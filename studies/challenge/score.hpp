@@ -127,7 +127,7 @@ inline constexpr const char* kStrengthRow = "the hidden strength";
 struct Coverage {
   std::string of;
   Count inside;
-  bool varies = true;                                   ///< the truth is another one from set to set; else all of a study are one trial
+  bool varies = true;                                   ///< the truth is drawn for each set; else all sets with one truth are one trial
   double p = std::numeric_limits<double>::quiet_NaN();  ///< that 90 % gives such a count, for all that vary together (Holm)
 };
 

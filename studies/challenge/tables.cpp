@@ -153,7 +153,7 @@ void coverage(const Score& s, std::string& out) {
       "for "
       "all rows together (Holm 1979).\n\n| of | truth inside | p |\n|---|---|---|\n";
   for (const Coverage& c : s.coverage)
-    append(out, "| {} | {} | {} |\n", c.of, count_text(c.inside), c.varies ? fmt::format("{:.2g}", c.p) : "one truth: one trial");
+    append(out, "| {} | {} | {} |\n", c.of, count_text(c.inside), c.varies ? fmt::format("{:.2g}", c.p) : "few truths: as few trials");
   out +=
       "\nParameters: of the base where nothing is hidden, of the corrected model where its physics is the hidden one. A strength has an "
       "interval "

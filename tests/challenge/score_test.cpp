@@ -246,6 +246,20 @@ TEST_CASE("an effect that lies beyond the level is told by a longer recording, a
   CHECK(text.find("| s4 | rolling | 20 | named") == std::string::npos);
 }
 
+TEST_CASE("a parameter that a challenge gives all of its sets is one trial, also where two challenges are counted together") {
+  std::vector<Marked> sets = ten_sets();
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    sets[i].answer.theta = {{"friction", 0.3 + 0.01 * static_cast<double>(i)}, {"stiffness", i < 2 ? 0.02 : 0.03}};
+    if (sets[i].found) sets[i].found->retuned["stiffness"] = {0.02, 0.01, 0.03};
+  }
+  const Score s = score(sets);
+  for (const Coverage& c : s.coverage) {
+    INFO(c.of);
+    CHECK(c.varies == (c.of != "stiffness"));
+  }
+  CHECK(page_text({sets, s, "", {{"sets", "cafe"}}}).find("few truths: as few trials") != std::string::npos);
+}
+
 TEST_CASE("sets of two mills, engines and programs are counted apart") {
   std::vector<Marked> sets = ten_sets();
   sets[1].answer.made = {{"fast", {{"settings", {"a=1", "run.engine=liggghts"}}}}};
