@@ -49,7 +49,7 @@ struct Processing {
   /// Read beforehand: what reads the study's file must not be done by several threads.
   std::vector<analysis::AskedAnalyzer> analyzers = {};
   std::string own_analyzers = {};  ///< the study's section `analyzers` as text; empty: it has none
-  bool all_uncertain = true;  ///< false: only what becomes a summary gets an uncertainty
+  bool all_uncertain = true;       ///< false: only what becomes a summary gets an uncertainty
 };
 
 /// Tracks through spline and analyzers. Those that cannot be followed are left out, and `notes` of the results' meta names them.

@@ -43,10 +43,10 @@ std::string identity_of(const recording::Recording& recording, const Processing&
   for (const Term& term : study.objective.terms) parts.push_back(term.name());
   if (!how.own_analyzers.empty()) parts.push_back(how.own_analyzers);
   // A plugin that is not asked changes nothing; a study with analyzers of its own may ask any.
-  const bool own_analyzers = !study.objective.terms.empty() || !how.own_analyzers.empty();
+  const bool may_ask_any = !study.objective.terms.empty() || !how.own_analyzers.empty();
   for (const host::PluginRecord& r : how.registry.records()) {
-    const bool asked = own_analyzers ||
-                       std::any_of(kUsedAnalyzers.begin(), kUsedAnalyzers.end(), [&](const UsedAnalyzer& a) { return a.plugin == r.name; });
+    const bool asked =
+        may_ask_any || std::any_of(kUsedAnalyzers.begin(), kUsedAnalyzers.end(), [&](const UsedAnalyzer& a) { return a.plugin == r.name; });
     if (r.kind == "observation" || (r.kind == "analyzer" && asked)) parts.push_back(r.name + r.code_hash);
   }
   return hash_of(parts);

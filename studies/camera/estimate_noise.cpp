@@ -31,7 +31,7 @@ struct NoisePoint {
   double memory = 0.5;  ///< of the bead's wandering
 };
 
-/// What a fit is to tell: its errors cost about as much again as the fit.
+/// What a fit is to tell: its errors cost half as much again.
 enum class Errors { none, wanted };
 
 struct Estimator {

@@ -28,7 +28,7 @@ using LogLikelihood = std::function<std::vector<double>(const std::vector<double
 /// Maximises the sum over groups, and what is known beforehand, with NLopt's BOBYQA, then H⁻¹ G H⁻¹ with H the curvature of the sum and G =
 /// Σ g gᵀ over the groups' gradients (Huber 1967; White 1982). Parameters should be of order one (logarithms, scaled numbers).
 Fit maximise(const LogLikelihood& groups, const std::vector<FitParameter>& parameters);
-/// The same without the errors, which cost about as much again: `covariance` is empty.
+/// The same without the errors, which cost half as much again: `covariance` is empty.
 Fit likeliest(const LogLikelihood& groups, const std::vector<FitParameter>& parameters);
 
 }  // namespace millscope::camera

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "kernel/host/instruction_set.hpp"
 #include "studies/camera/stretch_wide.hpp"
 
 namespace millscope::camera {
@@ -12,11 +13,6 @@ namespace {
 /// From a bed turning as one body to impacts, in steps of a factor of two and a half, m/s^1.5.
 constexpr Rungs kLadder{0.008, 0.02, 0.05, 0.125, 0.3, 0.8, 2.0, 5.0, 12.5};
 static_assert(kLadder.back() > 0, "Rungs has room for more strengths than there are");
-
-bool is_v3() {
-  static const bool found = __builtin_cpu_supports("x86-64-v3") != 0;
-  return found;
-}
 
 double averaged(const Rungs& relative, const Rungs& weight) {
   return std::inner_product(relative.begin(), relative.end(), weight.begin(), 0.0);
@@ -56,10 +52,11 @@ std::array<Rungs, 3> rung_likelihoods(const Stretch& s, const Steps& steps, cons
   const double correlated[3] = {noise[0].correlated, noise[1].correlated, noise[2].correlated};
   const StretchView view{s.time.data(),     s.value[0].data(),   s.value[1].data(),   s.value[2].data(), steps.dt.data(),
                          steps.kept.data(), steps.slowed.data(), steps.factor.data(), steps.memory,      s.time.size()};
+  const bool is_v3 = host::machine_instruction_set() >= host::InstructionSet::v3;
   std::array<Rungs, 3> log{};
   for (std::size_t k = 0; k < kLadder.size(); ++k) {
     double found[3];
-    (is_v3() ? wide_v3::stretch_likelihood : wide_v2::stretch_likelihood)(view, {white, correlated}, kLadder[k], found);
+    (is_v3 ? wide_v3::stretch_likelihood : wide_v2::stretch_likelihood)(view, {white, correlated}, kLadder[k], found);
     for (std::size_t axis = 0; axis < 3; ++axis) log[axis][k] = found[axis];
   }
   return log;

@@ -59,9 +59,7 @@ struct Removal {
 
   /// Cholesky from the last function down to the data: the last pivot is what the functions leave of the data.
   void log_likelihood(double count, double* found) {
-    Four pivots[kSeries];
     for (int pivot = kSeries - 1; pivot > 0; --pivot) {
-      pivots[pivot] = sums[pivot][pivot];
       for (int j = 0; j < pivot; ++j) {
         const Four share = sums[pivot][j] / sums[pivot][pivot];
         for (int k = 0; k <= j; ++k) sums[j][k] -= share * sums[pivot][k];
@@ -69,7 +67,7 @@ struct Removal {
     }
     for (int lane = 0; lane < 3; ++lane) {
       double log_determinant = 0;
-      for (int pivot = kSeries - 1; pivot > 0; --pivot) log_determinant += std::log(pivots[pivot][lane]);
+      for (int pivot = kSeries - 1; pivot > 0; --pivot) log_determinant += std::log(sums[pivot][pivot][lane]);
       const double of_variance = log_variance[lane] + (std::log(product[lane]) - count * std::log(kUsual));
       found[lane] = -0.5 * (of_variance + log_determinant + sums[0][0][lane] + (count - (kSeries - 1)) * std::log(2 * std::numbers::pi));
     }

@@ -113,6 +113,22 @@ void add_p_values(const char* of, const std::vector<double>& p, std::string& out
       of, median_of(p), *std::min_element(p.begin(), p.end()), low_p(p), high_p(p));
 }
 
+struct ScoredGroup {
+  Group group;
+  Score score;
+};
+
+/// By who played which mill and which program diagnosed it; none where all is one.
+std::vector<ScoredGroup> scored_groups(const Page& page) {
+  std::vector<ScoredGroup> out;
+  for (Group& g : groups_of(page.sets)) {
+    Score s = score(g.sets);
+    out.push_back({std::move(g), std::move(s)});
+  }
+  if (out.size() < 2) out.clear();
+  return out;
+}
+
 /// "3 of 4"; nothing where none was tried.
 std::string brief(const Count& c) { return c.of == 0 ? std::string() : fmt::format("{} of {}", c.hits, c.of); }
 
@@ -125,21 +141,19 @@ Count covered_by_intervals(const Score& s) {
   return all;
 }
 
-/// The same by who played which mill and by program: how many beads are recorded at once hangs on the challenge.
-void add_calibration_of_groups(const Page& page, std::string& out) {
-  const std::vector<Group> groups = groups_of(page.sets);
+/// The same of each group: how many beads are recorded at once hangs on the challenge.
+void add_calibration_of_groups(const std::vector<ScoredGroup>& groups, std::string& out) {
   const auto p_values = [](const std::vector<double>& p) {
     return p.empty() ? std::string(" | ") : fmt::format("{:.2f} | {:.2g}", median_of(p), high_p(p));
   };
   std::string rows;
-  for (const Group& g : groups) {
-    const Score s = score(g.sets);
+  for (const auto& [g, s] : groups) {
     if (s.empty_p.empty() && s.empty_base_p.empty()) continue;
     const std::string misfit = s.empty_base_q.empty() ? std::string() : fmt::format("{:.2f}", median_of(s.empty_base_q));
     add(rows, "| {} | {} | {} | {} | {} | {} | {} | {} |\n", g.engine, g.program, g.folders, s.false_alarms.of, p_values(s.empty_base_p),
         p_values(s.empty_p), misfit, brief(covered_by_intervals(s)));
   }
-  if (groups.size() < 2 || rows.empty()) return;
+  if (rows.empty()) return;
   out +=
       "| played by | diagnosed by commit | sets of | nothing hidden | p of the base: half above | so high by chance | smallest p of a "
       "hypothesis: half above | so high by chance | misfit, median | 90 % intervals that hold |\n"
@@ -148,8 +162,7 @@ void add_calibration_of_groups(const Page& page, std::string& out) {
 }
 
 /// Whether errors are as large as they are said to be.
-void add_calibration(const Page& page, std::string& out) {
-  const Score& s = page.score;
+void add_calibration(const Score& s, const std::vector<ScoredGroup>& groups, std::string& out) {
   if (s.empty_p.empty() && s.empty_base_p.empty()) return;
   out +=
       "## Are the errors right?\n\nIn the sets with nothing hidden the p-values should lie evenly between 0 and 1. Low ones mean false "
@@ -165,18 +178,16 @@ void add_calibration(const Page& page, std::string& out) {
   const Count all = covered_by_intervals(s);
   if (all.of > 0) add(out, "- **90 % intervals** hold the truth in {} of {}, all quantities above together.\n", all.hits, all.of);
   out += "\n";
-  add_calibration_of_groups(page, out);
+  add_calibration_of_groups(groups, out);
 }
 
-/// The counts that matter most, by who played which mill and which program diagnosed it; nothing where all is one.
-void add_groups(const Page& page, std::string& out) {
-  const std::vector<Group> groups = groups_of(page.sets);
-  if (groups.size() < 2) return;
+/// The counts that matter most.
+void add_groups(const std::vector<ScoredGroup>& groups, std::string& out) {
+  if (groups.empty()) return;
   out +=
       "| played by | diagnosed by commit | sets of | nothing hidden: physics listed | one effect, λ ≥ 30: listed, alone or in a class of "
       "two | two: both named, together | outside: said so | decoy: physics listed |\n|---|---|---|---|---|---|---|---|\n";
-  for (const Group& g : groups) {
-    const Score s = score(g.sets);
+  for (const auto& [g, s] : groups) {
     Count strong;
     for (const PowerBin& b : s.power) {
       if (b.low >= kStrong) strong.hits += b.named.hits, strong.of += b.named.of;
@@ -255,6 +266,7 @@ std::string count_text(const Count& c) {
 
 std::string page_text(const Page& page) {
   const Score& s = page.score;
+  const std::vector<ScoredGroup> groups = scored_groups(page);
   std::string out = "# Score of a challenge\n\n";
   add(out, "    {}\n\n", page.command);
   add(out, "{} sets, {} diagnosed, {} of which failed; {} still to be diagnosed.\n\n", s.sets, s.diagnosed, s.failed, s.sets - s.diagnosed);
@@ -265,13 +277,13 @@ std::string page_text(const Page& page) {
         "be missing in {} of {}; below {:.1f} %.**\n\n",
         s.false_physics.hits, s.false_physics.of, 100 * upper_bound(s.false_physics, kSure), s.false_alarms.hits, s.false_alarms.of,
         100 * upper_bound(s.false_alarms, kSure));
-  add_groups(page, out);
+  add_groups(groups, out);
   add_said(s, out);
   add_decoys(page, out);
   out += misses_text(page);
   add_counts(s, out);
   out += figures_text(page);
-  add_calibration(page, out);
+  add_calibration(s, groups, out);
   out += sets_text(page);
   add(out, "## Hashes\n\nEvery answer has the hash that its manifest gives it; {}.\n", manifests_text(page));
   return out;
