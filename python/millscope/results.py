@@ -48,7 +48,7 @@ class Result:
     @property
     def draws(self) -> numpy.ndarray:
         """[K, the result's shape]: resamples less `value`. Draw k of every result comes from the same blocks, so functions of several
-        results have an error, too. Error where there are none (one block, or more than 50 000 values)."""
+        results have an error, too. All are widened alike for the memory of blocks, `sem` for that of its own value. Error where there are none (one block, or more than 50 000 values)."""
         with open_hdf5(self._file, "millscope results", COMES_FROM) as file:
             group = file[_place(self.name)]
             if "draws" not in group:

@@ -75,6 +75,7 @@ struct Resampling {
   const std::vector<Row>& blocks;
   const std::vector<std::uint32_t>& counts;
   std::size_t draws;
+  double scale;  ///< of a draw: √(n/(n − 1)), and for what neighbouring blocks have in common
   std::size_t items() const { return draws + blocks.size(); }
 };
 
@@ -183,9 +184,22 @@ void judge(ResultArray& array, std::size_t first, const Deviations& deviations, 
     array.flags[i] = u.flags;
     keep_range(array, i, all.first(draws));
     if (!keep) continue;
-    for (std::size_t b = 0; b < draws; ++b) array.draws[b * size + i] = static_cast<float>(u.scale * column[b]);
+    const double scale = u.sem > 0 ? resampling.scale : 0;
+    for (std::size_t b = 0; b < draws; ++b) array.draws[b * size + i] = static_cast<float>(scale * column[b]);
   }
   doubt_the_same(array);
+}
+
+/// Fills N_eff of the basic observables; their draws' scale. z is slow and sets no blocks, and is not counted.
+double scale_of_draws(const Blocks& blocks, const std::vector<std::uint32_t>& counts, std::vector<ObservableTime>& times) {
+  double sum = 0, known = 0;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const BlockMemory memory = block_memory(blocks.series, k, blocks.table.spans, counts);
+    times[k].independent = memory.independent;
+    if (times[k].name != "z" && !std::isnan(memory.correlation)) sum += memory.correlation, ++known;
+  }
+  const auto n = static_cast<double>(blocks.table.spans.size());
+  return n > 1 ? std::sqrt(n / (n - 1) * widening(known > 0 ? sum / known : 0)) : 0;
 }
 
 std::vector<std::uint8_t> followers(const std::vector<ResultBlock>& spans) {
@@ -240,9 +254,8 @@ ResultSet run_analyzers(FrameSource& source, const std::vector<AnalyzerInstance>
   for (std::string& note : notes_on(results.meta, blocks.rule, total)) results.meta.notes.push_back(std::move(note));
 
   const std::vector<std::uint32_t> counts = draw_counts(count, options.draws, options.seed);
-  for (std::size_t k = 0; k < results.meta.times.size() && !options.uncertain; ++k)
-    results.meta.times[k].independent = independent_values(blocks.series, k, results.meta.blocks, counts);
-  const Resampling resampling{blocks.table.rows, counts, options.draws};
+  const double scale = scale_of_draws(blocks, counts, results.meta.times);
+  const Resampling resampling{blocks.table.rows, counts, options.draws, scale};
   const std::vector<std::uint8_t> follows = followers(blocks.table.spans);
   const std::size_t workers = base::worker_count(options.threads, resampling.items());
   for (std::size_t k = 0; k < instances.size(); ++k) {

@@ -36,7 +36,7 @@ Spread spread_of(std::span<const float> values) {
 /// Power sums of the influences and their lag-1 correlation.
 struct Influence {
   double squares = 0, cubes = 0, fourths = 0;
-  double correlation = 0;  ///< ρ, unbiased; 0 where too few neighbours
+  double correlation = kNaN;  ///< ρ, unbiased; NaN where too few neighbours
   bool significant = false;
 };
 
@@ -56,7 +56,7 @@ Influence influence_of(std::span<const float> left_out, std::span<const std::uin
   }
   if (pairs < 5 || !(r.squares > 0)) return r;
   const double raw = products / static_cast<double>(pairs) / (r.squares / n);
-  r.correlation = std::clamp(raw + (1 + 3 * raw) / n, 0.0, 0.9);
+  r.correlation = raw + (1 + 3 * raw) / n;
   r.significant = r.correlation > 2 / std::sqrt(static_cast<double>(pairs));
   return r;
 }
@@ -105,7 +105,7 @@ std::vector<float> influence_draws(std::span<const float> left_out, std::span<co
 Uncertainty uncertainty(double value, std::span<const float> draws, std::span<const float> left_out,
                         std::span<const std::uint8_t> follows) {
   const double n = static_cast<double>(left_out.size());
-  Uncertainty u{kNaN, kNaN, kNaN, 0, kFewBlocks | kNoUncertainty, 0};
+  Uncertainty u{kNaN, kNaN, kNaN, 0, kFewBlocks | kNoUncertainty, kNaN};
   if (left_out.size() < 2 || std::isnan(value)) return u;
   const Spread spread = spread_of(draws);
   const bool needs_one = std::any_of(left_out.begin(), left_out.end(), [](float v) { return std::isnan(v); });
@@ -123,19 +123,24 @@ Uncertainty uncertainty(double value, std::span<const float> draws, std::span<co
     u.low = u.high = value;
     u.effective_blocks = n;
   } else {
-    const double widening = (1 + influence.correlation) / (1 - influence.correlation);
+    const double wider = widening(influence.correlation);
     const double freedom = degrees_of_freedom(influence, n), t = student(freedom);
-    u.scale = std::sqrt(n / (n - 1) * widening);
-    u.sem = u.scale * std::sqrt(spread.variance);
+    u.correlation = influence.correlation;
+    u.sem = std::sqrt(n / (n - 1) * wider * spread.variance);
     const double skewness = influence.cubes / (6 * std::pow(influence.squares, 1.5));
     const double shift = std::clamp(skewness * (1 + 2 * t * t), -t / 2, t / 2);
     u.low = value + u.sem * (shift - t);
     u.high = value + u.sem * (shift + t);
-    u.effective_blocks = std::min(n, freedom + 1) / widening;
+    u.effective_blocks = std::min(n, freedom + 1) / wider;
     if (influence.significant) u.flags |= kCorrelated;
   }
   if (u.effective_blocks < kReliableBlocks) u.flags |= kFewBlocks;
   return u;
+}
+
+double widening(double correlation) {
+  const double r = std::isnan(correlation) ? 0 : std::clamp(correlation, 0.0, 0.9);
+  return (1 + r) / (1 - r);
 }
 
 }  // namespace millscope::analysis

@@ -4,6 +4,8 @@
 //   s² = n/(n−1) Var_b(θ_b)                   the bootstrap's variance of a mean is short by (n−1)/n
 //   U_i = θ_(·) − θ_(−i)                      influence of block i: θ with it left out, against the mean of those
 //   ρ: lag-1 correlation of U, unbiased by (1 + 3 ρ)/n;  g² = (1 + ρ)/(1 − ρ), at least 1;  sem = g s
+//   draws: θ_b − θ times √(n/(n − 1)) and one g for all results, that of the mean ρ of x, y, radius and speed: one for each
+//          would break that they add up
 //   interval  θ + sem (a (1 + 2 t²) ± t),     a = ΣU³/(6 (ΣU²)^{3/2}): skewness (Johnson 1978), t: Student's 95 % point with ν freedom;
 //                                            the shift is at most t/2
 //   1/ν = ½ (ΣU⁴/(ΣU²)² − 3/n + 2/(n−1)), at most n − 1: blocks without influence give no freedom
@@ -30,7 +32,7 @@ struct Uncertainty {
   double sem, low, high;
   double effective_blocks;
   std::uint8_t flags;  ///< ResultFlag
-  double scale;        ///< a draw's deviation times this has the standard deviation `sem`
+  double correlation;  ///< ρ, which may be below 0; NaN where too few neighbours tell it
 };
 
 /// Draws of a result that blocks which come twice would bias (ResultTrait kSpread: a variance between beads counts their noise as spread):
@@ -42,5 +44,8 @@ std::vector<float> influence_draws(std::span<const float> left_out, std::span<co
 /// `draws`: θ_b − θ; `left_out`: θ_(−i) − θ, in the order of the blocks; `follows[i]`: block i goes on from block i − 1 (same stretch).
 /// NaN where undefined.
 Uncertainty uncertainty(double value, std::span<const float> draws, std::span<const float> left_out, std::span<const std::uint8_t> follows);
+
+/// g² of a ρ, which counts from 0 to 0.9.
+double widening(double correlation);
 
 }  // namespace millscope::analysis

@@ -42,8 +42,8 @@ struct ResultArray {
   std::vector<double> effective_blocks;  ///< independent blocks that the uncertainty rests on
   std::vector<std::uint8_t> flags;       ///< bits of ResultFlag
   /// Resamples, draw-major [draws, size]: draw − value. Draw b of every array comes from the same resampled blocks, so any joint
-  /// distribution can be read off. Scaled so that their standard deviation is `sem`; NaN where undefined. Empty for arrays with more
-  /// than kMostDrawnValues values.
+  /// distribution can be read off. Widened alike for the memory of blocks, so that sums of values have theirs; `sem` is widened for each
+  /// value's own. NaN where undefined. Empty for arrays with more than kMostDrawnValues values.
   std::vector<float> draws;
   std::uint32_t traits = 0;  ///< bits of ResultTrait: never compared, what its mirror image is, its range
 

@@ -198,8 +198,8 @@ double autocorrelation_time(const EvenSeries& series) {
   return series.step * std::max(0.5, tau) * (1 + (2 * static_cast<double>(window) + 1) / n);
 }
 
-double independent_values(const std::vector<BasicSeries>& stretches, std::size_t basic, const std::vector<ResultBlock>& blocks,
-                          const std::vector<std::uint32_t>& counts) {
+BlockMemory block_memory(const std::vector<BasicSeries>& stretches, std::size_t basic, const std::vector<ResultBlock>& blocks,
+                         const std::vector<std::uint32_t>& counts) {
   double weight = 0, mean = 0, variance = 0;
   for (const BasicSeries& s : stretches) {
     for (std::size_t i = 0; i < s.size(); ++i) weight += s.weight[i], mean += s.weight[i] * s.value[basic][i];
@@ -220,9 +220,9 @@ double independent_values(const std::vector<BasicSeries>& stretches, std::size_t
     left_out.push_back(static_cast<float>(-deviation / (weight - own)));
     follows.push_back(goes_on ? 1 : 0);
   }
-  if (blocks.size() < 2) return kNaN;
+  if (blocks.size() < 2) return {};
   const Uncertainty u = uncertainty(0, influence_draws(left_out, counts), left_out, follows);
-  return u.sem > 0 ? variance / (u.sem * u.sem) : kNaN;
+  return {u.sem > 0 ? variance / (u.sem * u.sem) : kNaN, u.correlation};
 }
 
 double circulation_time(const EvenSeries& series) {

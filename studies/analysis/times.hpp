@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "millscope/analyzer.hpp"
+#include "studies/analysis/resample.hpp"
 #include "studies/analysis/results.hpp"
 
 namespace millscope::analysis {
@@ -48,10 +49,15 @@ EvenSeries even_series(const std::vector<BasicSeries>& stretches, std::size_t ba
 /// for the mean that was taken from the data (Wolff 2004); s. Pairs across gaps count at their lag. NaN: fewer than 8 values.
 double autocorrelation_time(const EvenSeries& series);
 
-/// N_eff = (σ/sem)² of the mean of one observable: σ over all values, sem from the blocks as of any result (resample.hpp). `stretches` are
-/// in the order of their numbers, `counts` of `draw_counts`. NaN: fewer than two blocks.
-double independent_values(const std::vector<BasicSeries>& stretches, std::size_t basic, const std::vector<ResultBlock>& blocks,
-                          const std::vector<std::uint32_t>& counts);
+/// What the blocks say of one observable.
+struct BlockMemory {
+  double independent = kNaN;  ///< N_eff = (σ/sem)² of its mean: σ over all values, sem as of any result (resample.hpp)
+  double correlation = kNaN;  ///< of neighbouring blocks
+};
+
+/// `stretches` are in the order of their numbers, `counts` of `draw_counts`. NaN: too few blocks.
+BlockMemory block_memory(const std::vector<BasicSeries>& stretches, std::size_t basic, const std::vector<ResultBlock>& blocks,
+                         const std::vector<std::uint32_t>& counts);
 
 /// Mean time of one circulation: from one crossing of the mean upwards to the next, half a standard deviation being passed on
 /// both sides; s. Where gaps leave fewer than three, four times the lag at which the

@@ -54,7 +54,7 @@ inline void from_json(const nlohmann::json& j, ObservableKind& kind) { kind = ki
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Observable, name, unit, kind)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Histogram, edges, percent, sem)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PowerFigure, value, sem, how)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Observation, of, observables, value, covariance, power, x, speed, bead_seconds, blocks, notes)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Observation, of, observables, value, covariance, resampled, power, x, speed, bead_seconds, blocks, notes)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Summary, observable, kind, analyzer, result, weight, cells, factor, places)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Smoothing, noise, noise_correlation, roughness, gap_limit, travel, blocks)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AxialPlace, low, high, middle)

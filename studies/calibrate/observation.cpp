@@ -30,6 +30,8 @@ std::optional<Eigen::Index> Observation::find(ObservableKind kind) const {
   return found == observables.end() ? std::nullopt : std::optional<Eigen::Index>(found - observables.begin());
 }
 
+double few_blocks_factor(double blocks) { return blocks > 5 ? (blocks - 1) / (blocks - 3) : 2; }
+
 void require_defined(const Observation& o) {
   Eigen::Index i = 0;
   for (const Observable& what : o.observables) {
@@ -55,6 +57,7 @@ void leave_out(Observation& o, const std::set<std::string>& names) {
   o.observables = std::move(observables);
   o.value = Eigen::VectorXd(o.value(kept));
   o.covariance = Eigen::MatrixXd(o.covariance(kept, kept));
+  if (o.resampled.size() > 0) o.resampled = Eigen::MatrixXd(o.resampled(kept, kept));
 }
 
 }  // namespace millscope::calibrate

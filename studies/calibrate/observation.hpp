@@ -54,8 +54,9 @@ struct PowerFigure {
 struct Observation {
   std::string of;  ///< what was looked at, for messages
   std::vector<Observable> observables;
-  Eigen::VectorXd value;  ///< NaN: undefined, see require_defined
-  Eigen::MatrixXd covariance;
+  Eigen::VectorXd value;       ///< NaN: undefined, see require_defined
+  Eigen::MatrixXd covariance;  ///< of all errors, correlations shrunk (naming/shrinkage.hpp), widened for few blocks
+  Eigen::MatrixXd resampled;  ///< what resampling says of it, as it is; 0 where nothing is resampled: a meter's power, the frame's readings
   PowerFigure power;
   Histogram x, speed;       ///< fine bins, for Eq. 4.3 of Chagas 2015 and pictures
   double bead_seconds = 0;  ///< behind it
@@ -67,6 +68,9 @@ struct Observation {
   /// Number of the first observable of a kind; nothing where none is compared.
   std::optional<Eigen::Index> find(ObservableKind kind) const;
 };
+
+/// An error that is known from n blocks has Student's spread: variance (n − 1)/(n − 3).
+double few_blocks_factor(double blocks);
 
 /// Throws base::UserError where a value is NaN: a speed where no bead was seen.
 void require_defined(const Observation& observation);

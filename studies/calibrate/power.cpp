@@ -36,8 +36,9 @@ void set_metered_power(Observation& o, PowerFigure power) {
   const auto i = o.find(ObservableKind::power);
   if (!i) return;
   o.value[*i] = o.power.value;
-  o.covariance.row(*i).setZero();
-  o.covariance.col(*i).setZero();
+  for (Eigen::MatrixXd* c : {&o.covariance, &o.resampled}) {
+    if (c->size() > 0) c->row(*i).setZero(), c->col(*i).setZero();
+  }
   o.covariance(*i, *i) = std::pow(std::max(o.power.sem, kLeastPowerError * std::fabs(o.power.value)), 2);
 }
 

@@ -135,9 +135,6 @@ double median_blocks(const ResultSet& results) {
   return base::quantile(blocks, 0.5);
 }
 
-/// An error that is known from n blocks has Student's spread: variance (n − 1)/(n − 3).
-double few_blocks_factor(double blocks) { return blocks > 5 ? (blocks - 1) / (blocks - 3) : 2; }
-
 /// Draws of the summaries; where a draw leaves one undefined (a region without a visit) it counts as no deviation.
 Eigen::MatrixXd drawn(const ResultSet& results, const std::vector<Summary>& summaries, const Eigen::VectorXd& value) {
   const auto draws = static_cast<Eigen::Index>(results.meta.draws);
@@ -209,7 +206,8 @@ Observation summarise(const ResultSet& results, const std::vector<Summary>& summ
   o.blocks = median_blocks(results);
   if (results.meta.draws < 2 || results.meta.blocks.size() < 2)
     throw UserError(fmt::format("{}: too short for an uncertainty: it holds fewer than two blocks", results.meta.description));
-  o.covariance = few_blocks_factor(o.blocks) * naming::shrunk_covariance(drawn(results, summaries, o.value), o.blocks);
+  o.resampled = naming::covariance_of(drawn(results, summaries, o.value));
+  o.covariance = few_blocks_factor(o.blocks) * naming::shrunk(o.resampled, o.blocks);
   for (Eigen::Index i = 0; i < o.value.size(); ++i) {
     const double size = std::isfinite(o.value[i]) ? std::fabs(o.value[i]) : 0;
     o.covariance(i, i) = std::max(o.covariance(i, i), std::pow(kLeastDeviation * std::max(size, 1e-3), 2));

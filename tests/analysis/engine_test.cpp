@@ -270,7 +270,9 @@ TEST_CASE("results of one run have a joint covariance") {
   CHECK(n == 4 + 4 + 1);  // mean_x, mean_y, seconds, power, share[4], twice_x
   const auto at = [&](std::size_t i, std::size_t j) { return r.covariance[i * n + j]; };
   const std::size_t x = entry(r, "means.mean_x"), y = entry(r, "means.mean_y"), twice = entry(r, "twice.twice_x");
-  CHECK_THAT(std::sqrt(at(x, x)), WithinRel(r.find("means", "mean_x")->sem[0], 1e-4));
+  // All are widened by the mean memory, sem by its own.
+  const double own = r.find("means", "mean_x")->sem[0], memory = std::sqrt(at(x, x)) / own;
+  CHECK_THAT(memory, WithinAbs(1, 0.3));
   CHECK_THAT(at(x, twice), WithinRel(2 * at(x, x), 1e-4));
   CHECK_THAT(at(x, y) / std::sqrt(at(x, x) * at(y, y)), WithinAbs(0, 0.45));
   // Shares sum to one: their covariances sum to zero.
@@ -282,7 +284,7 @@ TEST_CASE("results of one run have a joint covariance") {
       scale += std::fabs(c);
     }
   }
-  CHECK(std::fabs(sum) < 0.25 * scale);  // exact but for the different widening of each share
+  CHECK(std::fabs(sum) < 1e-5 * scale);
   CHECK(r.covariance_rank >= 5);
   CHECK(r.covariance_rank <= n);
 }

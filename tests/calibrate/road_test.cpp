@@ -186,9 +186,9 @@ TEST_CASE("nothing of what is cached of a recording is lost") {
   observable = {"speed there", "m/s", ObservableKind::region_speed};
   kind = Summary::along, analyzer = "pept_grid", result = "speed", weight = "occupancy", cells = {3, 7}, factor = 1e3, places = {0.1, 0.25};
   Observation o;
-  auto& [of, observables, value, covariance, power, x, speed, bead_seconds, blocks, notes] = o;
+  auto& [of, observables, value, covariance, resampled, power, x, speed, bead_seconds, blocks, notes] = o;
   of = "r.yaml", observables = {observable, {"power", "W", ObservableKind::power}}, value = Eigen::Vector2d(1.0 / 3.0, 8);
-  covariance = (Eigen::Matrix2d() << 1, 0.3, 0.3, 4).finished();
+  covariance = (Eigen::Matrix2d() << 1, 0.3, 0.3, 4).finished(), resampled = 0.5 * covariance;
   auto& [watts, sem, how] = power;
   watts = 8, sem = 0.1, how = "measured";
   x = {{0, 1, 2}, {40, 60}, {1, 1.5}}, speed = {{0, 1}, {100}, {0.25}}, bead_seconds = 600, blocks = 41, notes = {"a note"};

@@ -236,7 +236,9 @@ TEST_CASE("what simulations leave undefined is compared nowhere, and that is sai
   CHECK(d.evidence.recorded[2].covariance.rows() == 15);
   REQUIRE(d.notes.size() >= 2);
   CHECK_THAT(d.notes[0], Contains("'summary 5' of condition 'speed60' was compared nowhere: in"));
-  CHECK_THAT(d.notes[1], Contains("'summary 5' of condition 'speed50' was compared nowhere: in"));
+  CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
+    return note.find("'summary 5' of condition 'speed50' was compared nowhere: in") != std::string::npos;
+  }));
 }
 
 TEST_CASE("what a prediction leaves undefined none is judged by, and that is said") {
@@ -337,6 +339,6 @@ TEST_CASE("draws that cannot resolve the study's level are refused before anythi
   const Question q = question_of(folder, kSections + "level: 1 %\n");
   MadeUpMill mill(q, usual(), kTheta);
   CHECK_THAT(testing::refusal([&] { found(q, mill); }),
-             Contains("--draws 240: too few for 4 candidates and nuisances at the study's level of 0.01; give 800 or more"));
+             Contains("--draws 240: too few for 4 candidates and nuisances at the study's level of 0.01; give 400 or more"));
   CHECK(mill.computed() == 0);
 }

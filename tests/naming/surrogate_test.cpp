@@ -246,7 +246,7 @@ TEST_CASE("correlations of chance are shrunk away, real ones stay") {
   const Eigen::MatrixXd independent = Eigen::MatrixXd::Random(400, 4);
   Eigen::MatrixXd joint = independent;
   for (int c = 1; c < 4; ++c) joint.col(c) = independent.col(0) + 0.3 * independent.col(c);
-  const Eigen::MatrixXd a = shrunk_covariance(independent, 12), b = shrunk_covariance(joint, 200);
+  const Eigen::MatrixXd a = shrunk(covariance_of(independent), 12), b = shrunk(covariance_of(joint), 200);
   CHECK(std::abs(a(0, 1)) < 0.2 * std::sqrt(a(0, 0) * a(1, 1)));
   CHECK(b(0, 1) > 0.85 * std::sqrt(b(0, 0) * b(1, 1)));
   CHECK(a(0, 0) == Approx(1.0 / 3.0).epsilon(0.15));

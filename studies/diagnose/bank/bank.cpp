@@ -276,6 +276,22 @@ Bank fill_bank(const Question& question, const calibrate::Machinery& machinery, 
   return bank;
 }
 
+Bank joined(Bank bank, const Bank& more) {
+  std::map<std::pair<std::string, int>, std::size_t> place;
+  for (std::size_t p = 0; p < more.points.size(); ++p) place[{more.points[p].group, more.points[p].index}] = p;
+  for (std::size_t p = 0; p < bank.points.size(); ++p) {
+    const auto found = place.find({bank.points[p].group, bank.points[p].index});
+    for (std::size_t k = 0; k < more.conditions.size(); ++k) {
+      const bool known = found != place.end();
+      bank.seen[p].push_back(known ? more.seen[found->second][k] : std::nullopt);
+      bank.runs[p].push_back(known ? more.runs[found->second][k] : std::filesystem::path());
+    }
+  }
+  bank.conditions.insert(bank.conditions.end(), more.conditions.begin(), more.conditions.end());
+  bank.failures.insert(bank.failures.end(), more.failures.begin(), more.failures.end());
+  return bank;
+}
+
 naming::BankData data_of(const Question& question, const Bank& bank, const std::vector<std::size_t>& conditions) {
   naming::BankData data;
   data.theta = question.coordinates();

@@ -94,6 +94,9 @@ struct Bank {
 Bank fill_bank(const Question& question, const calibrate::Machinery& machinery, const Evidence& evidence, std::vector<BankPoint> points,
                std::vector<std::size_t> conditions);
 
+/// Both, each of other conditions: what was seen of a point of `more` stands with the same point of the first; of its others nothing.
+Bank joined(Bank bank, const Bank& more);
+
 /// What some of the bank's simulations leave undefined: the speed in a region into which they throw no bead.
 struct Undefined {
   std::vector<std::set<std::string>> names;  ///< [conditions of the study] of observables

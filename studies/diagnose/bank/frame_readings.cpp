@@ -81,6 +81,7 @@ void append(const std::vector<FrameReading>& readings, const VectorXd& values, d
   const Index n = o.value.size(), more = values.size();
   o.value.conservativeResize(n + more);
   o.covariance.conservativeResizeLike(MatrixXd::Zero(n + more, n + more));
+  if (o.resampled.size() > 0) o.resampled.conservativeResizeLike(MatrixXd::Zero(n + more, n + more));
   for (Index k = 0; k < more; ++k) {
     const FrameReading& r = readings[k];
     o.observables.push_back(r.observable);

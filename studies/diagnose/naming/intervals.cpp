@@ -43,20 +43,16 @@ VectorXd coordinates_of(const VectorXd& coded, const std::vector<double>& streng
 }
 
 /// r_i. Where the fit stands at a limit half of the draws end there as well and rise by nothing, so that a truth a little inside would be
-/// missed: the quantile of the draws that end elsewhere counts where it is larger, and over the laws of noise the largest.
+/// missed: the quantile of the draws that end elsewhere counts where it is larger.
 double PseudoData::allowed(const std::vector<Drawn>& drawn, const Model& fitted, Index i) const {
-  double out = 0;
-  for (std::size_t law = 0; law < laws(); ++law) {
-    std::vector<double> all, free;
-    for (std::size_t b = law; b < drawn.size(); b += laws()) {
-      const double found = coordinates_of(drawn[b].fit[0].coded, drawn[b].fit[0].strengths)[i], rise = drawn[b].rise[i];
-      all.push_back(rise);
-      if (found > fitted.low(i) && found < fitted.high(i)) free.push_back(rise);
-    }
-    if (!all.empty()) out = std::max(out, base::quantile_of_next(all, kInside));
-    if (free.size() >= kFree) out = std::max(out, base::quantile_of_next(free, kInside));
+  std::vector<double> all, free;
+  for (const Drawn& d : drawn) {
+    const double found = coordinates_of(d.fit[0].coded, d.fit[0].strengths)[i];
+    all.push_back(d.rise[i]);
+    if (found > fitted.low(i) && found < fitted.high(i)) free.push_back(d.rise[i]);
   }
-  return out;
+  const double out = all.empty() ? 0 : base::quantile_of_next(all, kInside);
+  return free.size() >= kFree ? std::max(out, base::quantile_of_next(free, kInside)) : out;
 }
 
 std::vector<base::Interval90> PseudoData::intervals(const Choice& choice, const FitResult& fit, int draws, std::uint64_t stream) const {

@@ -12,16 +12,10 @@
 namespace millscope::naming {
 namespace {
 
-/// Part of the draws that are at least `value`, the value itself counted among them; the largest over the laws of noise, whose draws follow
-/// each other in turn.
-double tail(const std::vector<double>& draws, double value, std::size_t laws) {
-  double largest = 0;
-  for (std::size_t law = 0; law < laws; ++law) {
-    std::size_t above = 0, count = 0;
-    for (std::size_t b = law; b < draws.size(); b += laws, ++count) above += draws[b] >= value ? 1 : 0;
-    largest = std::max(largest, static_cast<double>(1 + above) / static_cast<double>(1 + count));
-  }
-  return largest;
+/// Part of the draws that are at least `value`, the value itself counted among them.
+double tail(const std::vector<double>& draws, double value) {
+  const auto above = std::count_if(draws.begin(), draws.end(), [&](double d) { return d >= value; });
+  return static_cast<double>(1 + above) / static_cast<double>(1 + draws.size());
 }
 
 template <class Of>
@@ -54,50 +48,42 @@ std::vector<double> usual_gains(const std::vector<PseudoData::Drawn>& drawn) {
   return usual;
 }
 
-/// p of several statistics together (min-p; Westfall & Young 1993): how often the smallest p of a draw is as small, the largest over the
-/// laws of noise, whose draws follow each other in turn. Large values are unlikely ones. Draws and what was observed are ranked together,
-/// so that neither has a finer scale.
+/// p of several statistics together (min-p; Westfall & Young 1993): how often the smallest p of a draw is as small. Large values are
+/// unlikely ones. Draws and what was observed are ranked together, so that neither has a finer scale.
 class Family {
  public:
-  Family(const std::vector<std::vector<double>>& draws, std::size_t laws) : laws_(laws) {
-    for (std::size_t law = 0; law < laws; ++law) {
-      for (const std::vector<double>& statistic : draws) {
-        Ranked own;
-        for (std::size_t b = law; b < statistic.size(); b += laws) own.value.push_back(statistic[b]);
-        own.sorted = own.value;
-        std::sort(own.sorted.begin(), own.sorted.end());
-        for (const double value : own.value) own.above.push_back(own.at_least(value));
-        laws_[law].push_back(std::move(own));
-      }
+  explicit Family(const std::vector<std::vector<double>>& draws) {
+    for (const std::vector<double>& statistic : draws) {
+      Ranked own{statistic, statistic, {}};
+      std::sort(own.sorted.begin(), own.sorted.end());
+      for (const double value : own.value) own.above.push_back(own.at_least(value));
+      ranked_.push_back(std::move(own));
     }
   }
 
   /// Of one of the statistics, where all have been observed.
   double p(std::size_t statistic, const std::vector<double>& observed) const {
-    double largest = 0;
-    for (const std::vector<Ranked>& law : laws_) {
-      const std::ptrdiff_t own = 1 + law[statistic].at_least(observed[statistic]);
-      const std::size_t draws = law[statistic].value.size();
-      std::size_t smaller = 0;
-      for (std::size_t b = 0; b < draws; ++b) {
-        std::ptrdiff_t least = own + 1;
-        for (std::size_t k = 0; k < law.size(); ++k) least = std::min(least, law[k].above[b] + (observed[k] >= law[k].value[b] ? 1 : 0));
-        smaller += least <= own ? 1 : 0;
-      }
-      largest = std::max(largest, static_cast<double>(1 + smaller) / static_cast<double>(1 + draws));
+    const std::ptrdiff_t own = 1 + ranked_[statistic].at_least(observed[statistic]);
+    const std::size_t draws = ranked_[statistic].value.size();
+    std::size_t smaller = 0;
+    for (std::size_t b = 0; b < draws; ++b) {
+      std::ptrdiff_t least = own + 1;
+      for (std::size_t k = 0; k < ranked_.size(); ++k)
+        least = std::min(least, ranked_[k].above[b] + (observed[k] >= ranked_[k].value[b] ? 1 : 0));
+      smaller += least <= own ? 1 : 0;
     }
-    return largest;
+    return static_cast<double>(1 + smaller) / static_cast<double>(1 + draws);
   }
 
  private:
-  /// One statistic under one law.
+  /// One statistic.
   struct Ranked {
     std::vector<double> value, sorted;
     std::vector<std::ptrdiff_t> above;  ///< draws that are at least as large, itself among them
     std::ptrdiff_t at_least(double limit) const { return sorted.end() - std::lower_bound(sorted.begin(), sorted.end(), limit); }
   };
 
-  std::vector<std::vector<Ranked>> laws_;
+  std::vector<Ranked> ranked_;
 };
 
 class Namer {
@@ -118,7 +104,7 @@ class Namer {
   }
 
  private:
-  double p_of(const std::vector<double>& draws, double value) const { return tail(draws, value, pseudo_.laws()); }
+  double p_of(const std::vector<double>& draws, double value) const { return tail(draws, value); }
   Index count() const { return std::ssize(p_.alternatives); }
   bool tested(Index j) const { return out_.judged[j].tested; }
   void say(const std::string& line) const {
@@ -153,7 +139,7 @@ class Namer {
       observed.push_back(judged.delta_q);
       asked.push_back(j);
     }
-    const Family family(gains, pseudo_.laws());
+    const Family family(gains);
     for (std::size_t k = 0; k < asked.size(); ++k) out_.judged[asked[k]].p_family = family.p(k, observed);
   }
 
@@ -184,7 +170,7 @@ class Namer {
     const VectorXd sd = (square / draws - (mean / draws).cwiseAbs2()).cwiseMax(1e-300).cwiseSqrt();
     const auto largest = collect(drawn, [&](const auto& d) { return d.residual.cwiseQuotient(sd).cwiseAbs().maxCoeff(); });
     const VectorXd base = pseudo_.surrogate().at(out_.base.coded), z = (p_.observed - base).cwiseQuotient(sd);
-    const Family family({collect(drawn, [](const auto& d) { return d.fit[0].q; }), largest}, pseudo_.laws());
+    const Family family({collect(drawn, [](const auto& d) { return d.fit[0].q; }), largest});
     const double q = out_.base.q;
     for (Index i = 0; i < n; ++i) out_.mismatch.push_back({i, base[i], z[i], family.p(1, {q, std::fabs(z[i])})});
     std::stable_sort(out_.mismatch.begin(), out_.mismatch.end(),

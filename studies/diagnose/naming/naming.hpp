@@ -19,6 +19,7 @@
 
 #include "kernel/base/statistics.hpp"
 #include "studies/diagnose/naming/fit.hpp"
+#include "studies/diagnose/naming/noise.hpp"
 
 namespace millscope::naming {
 
@@ -46,8 +47,8 @@ struct Problem {
   BankData data;
   std::vector<Alternative> alternatives;
   VectorXd observed;
-  MatrixXd covariance;          ///< of the recording, block by condition: the weight of the observables
-  std::vector<MatrixXd> noise;  ///< laws that the recording's noise may have; every p is the largest over them. Empty: `covariance`
+  MatrixXd covariance;            ///< of the recording, block by condition
+  std::vector<CommonSize> sizes;  ///< of its parts, as far as their size is not known exactly
 };
 
 /// Within which each candidate of the bank is fitted.

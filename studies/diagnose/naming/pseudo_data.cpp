@@ -42,8 +42,7 @@ PseudoData::PseudoData(const Problem& problem, const Options& options)
   chance_ = surrogate_->chance(problem.covariance);
   weighting_ = std::make_unique<Weighting>(problem.covariance, *surrogate_);
   run_white_ = weighting_->whitener * root_of(weighting_->run).factor;
-  for (const MatrixXd& law : problem.noise) noise_factors_.push_back(factor(law));
-  if (noise_factors_.empty()) noise_factors_.push_back(factor(problem.covariance));
+  noise_ = Noise(problem.covariance, problem.sizes);
   std::size_t base = 0;
   for (std::size_t r = 0; r < data.rows.size(); ++r) {
     LeftOut left;
@@ -166,7 +165,7 @@ PseudoData::Drawn PseudoData::drawn(const Refit& refit, const Truth& truth, cons
   const LeftOut& left = *refit.left;
   const Index n = left.deviation.size();
   const VectorXd y = refit.coefficients.transpose() * features_->all(at.coded, at.active) +
-                     part_of(left, at, how.for_intervals ? 0 : chance_) * left.deviation + noise_factors_[b % laws()] * random.normals(n);
+                     part_of(left, at, how.for_intervals ? 0 : chance_) * left.deviation + noise_.draw(random);
   std::vector<Model> again;
   if (refit.again.size() > 0) {
     const Index k = refit.again.cols();
@@ -190,7 +189,7 @@ std::vector<PseudoData::Drawn> PseudoData::draw(const Truth& truth, const std::v
                       [&](std::size_t r, std::size_t) { refits[r] = refit(*runs[r], truth, choices); });
   std::vector<Drawn> out(how.count);
   base::for_each_item(out.size(), base::worker_count(options_.threads, out.size()),
-                      [&](std::size_t b, std::size_t) { out[b] = drawn(refits[b / laws() % refits.size()], truth, how, b); });
+                      [&](std::size_t b, std::size_t) { out[b] = drawn(refits[b % refits.size()], truth, how, b); });
   return out;
 }
 

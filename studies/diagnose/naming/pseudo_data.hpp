@@ -39,15 +39,13 @@ class PseudoData {
   explicit PseudoData(const Problem& problem, const Options& options);
 
   const Surrogate& surrogate() const { return *surrogate_; }
-  std::size_t laws() const { return noise_factors_.size(); }
   double chance() const { return chance_; }
   const Weighting& weighting() const { return *weighting_; }
   /// The observations themselves, or draw `b` of `truth`.
   FitResult fit(const Choice& choice) const;
   Truth truth(const Choice& choice, const FitResult& fit) const;
 
-  /// Fits of the choices to one draw each: [draws][choices]. Draw b has the noise of law b % laws(). `stream` keeps draws of different
-  /// questions apart.
+  /// Fits of the choices to one draw each: [draws][choices]. `stream` keeps draws of different questions apart.
   struct Drawn {
     std::vector<FitResult> fit;
     VectorXd residual;  ///< of the first choice, y* − m; empty where the bank was drawn again
@@ -103,7 +101,7 @@ class PseudoData {
   double chance_ = 0;  ///< ρ
   std::unique_ptr<Weighting> weighting_;
   MatrixXd run_white_;  ///< W L with L Lᵀ = S
-  std::vector<MatrixXd> noise_factors_;
+  Noise noise_;
 };
 
 }  // namespace millscope::naming

@@ -9,9 +9,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MatrixXd shrunk_covariance(const MatrixXd& draws, double blocks) {
+MatrixXd covariance_of(const MatrixXd& draws) {
   const MatrixXd centred = draws.rowwise() - draws.colwise().mean();
-  MatrixXd c = centred.transpose() * centred / static_cast<double>(std::max<Index>(1, draws.rows() - 1));
+  return centred.transpose() * centred / static_cast<double>(std::max<Index>(1, draws.rows() - 1));
+}
+
+MatrixXd shrunk(MatrixXd c, double blocks) {
   const VectorXd deviation = c.diagonal().cwiseSqrt();
   double chance = 0, found = 0;
   for (Index i = 0; i < c.rows(); ++i) {

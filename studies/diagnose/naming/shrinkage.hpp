@@ -5,8 +5,11 @@
 
 namespace millscope::naming {
 
-/// Covariance of the columns of `draws` [draws, values], correlations shrunk towards none by λ = Σ Var(r)/Σ r² over the pairs, with
-/// Var(r) ≈ (1 − r²)²/(blocks − 1) (Schäfer and Strimmer 2005): draws from few blocks have correlations of chance.
-Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& draws, double blocks);
+/// Of the columns of `draws` [draws, values].
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& draws);
+
+/// A covariance from so many blocks with its correlations shrunk towards none by λ = Σ Var(r)/Σ r² over the pairs, with
+/// Var(r) ≈ (1 − r²)²/(blocks − 1) (Schäfer and Strimmer 2005): few blocks have correlations of chance.
+Eigen::MatrixXd shrunk(Eigen::MatrixXd covariance, double blocks);
 
 }  // namespace millscope::naming

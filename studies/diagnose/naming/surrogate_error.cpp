@@ -62,7 +62,7 @@ MatrixXd Surrogate::residual_covariance(const MatrixXd& recording) const {
   // Rows scaled so that their mean square is the unbiased variance of one run.
   const MatrixXd scaled = scatter_ * std::sqrt(static_cast<double>(scatter_.rows()) / degrees);
   const MatrixXd independent = l.triangularView<Eigen::Lower>().solve(scaled.transpose()).transpose();
-  MatrixXd out = l * shrunk_covariance(independent, degrees) * l.transpose();
+  MatrixXd out = l * shrunk(covariance_of(independent), degrees) * l.transpose();
   for (Index i = 0; i < out.rows(); ++i) {  // what has no scatter gets none of its neighbours'
     if (scatter_.col(i).isZero(0)) out.row(i).setZero(), out.col(i).setZero();
   }

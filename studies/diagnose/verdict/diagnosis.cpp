@@ -82,6 +82,26 @@ std::ptrdiff_t finished(const Bank& bank, const std::string& group) {
   return count;
 }
 
+/// What is simulated in held-out conditions: where nothing is best nobody asks what candidates do there.
+std::vector<BankPoint> to_hold_out(const Diagnosis& diagnosis) {
+  std::vector<BankPoint> points = diagnosis.bank.points;
+  if (!diagnosis.naming.best) std::erase_if(points, [](const BankPoint& p) { return !p.active.empty(); });
+  return points;
+}
+
+/// The bank of the held-out conditions, beside that of the fitted ones.
+void hold_out(const Question& asked, const calibrate::Machinery& machinery, Diagnosis& diagnosis) {
+  if (diagnosis.held.empty()) return;
+  const Bank held = filled(asked, machinery, to_hold_out(diagnosis), diagnosis.held, diagnosis);
+  note(machinery, unsettled(asked, held, diagnosis.held), diagnosis);
+  if (!held.failures.empty())
+    note(machinery,
+         {fmt::format("{} simulations of held-out conditions failed and are left out, the first: {}", held.failures.size(),
+                      held.failures.front())},
+         diagnosis);
+  diagnosis.bank = joined(std::move(diagnosis.bank), held);
+}
+
 naming::Problem problem_after(const Screened& screening, const Diagnosis& diagnosis) {
   naming::Problem problem = problem_of(diagnosis.question, diagnosis.evidence, diagnosis.bank, diagnosis.fit);
   for (naming::Alternative& r : problem.alternatives) r.screened_out = r.candidate && screening.candidate[*r.candidate];
@@ -140,14 +160,13 @@ void note_recordings(const Question& question, Diagnosis& diagnosis) {
   for (const auto& [what, where] : lines) diagnosis.notes.push_back(fmt::format("recording of {}: {}", where, what));
 }
 
-/// The study's level, which the draws have to resolve: the smallest family-wise p of n alternatives is n in half the draws, for each of
-/// two laws of noise.
+/// The study's level, which the draws have to resolve: the smallest family-wise p of n alternatives is n in all draws.
 naming::Options at_level_of(const Question& question, naming::Options options) {
-  constexpr int kFiner = 2;  // than what would just do
+  constexpr int kFiner = 4;  // than what would just do
   constexpr double kComparisons = 10;
   options.level = question.level;
   const std::size_t alternatives = std::max<std::size_t>(2, question.candidates.size() + question.nuisances.size());
-  const int least = static_cast<int>(std::ceil(2 * static_cast<double>(alternatives) / options.level));
+  const int least = static_cast<int>(std::ceil(static_cast<double>(alternatives) / options.level));
   if (options.draws == 0) {
     options.draws = std::max(naming::Options{}.draws, kFiner * least);
     options.comparison_draws = std::max(options.comparison_draws, static_cast<int>(std::ceil(kComparisons / options.level)));
@@ -198,14 +217,12 @@ Diagnosis diagnose(const Question& asked, const calibrate::Machinery& given, Evi
   diagnosis.fit = question.study.with_role(calibrate::Role::fit);
   diagnosis.held = question.study.with_role(calibrate::Role::held_out);
   Screened screening = screened(question, machinery, diagnosis, options.noise_units);
-  std::vector<std::size_t> all = diagnosis.fit;
-  all.insert(all.end(), diagnosis.held.begin(), diagnosis.held.end());
-  diagnosis.bank = filled(question, machinery, screening.points, all, diagnosis);
-  note(machinery, unsettled(question, diagnosis.bank, diagnosis.held), diagnosis);
+  diagnosis.bank = filled(question, machinery, screening.points, diagnosis.fit, diagnosis);
   diagnosis.problem = problem_after(screening, diagnosis);
   reach_farther(machinery, screening, diagnosis);
   simulate_pairs(asked, machinery, options.noise_units, screening, diagnosis);
   diagnosis.naming = naming::name_candidates(diagnosis.problem, options);
+  hold_out(asked, machinery, diagnosis);
   const HeldOutRequest request{.question = question,
                                .machinery = machinery,
                                .evidence = diagnosis.evidence,

@@ -25,8 +25,8 @@ struct Way {
   Prediction prediction = {};
 };
 
-/// Mean of the simulations of one parameter set with several seeds.
-Prediction simulate(const HeldOutRequest& r, const Way& way, std::size_t condition) {
+/// Mean of the simulations of one parameter set with several seeds. `of_one`: covariance of one of them.
+Prediction simulate(const HeldOutRequest& r, const Way& way, std::size_t condition, const MatrixXd& of_one) {
   const VectorXd theta = r.problem.data.natural(way.coded);
   std::vector<campaign::Simulation> simulations;
   for (int replicate = 1; replicate <= r.seeds; ++replicate)
@@ -44,15 +44,15 @@ Prediction simulate(const HeldOutRequest& r, const Way& way, std::size_t conditi
       continue;
     }
     if (done++ == 0)
-      p.value = o.value, p.covariance = o.covariance, p.power = o.power.value;
+      p.value = o.value, p.power = o.power.value;
     else
-      p.value += o.value, p.covariance += o.covariance, p.power += o.power.value;
+      p.value += o.value, p.power += o.power.value;
   }
   if (done == 0) {
     p.failure = message;
     return p;
   }
-  p.value /= done, p.covariance /= done * done, p.power /= done;
+  p.value /= done, p.covariance = of_one / done, p.power /= done;
   return p;
 }
 
@@ -88,7 +88,7 @@ class HeldOutTrial {
       HeldOut out = judged();
       const std::set<std::size_t> wanted = to_simulate(out);
       if (wanted.empty()) return out;
-      for (const std::size_t k : wanted) ways_[k].prediction = simulate(r_, ways_[k], condition_);
+      for (const std::size_t k : wanted) ways_[k].prediction = simulate(r_, ways_[k], condition_, of_one_run(ways_[k]));
     }
   }
 
@@ -124,6 +124,13 @@ class HeldOutTrial {
     p.covariance.diagonal() += kFloor * held_.covariance.diagonal();
     p.power = power_in(p.value);
     return p;
+  }
+
+  /// Covariance of one simulation: what the bank's runs there scatter by about the surrogate.
+  MatrixXd of_one_run(const Way& way) const {
+    MatrixXd out = surrogate_.scatter_of(way.active) * surrogate_.residual_covariance(held_.covariance);
+    out.diagonal() += kFloor * held_.covariance.diagonal();
+    return out;
   }
 
   /// As if the surrogate did not err. A prediction's own error would hide what differs: with it an alarm is too easily missed.

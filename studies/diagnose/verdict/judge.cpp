@@ -50,7 +50,9 @@ Judge Judge::of(const naming::Problem& held, const std::vector<MatrixXd>& left_o
       judge.kept.push_back(i);
   }
   judge.observed = held.observed(judge.kept), judge.recording = held.covariance(judge.kept, judge.kept);
-  for (const MatrixXd& law : held.noise) judge.noise.push_back(naming::factor(MatrixXd(law(judge.kept, judge.kept))));
+  std::vector<naming::CommonSize> sizes = held.sizes;
+  for (naming::CommonSize& size : sizes) size.count = std::ssize(judge.kept);  // of one condition
+  judge.noise = naming::Noise(judge.recording, std::move(sizes));
   for (const MatrixXd& runs : left_out) judge.left_out.push_back(runs.rows() == 0 ? runs : MatrixXd(runs(Eigen::all, judge.kept)));
   return judge;
 }
@@ -80,18 +82,15 @@ void Judge::compare(const Score& corrected, Score& rival, std::uint64_t seed) co
   base::Interval90& found = rival.improvement;
   found.value = misfit(observed - other.value, c) - misfit(observed - one.value, c);
   const MatrixXd first = naming::factor(one.covariance), second = naming::factor(other.covariance);
-  found.low = std::numeric_limits<double>::infinity(), found.high = -found.low;
   base::RandomStream random(seed, 9);
-  for (const MatrixXd& law : noise) {
-    std::vector<double> draws;
-    for (int b = 0; b < kDraws; ++b) {
-      const VectorXd y = observed + law * random.normals(observed.size());
-      draws.push_back(misfit(y - other.value - second * random.normals(y.size()), c) -
-                      misfit(y - one.value - first * random.normals(y.size()), c));
-    }
-    std::sort(draws.begin(), draws.end());
-    found.low = std::min(found.low, draws[kDraws / 20]), found.high = std::max(found.high, draws[kDraws - 1 - kDraws / 20]);
+  std::vector<double> draws;
+  for (int b = 0; b < kDraws; ++b) {
+    const VectorXd y = observed + noise.draw(random);
+    draws.push_back(misfit(y - other.value - second * random.normals(y.size()), c) -
+                    misfit(y - one.value - first * random.normals(y.size()), c));
   }
+  std::sort(draws.begin(), draws.end());
+  found.low = draws[kDraws / 20], found.high = draws[kDraws - 1 - kDraws / 20];
 }
 
 double Judge::goodness(const Prediction& whole, std::uint64_t seed) const {
@@ -100,14 +99,9 @@ double Judge::goodness(const Prediction& whole, std::uint64_t seed) const {
   const double seen = misfit(observed - p.value, c);
   const MatrixXd own = naming::factor(p.covariance);
   base::RandomStream random(seed, 10);
-  double largest = 0;
-  for (const MatrixXd& law : noise) {
-    int above = 0;
-    for (int b = 0; b < kDraws; ++b)
-      above += misfit(law * random.normals(observed.size()) + own * random.normals(observed.size()), c) >= seen ? 1 : 0;
-    largest = std::max(largest, (1.0 + above) / (1.0 + kDraws));
-  }
-  return largest;
+  int above = 0;
+  for (int b = 0; b < kDraws; ++b) above += misfit(noise.draw(random) + own * random.normals(observed.size()), c) >= seen ? 1 : 0;
+  return (1.0 + above) / (1.0 + kDraws);
 }
 
 }  // namespace millscope::diagnose

@@ -28,7 +28,7 @@ struct Judge {
   std::vector<Index> kept;  ///< observables that every prediction defines; of these are the others
   VectorXd observed;
   MatrixXd recording;              ///< covariance: the weight
-  std::vector<MatrixXd> noise;     ///< factors of the laws of the recording's noise
+  naming::Noise noise;             ///< the same
   std::vector<MatrixXd> left_out;  ///< of the bank's runs: without a candidate, with that of the corrected model
   double power = 0;
 
@@ -37,10 +37,10 @@ struct Judge {
 
   /// Misfit, and reliance on what differs from the recording.
   Score score(Prediction prediction) const;
-  /// Improvement of the first prediction over another, with what noise of recording and predictions leaves open; the widest interval over
-  /// the laws of noise. Reliance on what differs between them.
+  /// Improvement of the first prediction over another, with what noise of recording and predictions leaves open. Reliance on what differs
+  /// between them.
   void compare(const Score& corrected, Score& rival, std::uint64_t seed) const;
-  /// How often a recording of this very prediction would look as bad; the largest over the laws of noise.
+  /// How often a recording of this very prediction would look as bad.
   double goodness(const Prediction& whole, std::uint64_t seed) const;
 
  private:

@@ -1,26 +1,73 @@
 #include "studies/diagnose/verdict/recorded_problem.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
+#include "kernel/base/statistics.hpp"
 #include "studies/calibrate/power.hpp"
 #include "studies/diagnose/naming/surrogate.hpp"
 
 namespace millscope::diagnose {
 namespace {
 
-/// Mean correlation of the simulated observations of a condition; the identity where the bank has none.
-MatrixXd correlation_of(const Bank& bank, std::size_t condition, Index size) {
-  const std::optional<std::size_t> k = bank.place_of(condition);
-  MatrixXd sum = MatrixXd::Zero(size, size);
-  int runs = 0;
-  for (const auto& seen : bank.seen) {
-    if (!k || !seen[*k]) continue;
-    const MatrixXd& covariance = seen[*k]->covariance;
-    const VectorXd scale = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    sum += scale.asDiagonal() * covariance * scale.asDiagonal();
-    ++runs;
+constexpr double kSurely = 3.1;     // standard errors: by chance so far below in one of a thousand
+constexpr double kSmallest = 1e-6;  // of a variance, left of sums that are always the same: one number that is compared twice
+
+/// Of the variances of two covariances the median ratio, where both have some.
+double median_ratio(const MatrixXd& own, const MatrixXd& other) {
+  std::vector<double> ratios;
+  for (Index i = 0; i < own.rows(); ++i) {
+    if (own(i, i) > 0 && other(i, i) > 0) ratios.push_back(own(i, i) / other(i, i));
   }
-  return runs == 0 ? MatrixXd(MatrixXd::Identity(size, size)) : MatrixXd(sum / runs);
+  return ratios.empty() ? 0 : base::quantile(ratios, 0.5);
+}
+
+/// What resampling says of a condition's simulations without a candidate, each as large as the recording's own, on average. Empty where
+/// there is none.
+MatrixXd by_simulations(const MatrixXd& own, const Bank& bank, std::size_t condition) {
+  const std::optional<std::size_t> k = bank.place_of(condition);
+  MatrixXd sum;
+  double runs = 0;
+  for (std::size_t p = 0; k && p < bank.points.size(); ++p) {
+    const auto& seen = bank.seen[p][*k];
+    if (!seen || !bank.points[p].active.empty() || seen->resampled.rows() != own.rows()) continue;
+    const double ratio = median_ratio(own, seen->resampled);
+    if (!(ratio > 0)) continue;
+    if (sum.size() == 0) sum = MatrixXd::Zero(own.rows(), own.cols());
+    sum += ratio * seen->resampled, ++runs;
+  }
+  return sum / runs;
+}
+
+/// The same, in each of its own directions at least `part` of what the recording has there.
+MatrixXd raised(const MatrixXd& simulated, const MatrixXd& own, double part) {
+  const VectorXd variance = simulated.diagonal().cwiseMax(own.diagonal());
+  std::vector<Index> some;
+  for (Index i = 0; i < variance.size(); ++i) {
+    if (variance[i] > 0) some.push_back(i);
+  }
+  const VectorXd unit = variance(some).cwiseSqrt(), per_unit = unit.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(per_unit.asDiagonal() * simulated(some, some) * per_unit.asDiagonal());
+  const MatrixXd directions = unit.asDiagonal() * solver.eigenvectors(), across = per_unit.asDiagonal() * solver.eigenvectors();
+  const VectorXd recorded = (across.transpose() * own(some, some) * across).diagonal();
+  const VectorXd along = solver.eigenvalues().cwiseMax(part * recorded).cwiseMax(kSmallest);
+  MatrixXd out = MatrixXd::Zero(own.rows(), own.cols());
+  out(some, some) = directions * along.asDiagonal() * directions.transpose();
+  return out;
+}
+
+/// See recorded_problem.hpp. Whether simulations tell it.
+bool take_from_simulations(const calibrate::Observation& recorded, const Bank& bank, std::size_t condition, MatrixXd& covariance) {
+  if (!recorded.of_tracks() || recorded.resampled.size() == 0) return false;
+  const MatrixXd simulated = by_simulations(recorded.resampled, bank, condition);
+  if (simulated.size() == 0) return false;
+  const double few = calibrate::few_blocks_factor(recorded.blocks);
+  const VectorXd others = (recorded.covariance - few * recorded.resampled).diagonal().cwiseMax(0);
+  covariance = raised(simulated, recorded.resampled, std::exp(-kSurely * std::sqrt(2 / std::max(1.0, recorded.blocks))));
+  covariance.diagonal() += others;
+  return true;
 }
 
 }  // namespace
@@ -31,19 +78,15 @@ void add_recorded(const Question& question, const Evidence& evidence, const Bank
   for (const std::size_t c : conditions) n += evidence.recorded[c].value.size();
   problem.observed.resize(n);
   problem.covariance = MatrixXd::Zero(n, n);
-  problem.noise.assign(2, problem.covariance);
   Index at = 0;
   for (const std::size_t c : conditions) {
     const calibrate::Observation& o = evidence.recorded[c];
     const Index size = o.value.size();
-    const VectorXd deviation = o.covariance.diagonal().cwiseSqrt();
+    MatrixXd covariance = o.covariance;
+    if (take_from_simulations(o, bank, c, covariance)) problem.sizes.push_back({at, size, o.blocks - 1});
+    calibrate::add_power_error(o, question.study.power_error, covariance);
     problem.observed.segment(at, size) = o.value;
-    MatrixXd own = o.covariance, simulated = own;  // a profile's errors are stated, its correlations too
-    if (o.of_tracks()) simulated = deviation.asDiagonal() * correlation_of(bank, c, size) * deviation.asDiagonal();
-    for (MatrixXd* covariance : {&own, &simulated}) calibrate::add_power_error(o, question.study.power_error, *covariance);
-    problem.noise[0].block(at, at, size, size) = own;
-    problem.noise[1].block(at, at, size, size) = simulated;
-    problem.covariance.block(at, at, size, size) = 0.5 * (own + simulated);
+    problem.covariance.block(at, at, size, size) = covariance;
     at += size;
   }
 }

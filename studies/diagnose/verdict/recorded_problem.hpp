@@ -8,10 +8,16 @@
 
 namespace millscope::diagnose {
 
-/// Recordings of some conditions side by side. The sizes of their errors are the recordings' own, the power's widened by that of speed
-/// and meter. What is not known well is how the errors of 35 numbers are correlated: a recording has ten or twenty independent blocks and
-/// its correlations are shrunk towards none; those of simulated beads, the mean over the bank, know nothing of the camera's own wander.
-/// Observables are weighed by the mean of both, and p-values hold under either as the law of noise.
+/// Recordings of some conditions side by side, with the covariance
+///
+///   C = mean of g_r P_r + U,  P_r: of a simulation without a candidate, by resampling; g_r: median over the observables of C_r/P_r;
+///                             C_r: the recording's by resampling; U: errors that no resampling shows (an axis, a meter, readings)
+///
+/// A recording has some tens of independent blocks. They tell how large its errors are all together, with so many degrees of freedom
+/// (CommonSize), but not those of 35 numbers beside one another: some of their sums are known ten times better than each, which the chance
+/// of few blocks hides. Simulations through the same camera tell it. In no direction of P an error is smaller than the recording's own
+/// surely is (one in a thousand by chance): what simulated beads do not have, a camera that wanders, a region that they never visit.
+/// Figures without tracks have the errors that they state. To all powers that of the study is added.
 void add_recorded(const Question& question, const Evidence& evidence, const Bank& bank, const std::vector<std::size_t>& conditions,
                   naming::Problem& problem);
 
