@@ -27,6 +27,11 @@ void write_values(std::ostream& out, const std::string& look, const calibrate::O
     for (Eigen::Index j = 0; j <= i; ++j) out << fmt::format(" {:.17g}", o.covariance(i, j));
     out << "\n";
   }
+  for (Eigen::Index i = 0; i < o.resampled.rows(); ++i) {
+    out << fmt::format("{} resampled", look);
+    for (Eigen::Index j = 0; j <= i; ++j) out << fmt::format(" {:.17g}", o.resampled(i, j));
+    out << "\n";
+  }
   out << fmt::format("{} power {:.17g} {:.17g} blocks {:.17g} bead-seconds {:.17g}\n", look, o.power.value, o.power.sem, o.blocks,
                      o.bead_seconds);
   for (const calibrate::Histogram* h : {&o.x, &o.speed}) {

@@ -38,14 +38,14 @@ def simulate(build, folder, seed):
 
 def seen(file):
     """{summary: [value of each look]}, {summary: [standard error of each look]}, {summary: value of the recording}. A line: look or
-    "recorded", name, value, its row of the covariance."""
+    "recorded", name, value, its row of the covariance. Of "bin" and "resampled" nothing."""
     values, errors, recorded, names = {}, {}, {}, []
     for line in file.read_text().splitlines():
         words = line.split()
         if len(words) > 1 and words[-4:-3] == ["blocks"]:
             names = []
             continue
-        if words[1] == "bin":
+        if words[1] in ("bin", "resampled"):
             continue
         numbers = len(names) + 2
         name = " ".join(words[1:-numbers])

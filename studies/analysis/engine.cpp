@@ -190,16 +190,16 @@ void judge(ResultArray& array, std::size_t first, const Deviations& deviations, 
   doubt_the_same(array);
 }
 
-/// Fills N_eff of the basic observables; their draws' scale. z is slow and sets no blocks, and is not counted.
-double scale_of_draws(const Blocks& blocks, const std::vector<std::uint32_t>& counts, std::vector<ObservableTime>& times) {
+/// N_eff of the basic observables, and what neighbouring blocks have in common. z is slow and sets no blocks, and is not counted.
+void look_at_memory(const Blocks& blocks, const std::vector<std::uint32_t>& counts, ResultMeta& meta) {
+  if (meta.times.empty()) return;  // known beforehand
   double sum = 0, known = 0;
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    const BlockMemory memory = block_memory(blocks.series, k, blocks.table.spans, counts);
-    times[k].independent = memory.independent;
-    if (times[k].name != "z" && !std::isnan(memory.correlation)) sum += memory.correlation, ++known;
+  for (std::size_t k = 0; k < meta.times.size(); ++k) {
+    const BlockMemory memory = block_memory(blocks.series, k, meta.blocks, counts);
+    meta.times[k].independent = memory.independent;
+    if (meta.times[k].name != "z" && !std::isnan(memory.correlation)) sum += memory.correlation, ++known;
   }
-  const auto n = static_cast<double>(blocks.table.spans.size());
-  return n > 1 ? std::sqrt(n / (n - 1) * widening(known > 0 ? sum / known : 0)) : 0;
+  meta.lengths.correlation = known > 0 ? sum / known : 0;
 }
 
 std::vector<std::uint8_t> followers(const std::vector<ResultBlock>& spans) {
@@ -254,9 +254,12 @@ ResultSet run_analyzers(FrameSource& source, const std::vector<AnalyzerInstance>
   for (std::string& note : notes_on(results.meta, blocks.rule, total)) results.meta.notes.push_back(std::move(note));
 
   const std::vector<std::uint32_t> counts = draw_counts(count, options.draws, options.seed);
-  const double scale = scale_of_draws(blocks, counts, results.meta.times);
-  const Resampling resampling{blocks.table.rows, counts, options.draws, scale};
+  look_at_memory(blocks, counts, results.meta);
+  const auto n = static_cast<double>(count);
   const std::vector<std::uint8_t> follows = followers(blocks.table.spans);
+  const bool neighbours = std::find(follows.begin(), follows.end(), 1) != follows.end();  // of single beads each may be one block
+  const double wider = neighbours ? widening(results.meta.lengths.correlation) : 1;
+  const Resampling resampling{blocks.table.rows, counts, options.draws, count > 1 ? std::sqrt(n / (n - 1) * wider) : 0};
   const std::size_t workers = base::worker_count(options.threads, resampling.items());
   for (std::size_t k = 0; k < instances.size(); ++k) {
     if (options.progress) options.progress("resampling", static_cast<double>(k) / static_cast<double>(instances.size()));

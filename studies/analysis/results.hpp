@@ -76,10 +76,11 @@ struct ResultBlock {
   std::uint32_t stretch;  ///< run or bead
 };
 
-/// How long a block must be, s, from how fast a charge forgets (times.hpp).
+/// How long a block must be, s, from how fast a charge forgets (times.hpp); and what neighbouring blocks have in common all the same.
 struct BlockLengths {
-  double least = 0;   ///< three autocorrelation times of x, y and radius, and of one bead two circulations
-  double wished = 0;  ///< three of the speed, which a bead's loop carries on over circulations: as far as enough blocks remain
+  double least = 0;        ///< three autocorrelation times of x, y and radius, and of one bead two circulations
+  double wished = 0;       ///< three of the speed, which a bead's loop carries on over circulations: as far as enough blocks remain
+  double correlation = 0;  ///< of neighbouring blocks, mean over x, y, radius and speed
   bool operator==(const BlockLengths&) const = default;
 };
 

@@ -42,7 +42,7 @@ namespace millscope::recording {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Travel, speed, noise)
 }
 namespace millscope::analysis {
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BlockLengths, least, wished)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BlockLengths, least, wished, correlation)
 }
 
 namespace millscope::calibrate {

@@ -110,6 +110,13 @@ TEST_CASE("the same tracks give the same bits, be they recorded or simulated") {
     numbers += a.arrays[i].draws.size();
   }
   CHECK(numbers > 10000);
+  // What neighbouring blocks have in common widens all draws alike.
+  smoothing.blocks.correlation = 0;
+  const analysis::ResultSet none = process({made_recording(), mill, Side::simulated}, smoothing, how);
+  smoothing.blocks.correlation = 0.5;
+  const analysis::ResultSet half = process({made_recording(), mill, Side::simulated}, smoothing, how);
+  const std::vector<float>&narrow = none.find("power", "centre_of_mass_x")->draws, &wide = half.find("power", "centre_of_mass_x")->draws;
+  for (std::size_t b = 0; b < narrow.size(); ++b) CHECK(wide[b] == Approx(std::sqrt(3.0) * narrow[b]).epsilon(1e-5));
 }
 
 TEST_CASE("summaries do not feel that nothing else is resampled") {
@@ -199,8 +206,8 @@ TEST_CASE("nothing of what is cached of a recording is lost") {
   noise = {1e-4, 2e-4, 3e-4}, noise_correlation = 0.2, roughness = {1, 2, 3}, gap_limit = 0.04;
   auto& [greatest_speed, greatest_noise] = travel;
   greatest_speed = 4, greatest_noise = 5e-4;
-  auto& [least, wished] = lengths;
-  least = 1.5, wished = 2.5;
+  auto& [least, wished, correlation] = lengths;
+  least = 1.5, wished = 2.5, correlation = 0.1;
   auto& [low, high, middle] = place;
   low = 0.01, high = 0.09, middle = 0.05;
   mass = 11, omega = -6, measured_power = true, axis_path = 0.07, axis_noise = 5e-4, identity = "0123";

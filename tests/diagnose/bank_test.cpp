@@ -1,10 +1,8 @@
 // The bank: which simulations are planned, that it grows without losing one, what becomes of those that fail.
 #include "studies/diagnose/bank/bank.hpp"
-#include "studies/diagnose/verdict/recorded_problem.hpp"
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
@@ -201,62 +199,6 @@ TEST_CASE("a bank knows where each of its simulations is") {
   const Bank bank = fill_bank(q, machinery, mill.evidence(), points, {1, 0});
   for (std::size_t p = 0; p < points.size(); ++p)
     CHECK(bank.runs[p] == std::vector<std::filesystem::path>{simulation_of(q, points[p], 1).label, simulation_of(q, points[p], 0).label});
-}
-
-TEST_CASE("errors of tracks are correlated as simulations are and as large as the recording's own, what is stated stays as it is") {
-  const Scratch folder;
-  const Question q = question_of(folder, kSections);
-  MadeUpMill mill(q, {}, {});
-  Evidence evidence = mill.evidence();
-  std::vector<BankPoint> points = plan_group(q, {}, 24);
-  points.push_back({"with", 0, points[0].theta, {{0, 1}}});
-  Bank bank = fill_bank(q, mill.machinery(), evidence, points, {0});
-  calibrate::Observation& r = evidence.recorded[0];
-  const auto n = r.value.size();
-  // Simulations of other lengths, all of the same mill: by the bead's second one covariance. Observable 0 is not resampled, 5 never seen.
-  MatrixXd second = MatrixXd::Constant(n, n, 0.9) + 0.1 * MatrixXd::Identity(n, n);
-  for (const Index i : {Index{0}, Index{5}}) second.row(i).setZero(), second.col(i).setZero();
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    calibrate::Observation& o = *bank.seen[p][0];
-    o.bead_seconds = p % 2 == 0 ? 100 : 400;
-    o.resampled = (points[p].active.empty() ? 1 : 50) / o.bead_seconds * second;
-  }
-  const double own = 0.02;
-  MatrixXd by_chance = own * second;
-  by_chance(1, 2) = by_chance(2, 1) = 0.95 * own;
-  by_chance(5, 5) = own;  // seen in the recording alone
-  r.blocks = 41, r.bead_seconds = 800, r.resampled = by_chance;
-  r.covariance = 40.0 / 38 * r.resampled;
-  r.covariance(0, 0) = 7, r.covariance(4, 4) += 2;  // a meter, an axis
-  const naming::Problem p = problem_of(q, evidence, bank, {0});
-  const MatrixXd& c = p.covariance;
-  CHECK_THAT(c(2, 2), WithinRel(own, 1e-9));
-  CHECK_THAT(c(1, 2), WithinRel(0.9 * own, 1e-9));
-  CHECK_THAT(c(1, 4), WithinRel(0.9 * own, 1e-9));
-  CHECK_THAT(c(4, 4), WithinRel(own + 2, 1e-9));
-  CHECK(c(0, 1) == 0);
-  CHECK(c(0, 0) >= 7);
-  const double surely = std::exp(-3.1 * std::sqrt(2.0 / 41));
-  CHECK_THAT(c(5, 5), WithinRel(surely * own, 1e-9));
-  REQUIRE(p.sizes.size() == 1);
-  CHECK(p.sizes[0].first == 0);
-  CHECK(p.sizes[0].count == n);
-  CHECK(p.sizes[0].degrees == 40);
-  // A camera that wanders: what simulated beads know ten times better than each number, the recording does not.
-  VectorXd wander = VectorXd::Zero(n);
-  wander[6] = 1, wander[7] = -1;
-  r.resampled = by_chance + own * wander * wander.transpose();
-  const MatrixXd wandering = problem_of(q, evidence, bank, {0}).covariance;
-  CHECK(wander.dot(c * wander) < 0.3 * own);
-  CHECK(wander.dot(wandering * wander) > 0.9 * surely * wander.dot(r.resampled * wander));
-  // One number that is compared twice.
-  second.row(7) = second.row(6), second.col(7) = second.col(6);
-  for (auto& point : bank.seen) point[0]->resampled = second;
-  r.resampled = own * second;
-  CHECK(problem_of(q, evidence, bank, {0}).covariance.llt().info() == Eigen::Success);
-  r.bead_seconds = 0;
-  CHECK(problem_of(q, evidence, bank, {0}).covariance(4, 4) == r.covariance(4, 4));
-  CHECK(problem_of(q, evidence, bank, {0}).covariance(1, 2) == r.covariance(1, 2));
 }
 
 TEST_CASE("what the camera is doubted of costs no simulation") {

@@ -101,6 +101,7 @@ calibrate::Observation MadeUpMill::observation(std::size_t condition, const std:
   o.covariance = noise * noise * MatrixXd::Identity(kObservables, kObservables);
   for (Index i = 0; i < kObservables; ++i)
     o.observables.push_back({fmt::format("summary {}", i), "1", i == 0 ? calibrate::ObservableKind::power : calibrate::ObservableKind::x});
+  o.resampled = o.covariance, o.blocks = 200;
   o.power = {y[0], noise, "made up"};
   o.bead_seconds = 100;
   return o;

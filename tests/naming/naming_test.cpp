@@ -2,6 +2,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numeric>
 
 #include "kernel/base/error.hpp"
 #include "kernel/base/random.hpp"
@@ -309,11 +310,13 @@ TEST_CASE("false alarms stay at the level where the errors' size is known from f
                                 900 + static_cast<std::uint64_t>(k));
     p.covariance *= random.normals(kDegrees).squaredNorm() / kDegrees;
     as_if_known += name_candidates(p, quick(240)).base_p <= 0.05 ? 1 : 0;
-    p.sizes = {{0, p.observed.size(), kDegrees}};
+    std::vector<Index> all(p.observed.size());
+    std::iota(all.begin(), all.end(), 0);
+    p.sizes = {{all, kDegrees}};
     alarms += name_candidates(p, quick(240)).base_p <= 0.05 ? 1 : 0;
   }
   CHECK(alarms <= 8);
-  CHECK(as_if_known > alarms);
+  CHECK(as_if_known >= alarms + 5);
 }
 
 TEST_CASE("what was screened out is neither named nor in a class, and the others do not pay for it") {

@@ -281,8 +281,8 @@ Bank joined(Bank bank, const Bank& more) {
   for (std::size_t p = 0; p < more.points.size(); ++p) place[{more.points[p].group, more.points[p].index}] = p;
   for (std::size_t p = 0; p < bank.points.size(); ++p) {
     const auto found = place.find({bank.points[p].group, bank.points[p].index});
+    const bool known = found != place.end();
     for (std::size_t k = 0; k < more.conditions.size(); ++k) {
-      const bool known = found != place.end();
       bank.seen[p].push_back(known ? more.seen[found->second][k] : std::nullopt);
       bank.runs[p].push_back(known ? more.runs[found->second][k] : std::filesystem::path());
     }

@@ -104,7 +104,6 @@ class Namer {
   }
 
  private:
-  double p_of(const std::vector<double>& draws, double value) const { return tail(draws, value); }
   Index count() const { return std::ssize(p_.alternatives); }
   bool tested(Index j) const { return out_.judged[j].tested; }
   void say(const std::string& line) const {
@@ -134,7 +133,7 @@ class Namer {
       out_.judged.push_back(judged);
       visibility(j);
       if (!tested(j)) continue;
-      out_.judged[j].p = p_of(gain, judged.delta_q);
+      out_.judged[j].p = tail(gain, judged.delta_q);
       gains.push_back(gain);
       observed.push_back(judged.delta_q);
       asked.push_back(j);
@@ -193,7 +192,7 @@ class Namer {
     const Truth truth = pseudo_.truth({j}, judged.fit);
     const auto stream = static_cast<std::uint64_t>(j);
     const auto strict = pseudo_.draw(truth, {{j}}, {o_.comparison_draws, 100 + stream});
-    judged.goodness_p = p_of(collect(strict, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
+    judged.goodness_p = tail(collect(strict, [](const auto& d) { return d.fit[0].q; }), judged.fit.q);
     const std::vector<base::Interval90> found = pseudo_.intervals({j}, judged.fit, o_.comparison_draws, 200 + stream);
     judged.theta = of_theta(p_.data, found);
     if (!judged.fit.strengths.empty()) judged.strength = found[p_.data.theta.size()];
@@ -223,7 +222,7 @@ class Namer {
         return most;
       });
       const bool nothing = judged.delta_q < kNothing && p_.alternatives[k].candidate;
-      judged.against_best_p = nothing ? out_.judged[best].p_family : p_of(lead, (judged.fit.q - out_.judged[best].fit.q) / usual[of_best]);
+      judged.against_best_p = nothing ? out_.judged[best].p_family : tail(lead, (judged.fit.q - out_.judged[best].fit.q) / usual[of_best]);
       look_closer(k);
       if (judged.against_best_p > o_.level) out_.kept.push_back(k);
     }
@@ -256,13 +255,13 @@ class Namer {
       const FitResult fit = pseudo_.fit(choices[k + 1]);
       if (alone.q - fit.q > most) most = alone.q - fit.q, pair.second = others[k], pair.fit = fit;
     }
-    pair.p = p_of(gain, most);
+    pair.p = tail(gain, most);
     const FitResult& second = out_.judged[pair.second].fit;
     const Choice own{pair.second}, both{first, pair.second};
     const auto reverse = pseudo_.draw(pseudo_.truth(own, second), {own, both}, {o_.comparison_draws, 600});
-    pair.p_first = p_of(collect(reverse, [](const auto& d) { return d.fit[0].q - d.fit[1].q; }), second.q - pair.fit.q);
+    pair.p_first = tail(collect(reverse, [](const auto& d) { return d.fit[0].q - d.fit[1].q; }), second.q - pair.fit.q);
     const auto under = pseudo_.draw(pseudo_.truth(both, pair.fit), {both}, {o_.comparison_draws, 700});
-    pair.goodness_p = p_of(collect(under, [](const auto& d) { return d.fit[0].q; }), pair.fit.q);
+    pair.goodness_p = tail(collect(under, [](const auto& d) { return d.fit[0].q; }), pair.fit.q);
     out_.pairs.push_back(pair);
   }
 

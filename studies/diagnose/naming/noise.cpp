@@ -14,7 +14,7 @@ VectorXd Noise::draw(base::RandomStream& random) const {
   VectorXd out = factor_ * random.normals(factor_.rows());
   for (const CommonSize& size : sizes_) {
     const auto degrees = std::max<Index>(1, std::lround(size.degrees));
-    out.segment(size.first, size.count) *= std::sqrt(static_cast<double>(degrees) / random.normals(degrees).squaredNorm());
+    out(size.observables) *= std::sqrt(static_cast<double>(degrees) / random.normals(degrees).squaredNorm());
   }
   return out;
 }

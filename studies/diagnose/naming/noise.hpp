@@ -10,7 +10,7 @@ namespace millscope::naming {
 
 /// Observables whose errors are known beside one another, but their common size from few values only: with so many degrees of freedom.
 struct CommonSize {
-  Index first = 0, count = 0;
+  std::vector<Index> observables;
   double degrees = 0;
 };
 

@@ -111,10 +111,7 @@ void missing(const Told& t, Drawer& drawer) {
 
 VectorXd deviations(const Told& t, const HeldOut& held, const Score& score) {
   const calibrate::Observation& recorded = t.diagnosis.evidence.recorded[held.condition];
-  MatrixXd covariance = recorded.covariance;
-  calibrate::add_power_error(recorded, t.question.study.power_error, covariance);
-  return (recorded.value - score.prediction.value).array() /
-         (covariance.diagonal() + score.prediction.covariance.diagonal()).array().sqrt();
+  return (recorded.value - score.prediction.value).array() / (held.variance + score.prediction.covariance.diagonal()).array().sqrt();
 }
 
 std::vector<fs::path> draw(const Told& told, const fs::path& folder) {

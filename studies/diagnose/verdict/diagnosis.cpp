@@ -82,11 +82,18 @@ std::ptrdiff_t finished(const Bank& bank, const std::string& group) {
   return count;
 }
 
-/// What is simulated in held-out conditions: where nothing is best nobody asks what candidates do there.
+/// What is simulated in held-out conditions: where nothing is best nobody asks what candidates do there, but those without one have to
+/// tell the base by themselves.
 std::vector<BankPoint> to_hold_out(const Diagnosis& diagnosis) {
-  std::vector<BankPoint> points = diagnosis.bank.points;
-  if (!diagnosis.naming.best) std::erase_if(points, [](const BankPoint& p) { return !p.active.empty(); });
-  return points;
+  constexpr Index kEnough = 3;  // for each coefficient
+  std::vector<BankPoint> without = diagnosis.bank.points;
+  std::erase_if(without, [](const BankPoint& p) { return !p.active.empty() || p.group == "again"; });
+  const bool enough = std::ssize(without) >= kEnough * naming::Features(diagnosis.problem.data).base_size();
+  if (diagnosis.naming.best || !enough) return diagnosis.bank.points;
+  for (const BankPoint& p : diagnosis.bank.points) {
+    if (p.group == "again") without.push_back(p);
+  }
+  return without;
 }
 
 /// The bank of the held-out conditions, beside that of the fitted ones.

@@ -77,7 +77,7 @@ class HeldOutTrial {
         held_(problem_alone(request.question, request.evidence, request.bank, condition, request.problem.data)),
         surrogate_(held_.data),
         left_out_(left_out(held_.data, best_active(request))) {
-    const RivalModels rivals(r_, condition, surrogate_);
+    const RivalModels rivals(r_, condition, surrogate_, held_.covariance.diagonal());
     add_ways(rivals);
     if (r_.naming.best) placebo_ = rivals.placebo(), discrepancy_ = rivals.discrepancy();
     for (Way& way : ways_) way.prediction = predicted(way);
@@ -167,7 +167,7 @@ class HeldOutTrial {
     Judge judge = Judge::of(held_, left_out_, all);
     judge.power = r_.evidence.recorded[condition_].power.value;
     HeldOut out;
-    out.condition = condition_;
+    out.condition = condition_, out.variance = held_.covariance.diagonal();
     for (const Way& way : ways_) out.simulations += way.prediction.simulated ? r_.seeds : 0;
     const auto& observables = r_.evidence.recorded[condition_].observables;
     for (std::size_t i = 0; i < observables.size(); ++i) {

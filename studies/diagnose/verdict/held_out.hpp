@@ -50,6 +50,7 @@ struct Score {
 struct HeldOut {
   std::size_t condition = 0;
   int simulations = 0;        ///< that were asked for
+  VectorXd variance;          ///< of the recording's errors
   std::vector<Score> scores;  ///< corrected first, where there is one
   double base_p = 1;          ///< that a recording of the refitted base looks as bad; of a predicted one, with the surrogate's error
   double strict_base_p = 1;   ///< the same as if a predicted base had no error: what an alarm is not to be missed by

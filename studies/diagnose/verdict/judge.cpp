@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "kernel/base/random.hpp"
 
@@ -51,7 +52,13 @@ Judge Judge::of(const naming::Problem& held, const std::vector<MatrixXd>& left_o
   }
   judge.observed = held.observed(judge.kept), judge.recording = held.covariance(judge.kept, judge.kept);
   std::vector<naming::CommonSize> sizes = held.sizes;
-  for (naming::CommonSize& size : sizes) size.count = std::ssize(judge.kept);  // of one condition
+  for (naming::CommonSize& size : sizes) {
+    std::vector<Index> places;
+    for (Index k = 0; k < std::ssize(judge.kept); ++k) {
+      if (std::find(size.observables.begin(), size.observables.end(), judge.kept[k]) != size.observables.end()) places.push_back(k);
+    }
+    size.observables = std::move(places);
+  }
   judge.noise = naming::Noise(judge.recording, std::move(sizes));
   for (const MatrixXd& runs : left_out) judge.left_out.push_back(runs.rows() == 0 ? runs : MatrixXd(runs(Eigen::all, judge.kept)));
   return judge;

@@ -12,7 +12,7 @@
 namespace millscope::diagnose {
 namespace {
 
-constexpr double kSurely = 3.1;     // standard errors: by chance so far below in one of a thousand
+constexpr double kSurely = 3.09;    // normal: 99.9 %
 constexpr double kSmallest = 1e-6;  // of a variance, left of sums that are always the same: one number that is compared twice
 
 /// Of the variances of two covariances the median ratio, where both have some.
@@ -41,8 +41,14 @@ MatrixXd by_simulations(const MatrixXd& own, const Bank& bank, std::size_t condi
   return sum / runs;
 }
 
-/// The same, in each of its own directions at least `part` of what the recording has there.
-MatrixXd raised(const MatrixXd& simulated, const MatrixXd& own, double part) {
+/// By how much a variance of ν degrees of freedom comes out too large in one of a thousand (Wilson & Hilferty 1931).
+double at_most(double degrees) {
+  const double v = 2 / (9 * degrees);
+  return std::pow(1 - v + kSurely * std::sqrt(v), 3);
+}
+
+/// The same; in those of its own directions in which the recording surely has more, what it has there.
+MatrixXd raised(const MatrixXd& simulated, const MatrixXd& own, double degrees) {
   const VectorXd variance = simulated.diagonal().cwiseMax(own.diagonal());
   std::vector<Index> some;
   for (Index i = 0; i < variance.size(); ++i) {
@@ -52,9 +58,22 @@ MatrixXd raised(const MatrixXd& simulated, const MatrixXd& own, double part) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(per_unit.asDiagonal() * simulated(some, some) * per_unit.asDiagonal());
   const MatrixXd directions = unit.asDiagonal() * solver.eigenvectors(), across = per_unit.asDiagonal() * solver.eigenvectors();
   const VectorXd recorded = (across.transpose() * own(some, some) * across).diagonal();
-  const VectorXd along = solver.eigenvalues().cwiseMax(part * recorded).cwiseMax(kSmallest);
+  const VectorXd known = solver.eigenvalues().cwiseMax(kSmallest);
+  const VectorXd along = (recorded.array() > at_most(degrees) * known.array()).select(recorded, known);
   MatrixXd out = MatrixXd::Zero(own.rows(), own.cols());
   out(some, some) = directions * along.asDiagonal() * directions.transpose();
+  return out;
+}
+
+double degrees_of(const calibrate::Observation& recorded) { return std::max(1.0, recorded.blocks - 1); }
+
+/// Of which numbers resampling tells most of the error.
+std::vector<Index> resampled_of(const calibrate::Observation& recorded, const MatrixXd& covariance, Index first) {
+  std::vector<Index> out;
+  const VectorXd others = recorded.covariance.diagonal() - calibrate::few_blocks_factor(recorded.blocks) * recorded.resampled.diagonal();
+  for (Index i = 0; i < others.size(); ++i) {
+    if (others[i] < 0.5 * covariance(i, i)) out.push_back(first + i);
+  }
   return out;
 }
 
@@ -65,7 +84,7 @@ bool take_from_simulations(const calibrate::Observation& recorded, const Bank& b
   if (simulated.size() == 0) return false;
   const double few = calibrate::few_blocks_factor(recorded.blocks);
   const VectorXd others = (recorded.covariance - few * recorded.resampled).diagonal().cwiseMax(0);
-  covariance = raised(simulated, recorded.resampled, std::exp(-kSurely * std::sqrt(2 / std::max(1.0, recorded.blocks))));
+  covariance = raised(simulated, recorded.resampled, degrees_of(recorded));
   covariance.diagonal() += others;
   return true;
 }
@@ -83,7 +102,8 @@ void add_recorded(const Question& question, const Evidence& evidence, const Bank
     const calibrate::Observation& o = evidence.recorded[c];
     const Index size = o.value.size();
     MatrixXd covariance = o.covariance;
-    if (take_from_simulations(o, bank, c, covariance)) problem.sizes.push_back({at, size, o.blocks - 1});
+    const bool simulated = take_from_simulations(o, bank, c, covariance);
+    if (simulated) problem.sizes.push_back({resampled_of(o, covariance, at), degrees_of(o)});
     calibrate::add_power_error(o, question.study.power_error, covariance);
     problem.observed.segment(at, size) = o.value;
     problem.covariance.block(at, at, size, size) = covariance;

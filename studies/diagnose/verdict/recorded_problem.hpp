@@ -15,8 +15,8 @@ namespace millscope::diagnose {
 ///
 /// A recording has some tens of independent blocks. They tell how large its errors are all together, with so many degrees of freedom
 /// (CommonSize), but not those of 35 numbers beside one another: some of their sums are known ten times better than each, which the chance
-/// of few blocks hides. Simulations through the same camera tell it. In no direction of P an error is smaller than the recording's own
-/// surely is (one in a thousand by chance): what simulated beads do not have, a camera that wanders, a region that they never visit.
+/// of few blocks hides. Simulations through the same camera tell it. Where the recording surely has more along one of P's own
+/// directions (99.9 %), that counts: what simulated beads do not have, a region that they never visit, a camera that wanders.
 /// Figures without tracks have the errors that they state. To all powers that of the study is added.
 void add_recorded(const Question& question, const Evidence& evidence, const Bank& bank, const std::vector<std::size_t>& conditions,
                   naming::Problem& problem);

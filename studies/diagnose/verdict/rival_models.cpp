@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "kernel/base/random.hpp"
 #include "studies/doe/doe.hpp"
@@ -48,8 +49,8 @@ VectorXd retuned_to_power(const naming::BankData& data, const naming::Surrogate&
   return best;
 }
 
-RivalModels::RivalModels(const HeldOutRequest& request, std::size_t held, const naming::Surrogate& held_surrogate)
-    : r_(request), held_(held), surrogate_(request.problem.data), held_surrogate_(held_surrogate) {}
+RivalModels::RivalModels(const HeldOutRequest& request, std::size_t held, const naming::Surrogate& held_surrogate, VectorXd variance)
+    : r_(request), held_(held), surrogate_(request.problem.data), held_surrogate_(held_surrogate), variance_(std::move(variance)) {}
 
 std::optional<std::size_t> RivalModels::metered() const {
   for (const std::size_t c : r_.fit) {
@@ -110,7 +111,7 @@ VectorXd RivalModels::placebo() const {
     const VectorXd chance = random.normals(n);
     VectorXd held(n), fitted = VectorXd::Zero(m);
     for (Index i = 0; i < n; ++i)  // what is not fitted stays as it is
-      held[i] = is_fitted(i) ? chance[i] * std::sqrt(r_.evidence.recorded[held_].covariance(i, i)) : 0;
+      held[i] = is_fitted(i) ? chance[i] * std::sqrt(variance_[i]) : 0;
     Index at = 0;
     for (const std::size_t c : r_.fit) {
       for (Index i = 0; i < n; ++i) {

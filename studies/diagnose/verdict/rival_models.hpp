@@ -11,7 +11,8 @@ namespace millscope::diagnose {
 class RivalModels {
  public:
   /// `held_surrogate`: of the held-out condition alone; it must outlive this.
-  RivalModels(const HeldOutRequest& request, std::size_t held, const naming::Surrogate& held_surrogate);
+  /// `variance`: of the recording's errors in the held-out condition.
+  RivalModels(const HeldOutRequest& request, std::size_t held, const naming::Surrogate& held_surrogate, VectorXd variance);
 
   /// The first fitted condition with a recorded power.
   std::optional<std::size_t> metered() const;
@@ -33,6 +34,7 @@ class RivalModels {
   std::size_t held_;
   naming::Surrogate surrogate_;
   const naming::Surrogate& held_surrogate_;
+  VectorXd variance_;
 };
 
 }  // namespace millscope::diagnose
