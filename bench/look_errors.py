@@ -37,7 +37,7 @@ def call(*command):
 def simulate(binary, out, seed, seconds, output):
     if not (out / "summary.json").exists():
         call(binary, "run", CASE, "-o", out, "--force", "--quiet", "--threads", 1, "--set", "seed=%d" % seed, "--set", SPEED, "--set",
-             "time={end_s: %d, analyze_from_s: 1}" % (1 + seconds), "--set", "output=" + output)
+             "time={end_s: %d, analyze_from_s: 1}" % (1 + seconds), *(w for setting in output for w in ("--set", "output." + setting)))
     return out
 
 
@@ -97,10 +97,10 @@ def main():
     folder = options.output
     folder.mkdir(parents=True, exist_ok=True)
     binary, bench = options.build / "bin/millscope", options.build / "bin/millscope_look_bench"
-    frames = "{frames: {every_s: 0.005}, tracks: ~, vtk: ~}"
+    frames = ["frames.every_s=0.005", "tracks=~", "vtk=~"]
     try:
         if not (folder / "recording.yaml").exists():
-            simulate(binary, folder / "recorded", 1, 10, "{tracks: {beads: 60, every_s: 0.0005}, frames: ~, vtk: ~}")
+            simulate(binary, folder / "recorded", 1, 10, ["tracks={beads: 60, every_s: 0.0005}", "frames=~", "vtk=~"])
             call(binary, "pept", "synthesize", folder / "recorded", "-o", folder / "recording.a", "--camera", ROOT / "configs/cameras/study.yaml")
         with ThreadPoolExecutor(os.cpu_count()) as threads:
             starts = list(threads.map(lambda k: simulate(binary, folder / ("start-%d" % k), 1000 + k, 10, frames), range(options.starts)))
