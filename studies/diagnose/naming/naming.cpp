@@ -236,10 +236,12 @@ class Namer {
     std::vector<Choice> choices{{first}};
     for (Index k = 0; k < count(); ++k) {
       if (!tested(k) || !together(p_.alternatives[first], p_.alternatives[k])) continue;
-      others.push_back(k);
-      choices.push_back({first, k});
       const Visibility beside(p_, pseudo_.surrogate(), pseudo_.weighting(), {alone.coded, active_of(p_.alternatives[first], alone)}, k);
       out_.judged[k].lambda_beside = beside.lambda();
+      // What cannot be seen beside the first at its strongest is not what is seen: a few runs make slopes by chance, which fit some rest.
+      if (p_.alternatives[k].candidate && beside.lambda() < o_.noise_units * o_.noise_units) continue;
+      others.push_back(k);
+      choices.push_back({first, k});
     }
     if (others.empty()) return;
     const auto drawn = pseudo_.draw(pseudo_.truth({first}, alone), choices, {o_.comparison_draws, 500});
@@ -250,10 +252,10 @@ class Namer {
     });
     Pair pair;
     pair.first = first;
-    double most = -1;
+    double most = 0;
     for (std::size_t k = 0; k < others.size(); ++k) {
       const FitResult fit = pseudo_.fit(choices[k + 1]);
-      if (alone.q - fit.q > most) most = alone.q - fit.q, pair.second = others[k], pair.fit = fit;
+      if (k == 0 || alone.q - fit.q > most) most = alone.q - fit.q, pair.second = others[k], pair.fit = fit;
     }
     pair.p = tail(gain, most);
     const FitResult& second = out_.judged[pair.second].fit;
