@@ -283,13 +283,22 @@ TEST_CASE("a small bank of runs chancier than the recording keeps the level, fai
   check_level(c);
 }
 
+namespace {
+
+/// At parameters of the middle half, the filling drawn from its prior.
+Problem without_effect(base::RandomStream& random, int seed) {
+  const VectorXd theta = point(random.uniform() - 0.5, random.uniform() - 0.5, 0.3 * random.normal());
+  return made_up_problem({}, theta, {0, 0, 0}, static_cast<std::uint64_t>(seed));
+}
+
+}  // namespace
+
 TEST_CASE("false alarms stay at the level where errors are correlated") {
   int alarms = 0;
   const int sets = 40;
   for (int k = 0; k < sets; ++k) {
     base::RandomStream random(78, static_cast<std::uint64_t>(k));
-    Problem p = made_up_problem({}, point(random.uniform() - 0.5, random.uniform() - 0.5, 0.3 * random.normal()), {0, 0, 0},
-                                500 + static_cast<std::uint64_t>(k));
+    Problem p = without_effect(random, 500 + k);
     const Index n = p.observed.size();
     const VectorXd together = VectorXd::Ones(n);
     p.observed += 0.7 * (together * random.normal() + 0.3 * random.normals(n));  // beside the independent noise that it has
@@ -306,8 +315,7 @@ TEST_CASE("false alarms stay at the level where the errors' size is known from f
   const int sets = 60;
   for (int k = 0; k < sets; ++k) {
     base::RandomStream random(79, static_cast<std::uint64_t>(k));
-    Problem p = made_up_problem({}, point(random.uniform() - 0.5, random.uniform() - 0.5, 0.3 * random.normal()), {0, 0, 0},
-                                900 + static_cast<std::uint64_t>(k));
+    Problem p = without_effect(random, 900 + k);
     p.covariance *= random.normals(kDegrees).squaredNorm() / kDegrees;
     as_if_known += name_candidates(p, quick(240)).base_p <= 0.05 ? 1 : 0;
     std::vector<Index> all(p.observed.size());

@@ -86,14 +86,12 @@ std::ptrdiff_t finished(const Bank& bank, const std::string& group) {
 /// tell the base by themselves.
 std::vector<BankPoint> to_hold_out(const Diagnosis& diagnosis) {
   constexpr Index kEnough = 3;  // for each coefficient
-  std::vector<BankPoint> without = diagnosis.bank.points;
-  std::erase_if(without, [](const BankPoint& p) { return !p.active.empty() || p.group == "again"; });
-  const bool enough = std::ssize(without) >= kEnough * naming::Features(diagnosis.problem.data).base_size();
-  if (diagnosis.naming.best || !enough) return diagnosis.bank.points;
-  for (const BankPoint& p : diagnosis.bank.points) {
-    if (p.group == "again") without.push_back(p);
-  }
-  return without;
+  std::vector<BankPoint> points = diagnosis.bank.points;
+  const auto of_base =
+      std::count_if(points.begin(), points.end(), [](const BankPoint& p) { return p.active.empty() && p.group != "again"; });
+  const bool enough = of_base >= kEnough * naming::Features(diagnosis.problem.data).base_size();
+  if (!diagnosis.naming.best && enough) std::erase_if(points, [](const BankPoint& p) { return !p.active.empty(); });
+  return points;
 }
 
 /// The bank of the held-out conditions, beside that of the fitted ones.
@@ -167,7 +165,7 @@ void note_recordings(const Question& question, Diagnosis& diagnosis) {
   for (const auto& [what, where] : lines) diagnosis.notes.push_back(fmt::format("recording of {}: {}", where, what));
 }
 
-/// The study's level, which the draws have to resolve: the smallest family-wise p of n alternatives is n in all draws.
+/// The study's level, which the draws have to resolve: the smallest family-wise p of n alternatives is n over the draws.
 naming::Options at_level_of(const Question& question, naming::Options options) {
   constexpr int kFiner = 4;  // than what would just do
   constexpr double kComparisons = 10;

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "kernel/base/statistics.hpp"
@@ -65,28 +66,27 @@ MatrixXd raised(const MatrixXd& simulated, const MatrixXd& own, double degrees) 
   return out;
 }
 
-double degrees_of(const calibrate::Observation& recorded) { return std::max(1.0, recorded.blocks - 1); }
+/// The errors of one condition, and of which of its numbers they are known but for their common size.
+struct Errors {
+  MatrixXd covariance;
+  naming::CommonSize size = {};
+};
 
-/// Of which numbers resampling tells most of the error.
-std::vector<Index> resampled_of(const calibrate::Observation& recorded, const MatrixXd& covariance, Index first) {
-  std::vector<Index> out;
-  const VectorXd others = recorded.covariance.diagonal() - calibrate::few_blocks_factor(recorded.blocks) * recorded.resampled.diagonal();
-  for (Index i = 0; i < others.size(); ++i) {
-    if (others[i] < 0.5 * covariance(i, i)) out.push_back(first + i);
+/// See recorded_problem.hpp.
+Errors errors_of(const calibrate::Observation& recorded, const Bank& bank, std::size_t condition) {
+  if (!recorded.of_tracks() || recorded.resampled.size() == 0) return {recorded.covariance};
+  const MatrixXd simulated = by_simulations(recorded.resampled, bank, condition);
+  if (simulated.size() == 0) return {recorded.covariance};
+  Errors out;
+  out.size.degrees = std::max(1.0, recorded.blocks - 1);
+  const MatrixXd resampled = calibrate::few_blocks_factor(recorded.blocks) * recorded.resampled;
+  const VectorXd others = (recorded.covariance - resampled).diagonal().cwiseMax(0);
+  out.covariance = raised(simulated, recorded.resampled, out.size.degrees);
+  out.covariance.diagonal() += others;
+  for (Index i = 0; i < others.size(); ++i) {  // those of which resampling tells most
+    if (others[i] < 0.5 * out.covariance(i, i)) out.size.observables.push_back(i);
   }
   return out;
-}
-
-/// See recorded_problem.hpp. Whether simulations tell it.
-bool take_from_simulations(const calibrate::Observation& recorded, const Bank& bank, std::size_t condition, MatrixXd& covariance) {
-  if (!recorded.of_tracks() || recorded.resampled.size() == 0) return false;
-  const MatrixXd simulated = by_simulations(recorded.resampled, bank, condition);
-  if (simulated.size() == 0) return false;
-  const double few = calibrate::few_blocks_factor(recorded.blocks);
-  const VectorXd others = (recorded.covariance - few * recorded.resampled).diagonal().cwiseMax(0);
-  covariance = raised(simulated, recorded.resampled, degrees_of(recorded));
-  covariance.diagonal() += others;
-  return true;
 }
 
 }  // namespace
@@ -101,12 +101,12 @@ void add_recorded(const Question& question, const Evidence& evidence, const Bank
   for (const std::size_t c : conditions) {
     const calibrate::Observation& o = evidence.recorded[c];
     const Index size = o.value.size();
-    MatrixXd covariance = o.covariance;
-    const bool simulated = take_from_simulations(o, bank, c, covariance);
-    if (simulated) problem.sizes.push_back({resampled_of(o, covariance, at), degrees_of(o)});
-    calibrate::add_power_error(o, question.study.power_error, covariance);
+    Errors errors = errors_of(o, bank, c);
+    calibrate::add_power_error(o, question.study.power_error, errors.covariance);
     problem.observed.segment(at, size) = o.value;
-    problem.covariance.block(at, at, size, size) = covariance;
+    problem.covariance.block(at, at, size, size) = errors.covariance;
+    for (Index& i : errors.size.observables) i += at;
+    if (!errors.size.observables.empty()) problem.sizes.push_back(std::move(errors.size));
     at += size;
   }
 }
