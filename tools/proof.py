@@ -3,7 +3,7 @@
 
 All batches go through five steps together. Each may be stopped; the next call goes on from there, in another clone too.
 
-  make     draws a seed from the system, makes the recordings in BUILD/proof
+  make     draws a seed from the system, makes the recordings in BUILD/proof. The program may still be changed in how it judges
   publish  docs/proof/BATCH: manifest, hashes of the recordings, the answers and the seed in one sealed file, the commit that is put to the
            test. Commit it: nothing is diagnosed before
   diagnose the sets, with a program that is that commit's in all that decides a verdict
@@ -35,6 +35,8 @@ FREE = ["docs", "tests", "tools", "bench", "examples", "*.md", "Makefile", "mkdo
 FREE += ["studies/" + room for room in ("report", "new", "compare", "crosscheck")]
 FREE += ["studies/challenge/%s.*" % file for file in ("score", "statistics", "tables", "page", "concealment", "read_sets")]
 DECIDES = ["."] + [":(exclude)" + path for path in FREE]
+# What judges recordings and makes none.
+JUDGES = [":(exclude)studies/diagnose/" + room for room in ("naming", "bank", "verdict", "pages")]
 
 
 class Failure(Exception):
@@ -171,17 +173,30 @@ class Batch:
             tar.addfile(info, io.BytesIO(str(seed).encode()))
         return data.getvalue()
 
-    def publish(self):
-        """Of sets that were made whole by this commit; what another commit left is made again, with a seed of its own."""
-        commit, mark = last_that_decides(self.challenge), self.work / "commit.txt"
+    def made_by(self, commit):
+        """Whether this commit would make the recordings that are there: another one may have made them that differs in what judges alone."""
+        mark = self.work / "commit.txt"
+        if not mark.exists():
+            return False
+        reads = {str(path.relative_to(ROOT)) for path in read_by(self.challenge.resolve()) if ROOT in path.parents}
+        changed = git("diff", "--name-only", mark.read_text(), commit, "--", *DECIDES, *JUDGES)
+        return changed is not None and all(path.startswith("configs/") and path not in reads for path in changed.split())
+
+    def made(self):
+        """The commit that is put to the test and the seed of its recordings. What another program made is made again, from a new seed."""
+        commit = last_that_decides(self.challenge)
         self.check_program(commit)
-        if not mark.exists() or mark.read_text() != commit:
+        if not self.made_by(commit):
             shutil.rmtree(self.work, ignore_errors=True)
             replace(self.work / "seed.txt", str(secrets.randbelow(9 * 10**15)).encode())
-            replace(mark, commit.encode())
+            replace(self.work / "commit.txt", commit.encode())
         seed = int((self.work / "seed.txt").read_text())
         if not (self.work / "manifest.json").exists():
             self.make(seed)
+        return commit, seed
+
+    def publish(self):
+        commit, seed = self.made()
         new = self.public.with_name(self.name + ".new")
         shutil.rmtree(new, ignore_errors=True)
         new.mkdir(parents=True)
@@ -287,7 +302,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("part", nargs="*", help="parts or batches (default: all)")
     parser.add_argument("--build", default=ROOT / "build" / "release", type=Path)
-    parser.add_argument("--until", choices=["publish", "diagnose", "score"], default="score", help="stop after this step")
+    parser.add_argument("--until", choices=["make", "publish", "diagnose", "score"], default="score", help="stop after this step")
     arguments = parser.parse_args()
     plan = read_plan()
     unknown = [p for p in arguments.part if p not in {x for batch in plan for x in batch[:2]}]
@@ -297,8 +312,8 @@ def main():
     asked = [b for b, part in batches if not arguments.part or part in arguments.part or b.name in arguments.part]
     for batch in asked:
         if not batch.public.exists():
-            batch.publish()
-    for batch in asked if arguments.until != "publish" else []:
+            batch.made() if arguments.until == "make" else batch.publish()
+    for batch in asked if arguments.until not in ("make", "publish") else []:
         if not batch.complete():
             batch.diagnose()
     for batch in asked if arguments.until == "score" else []:

@@ -101,6 +101,21 @@ class Proof(unittest.TestCase):
             (self.assertEqual if same else self.assertNotEqual)(json.loads(self.public("frozen.json").read_text())["commit"], first, path)
             first = json.loads(self.public("frozen.json").read_text())["commit"]
 
+    def test_what_judges_may_change_between_making_and_publishing_and_nothing_else(self):
+        mark = self.root / "build/release/proof/part_1/commit.txt"
+        for folder, kept in (("studies/diagnose/naming", True), ("studies/diagnose/question", False), ("studies/calibrate", False)):
+            self.assertEqual(self.proof("part_1", "--until", "make"), (0, ""))
+            self.assertFalse(self.public("").exists())
+            first = mark.read_text()
+            (self.root / folder).mkdir(parents=True, exist_ok=True)
+            (self.root / folder / "b.cpp").write_text("int b;\n")
+            self.commit()
+            self.assertEqual(self.proof("part_1", "--until", "publish"), (0, ""))
+            self.assertEqual(mark.read_text() == first, kept, folder)
+            self.assertEqual(json.loads(self.public("frozen.json").read_text())["commit"] == first, False, folder)
+            shutil.rmtree(self.public("").parent)
+            shutil.rmtree(self.root / "build/release/proof")
+
     def test_a_batch_is_published_diagnosed_opened_and_scored_in_this_order(self):
         self.assertEqual(self.proof("part_1", "--until", "publish"), (0, ""))
         frozen = json.loads(self.public("frozen.json").read_text())
