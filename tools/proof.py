@@ -132,6 +132,36 @@ def sha256_anywhere(path):
     return hashlib.sha256(re.sub(r'"([^"]*)"', in_clone, path.read_text()).encode()).hexdigest()
 
 
+def hidden_in(challenge):
+    """[(what is hidden, of how many sets)] of a challenge, which has one line for each kind of sets."""
+    out = []
+    for line in challenge.read_text().splitlines():
+        found = re.match(r"  - \{kind: (\w+)(.*)\}", line)
+        if not found:
+            continue
+        kind, rest = found.groups()
+        names = re.search(r"hypothes[ie]s: (\[[^\]]*\]|\w+)", rest) or re.search(r"name: (\w+)", rest)
+        what = {"none": "nothing", "effect": "", "two": "two: ", "outside": "outside the list: ", "decoy": "decoy: "}[kind]
+        count = re.search(r"count: (\d+)", rest)
+        out.append((what + (names.group(1).strip("[]").replace(", ", " + ") if names else ""), int(count.group(1)) if count else 1))
+    return out
+
+
+def show_plan(plan):
+    """A table of what is hidden, part by part: sets of all batches."""
+    parts = list(dict.fromkeys((part, challenge) for _, part, challenge in plan))
+    batches = {part: sum(of == part for _, of, _ in plan) for part, _ in parts}
+    counts = {}
+    for part, challenge in parts:
+        for what, count in hidden_in(challenge):
+            row = counts.setdefault(what, dict.fromkeys(batches, 0))
+            row[part] += count * batches[part]
+    order = sorted(counts, key=lambda what: (what != "nothing", ":" in what, what.split(":")[0]))
+    print("| hidden | %s | all |\n|%s" % (" | ".join("`%s`" % part for part in batches), "---|" * (len(batches) + 2)))
+    for what in order:
+        print("| %s | %s | %d |" % (what, " | ".join(str(n or "") for n in counts[what].values()), sum(counts[what].values())))
+
+
 class Batch:
     """One batch: WORK/BATCH has its recordings, docs/proof/BATCH what is published of it."""
 
@@ -303,8 +333,11 @@ def main():
     parser.add_argument("part", nargs="*", help="parts or batches (default: all)")
     parser.add_argument("--build", default=ROOT / "build" / "release", type=Path)
     parser.add_argument("--until", choices=["make", "publish", "diagnose", "score"], default="score", help="stop after this step")
+    parser.add_argument("--plan", action="store_true", help="say what the batches hide, and do nothing")
     arguments = parser.parse_args()
     plan = read_plan()
+    if arguments.plan:
+        return show_plan(plan)
     unknown = [p for p in arguments.part if p not in {x for batch in plan for x in batch[:2]}]
     if unknown:
         raise Failure("'%s' is no part; known: %s" % (unknown[0], ", ".join(sorted({part for _, part, _ in plan}))))

@@ -220,6 +220,14 @@ class Proof(unittest.TestCase):
         self.assertEqual([p.name for p in self.public("set_002/diagnosis").iterdir()], ["failed.txt"])
         self.assertEqual(self.public("set_002/diagnosis/failed.txt").read_text(), "case.yaml:61: too few beads\n")
 
+    def test_the_plan_says_what_all_batches_hide(self):
+        (self.root / "configs/proof/part.yaml").write_text(
+            "study: s.yaml\nsets:\n  - {kind: none, count: 7}\n  - {kind: two, hypotheses: [a, b], strength: [0.5, 1]}\n"
+            "  - {kind: decoy, name: clock, camera: c.yaml, count: 2}\n  - {kind: effect, hypothesis: a, strength: [0, 1]}\n")
+        done = subprocess.run([sys.executable, str(self.root / "tools/proof.py"), "--plan"], capture_output=True, text=True)
+        self.assertEqual(done.stdout.splitlines()[2:], ["| nothing | 14 | 14 |", "| a | 2 | 2 |", "| decoy: clock | 4 | 4 |", "| two: a + b | 2 | 2 |"])
+        self.assertFalse((self.root / "docs/proof").exists())
+
     def test_what_is_no_part_is_refused(self):
         code, said = self.proof("prat")
         self.assertEqual(code, 1)

@@ -250,14 +250,12 @@ class Namer {
       for (std::size_t k = 1; k < d.fit.size(); ++k) most = std::max(most, d.fit[0].q - d.fit[k].q);
       return most;
     });
+    std::vector<FitResult> fits;
+    for (std::size_t k = 0; k < others.size(); ++k) fits.push_back(pseudo_.fit(choices[k + 1]));
+    const auto nearest = std::min_element(fits.begin(), fits.end(), [](const FitResult& a, const FitResult& b) { return a.q < b.q; });
     Pair pair;
-    pair.first = first;
-    double most = 0;
-    for (std::size_t k = 0; k < others.size(); ++k) {
-      const FitResult fit = pseudo_.fit(choices[k + 1]);
-      if (k == 0 || alone.q - fit.q > most) most = alone.q - fit.q, pair.second = others[k], pair.fit = fit;
-    }
-    pair.p = tail(gain, most);
+    pair.first = first, pair.second = others[nearest - fits.begin()], pair.fit = *nearest;
+    pair.p = tail(gain, alone.q - pair.fit.q);
     const FitResult& second = out_.judged[pair.second].fit;
     const Choice own{pair.second}, both{first, pair.second};
     const auto reverse = pseudo_.draw(pseudo_.truth(own, second), {own, both}, {o_.comparison_draws, 600});
