@@ -56,7 +56,7 @@ TEST_CASE("all runs of a bank differ, each has a seed of its own") {
   const Scratch folder;
   const Question q = question_of(folder, kSections + "bank: {base: 24, each: 10}\n");
   const std::vector<BankPoint> points = plan_bank(q);
-  CHECK(points.size() == 24 + 8 + 3 * 10);
+  CHECK(points.size() == 24 + 12 + 3 * 10);
   std::set<std::vector<std::string>> different;
   std::set<std::string> labels, parameters;
   for (const BankPoint& p : points) {

@@ -18,7 +18,7 @@
 namespace millscope::diagnose {
 namespace {
 
-constexpr int kAgain = 8;               // parameter sets: eight degrees of freedom of each of about 70 observables
+constexpr int kLeastAgain = 8;          // parameter sets, of which chance is told: eight degrees of freedom of each of about 70 observables
 constexpr std::size_t kSpareApart = 2;  // runs beyond the coefficients of what is varied apart: linear, square, × every parameter
 constexpr int kSeedBits = 53;           // of a run's seed: as many as a whole number of a case may have, so that no two runs share one
 constexpr std::uint64_t kOffsets = 16;  // blocks of Sobol's sequence among which groups are spread, of as many points
@@ -174,7 +174,8 @@ std::vector<BankPoint> plan_group(const Question& question, const Group& of, int
 }
 
 std::vector<BankPoint> plan_again(const Question& question) {
-  std::vector<BankPoint> points = plan_group(question, {}, std::min(kAgain, question.bank.base));
+  const int base = question.bank.base;
+  std::vector<BankPoint> points = plan_group(question, {}, std::min(base, std::max(kLeastAgain, base / 2)));
   for (BankPoint& p : points) p.group = "again";
   return points;
 }
