@@ -3,7 +3,8 @@
 
 All batches go through five steps together. Each may be stopped; the next call goes on from there, in another clone too.
 
-  make     draws a seed from the system, makes the recordings in BUILD/proof. The program may still be changed in how it judges
+  make     draws a seed from the system, makes the recordings in BUILD/proof and seals the answers. How the program judges may still be
+           changed; nobody may look into the sealed file for it
   publish  docs/proof/BATCH: manifest, hashes of the recordings, the answers and the seed in one sealed file, the commit that is put to the
            test. Commit it: nothing is diagnosed before
   diagnose the sets, with a program that is that commit's in all that decides a verdict
@@ -136,9 +137,11 @@ def hidden_in(challenge):
     """[(what is hidden, of how many sets)] of a challenge, which has one line for each kind of sets."""
     out = []
     for line in challenge.read_text().splitlines():
-        found = re.match(r"  - \{kind: (\w+)(.*)\}", line)
-        if not found:
+        if not line.startswith("  - "):
             continue
+        found = re.fullmatch(r"  - \{kind: (none|effect|two|outside|decoy)\b(.*)\}", line)
+        if not found:
+            raise Failure("%s: '%s' is not '  - {kind: …, …}' in one line" % (challenge, line))
         kind, rest = found.groups()
         names = re.search(r"hypothes[ie]s: (\[[^\]]*\]|\w+)", rest) or re.search(r"name: (\w+)", rest)
         what = {"none": "nothing", "effect": "", "two": "two: ", "outside": "outside the list: ", "decoy": "decoy: "}[kind]
@@ -193,7 +196,7 @@ class Batch:
             secret.unlink()
 
     def seal(self, seed):
-        """Answers and seed, compressed into one file."""
+        """Answers and seed, compressed into one file of WORK; beside it what was made."""
         data = io.BytesIO()
         with tarfile.open(fileobj=data, mode="w:xz") as tar:
             for answer in sorted((self.work / "answers").glob("set_*.json")):
@@ -201,41 +204,56 @@ class Batch:
             info = tarfile.TarInfo("seed.txt")
             info.size = len(str(seed))
             tar.addfile(info, io.BytesIO(str(seed).encode()))
-        return data.getvalue()
+        replace(self.work / "made.json", (json.dumps(self.recordings(), indent=1) + "\n").encode())
+        replace(self.work / "sealed.tar.xz", data.getvalue())
+        self.forget()
 
-    def made_by(self, commit):
-        """Whether this commit would make the recordings that are there: another one may have made them that differs in what judges alone."""
+    def makes_others(self, commit):
+        """What this commit would make other recordings from than those that are there; nothing: all that differs judges alone."""
         mark = self.work / "commit.txt"
         if not mark.exists():
-            return False
+            return None
         reads = {str(path.relative_to(ROOT)) for path in read_by(self.challenge.resolve()) if ROOT in path.parents}
         changed = git("diff", "--name-only", mark.read_text(), commit, "--", *DECIDES, *JUDGES)
-        return changed is not None and all(path.startswith("configs/") and path not in reads for path in changed.split())
+        if changed is None:
+            return "a commit that this clone lacks"
+        return next((path for path in changed.split() if not path.startswith("configs/") or path in reads), None)
 
-    def made(self):
-        """The commit that is put to the test and the seed of its recordings. What another program made is made again, from a new seed."""
+    def ensure_made(self):
+        """Recordings and sealed answers are in WORK. What another program made is made again, from a new seed. Returns the commit that is put
+        to the test."""
         commit = last_that_decides(self.challenge)
         self.check_program(commit)
-        if not self.made_by(commit):
+        changed = self.makes_others(commit)
+        if changed:
+            print("%s: made anew, for its recordings were made with another %s" % (self.name, changed))
+            shutil.rmtree(self.work)
+        if not (self.work / "commit.txt").exists():
             shutil.rmtree(self.work, ignore_errors=True)
             replace(self.work / "seed.txt", str(secrets.randbelow(9 * 10**15)).encode())
             replace(self.work / "commit.txt", commit.encode())
-        seed = int((self.work / "seed.txt").read_text())
-        if not (self.work / "manifest.json").exists():
-            self.make(seed)
-        return commit, seed
+        if not (self.work / "sealed.tar.xz").exists():
+            seed = int((self.work / "seed.txt").read_text())
+            if not (self.work / "manifest.json").exists():
+                self.make(seed)
+            self.seal(seed)
+        return commit
 
     def publish(self):
-        commit, seed = self.made()
+        commit = self.ensure_made()
+        made = json.loads((self.work / "made.json").read_text())
+        if self.recordings() != made:
+            raise Failure("%s: its recordings are not those that were made; remove %s" % (self.name, self.work))
+        if any(self.work.glob("set_*/diagnosis")):
+            raise Failure("%s: was diagnosed before it was published; remove %s" % (self.name, self.work))
         new = self.public.with_name(self.name + ".new")
         shutil.rmtree(new, ignore_errors=True)
         new.mkdir(parents=True)
         shutil.copy(self.work / "manifest.json", new)
-        (new / "sealed.tar.xz").write_bytes(self.seal(seed))
-        frozen = {"commit": commit, "challenge": self.challenge.name, "recordings_sha256": self.recordings()}
+        shutil.copy(self.work / "sealed.tar.xz", new)
+        frozen = {"commit": commit, "made_by": (self.work / "commit.txt").read_text(), "challenge": self.challenge.name, "recordings_sha256": made}
         (new / "frozen.json").write_text(json.dumps(frozen, indent=1) + "\n")
         os.replace(new, self.public)
-        self.forget()
         print("%s: published in %s, for commit %s; sha256 of its manifest: %s" %
               (self.name, self.public.relative_to(ROOT), commit[:12], sha256(self.public / "manifest.json")))
 
@@ -345,7 +363,10 @@ def main():
     asked = [b for b, part in batches if not arguments.part or part in arguments.part or b.name in arguments.part]
     for batch in asked:
         if not batch.public.exists():
-            batch.made() if arguments.until == "make" else batch.publish()
+            if arguments.until == "make":
+                batch.ensure_made()
+            else:
+                batch.publish()
     for batch in asked if arguments.until not in ("make", "publish") else []:
         if not batch.complete():
             batch.diagnose()

@@ -103,18 +103,32 @@ class Proof(unittest.TestCase):
 
     def test_what_judges_may_change_between_making_and_publishing_and_nothing_else(self):
         mark = self.root / "build/release/proof/part_1/commit.txt"
-        for folder, kept in (("studies/diagnose/naming", True), ("studies/diagnose/question", False), ("studies/calibrate", False)):
+        changes = (("studies/diagnose/naming/b.cpp", True), ("studies/diagnose/question/b.cpp", False), ("studies/calibrate/b.cpp", False),
+                   ("configs/proof/part.yaml", False), ("configs/other.yaml", True))
+        for path, kept in changes:
             self.assertEqual(self.proof("part_1", "--until", "make"), (0, ""))
             self.assertFalse(self.public("").exists())
+            self.assertFalse((mark.parent / "answers").exists() or (mark.parent / "seed.txt").exists())
             first = mark.read_text()
-            (self.root / folder).mkdir(parents=True, exist_ok=True)
-            (self.root / folder / "b.cpp").write_text("int b;\n")
+            file = self.root / path
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text((file.read_text() if file.exists() else "") + "\n")
             self.commit()
             self.assertEqual(self.proof("part_1", "--until", "publish"), (0, ""))
-            self.assertEqual(mark.read_text() == first, kept, folder)
-            self.assertEqual(json.loads(self.public("frozen.json").read_text())["commit"] == first, False, folder)
+            (self.assertEqual if kept else self.assertNotEqual)(mark.read_text(), first, path)
+            self.assertEqual(json.loads(self.public("frozen.json").read_text())["made_by"], mark.read_text())
             shutil.rmtree(self.public("").parent)
             shutil.rmtree(self.root / "build/release/proof")
+
+    def test_what_was_diagnosed_or_changed_before_it_was_published_is_refused(self):
+        self.proof("part_1", "--until", "make")
+        recorded = self.root / "build/release/proof/part_1/set_001"
+        (recorded / "diagnosis").mkdir()
+        self.assertIn("diagnosed before it was published", self.proof("part_1")[1])
+        (recorded / "diagnosis").rmdir()
+        (recorded / "r.a").write_text("other")
+        self.assertIn("not those that were made", self.proof("part_1")[1])
+        self.assertFalse(self.public("").exists())
 
     def test_a_batch_is_published_diagnosed_opened_and_scored_in_this_order(self):
         self.assertEqual(self.proof("part_1", "--until", "publish"), (0, ""))
@@ -227,6 +241,12 @@ class Proof(unittest.TestCase):
         done = subprocess.run([sys.executable, str(self.root / "tools/proof.py"), "--plan"], capture_output=True, text=True)
         self.assertEqual(done.stdout.splitlines()[2:], ["| nothing | 14 | 14 |", "| a | 2 | 2 |", "| decoy: clock | 4 | 4 |", "| two: a + b | 2 | 2 |"])
         self.assertFalse((self.root / "docs/proof").exists())
+        (self.root / "configs/proof/part.yaml").write_text("sets:\n  - kind: none\n")
+        self.assertIn("'  - kind: none' is not", self.proof("--plan")[1])
+
+    def test_the_docs_show_the_plan(self):
+        done = subprocess.run([sys.executable, str(SOURCE / "tools/proof.py"), "--plan"], capture_output=True, text=True, check=True)
+        self.assertIn(done.stdout, (SOURCE / "docs/challenge.md").read_text())
 
     def test_what_is_no_part_is_refused(self):
         code, said = self.proof("prat")

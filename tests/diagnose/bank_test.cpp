@@ -57,6 +57,10 @@ TEST_CASE("all runs of a bank differ, each has a seed of its own") {
   const Question q = question_of(folder, kSections + "bank: {base: 24, each: 10}\n");
   const std::vector<BankPoint> points = plan_bank(q);
   CHECK(points.size() == 24 + 12 + 3 * 10);
+  for (const int base : {8, 16, 20}) {
+    const std::vector<BankPoint> again = plan_again(question_of(folder, kSections + fmt::format("bank: {{base: {}, each: 10}}\n", base)));
+    CHECK(std::ssize(again) == std::max(8, base / 2));
+  }
   std::set<std::vector<std::string>> different;
   std::set<std::string> labels, parameters;
   for (const BankPoint& p : points) {

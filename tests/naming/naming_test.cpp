@@ -271,6 +271,18 @@ TEST_CASE("runs as chancy as the recording make tests cautious unless some are r
   }
 }
 
+TEST_CASE("the level is kept where half of the runs without a candidate are repeated, whatever the surface cannot follow") {
+  MadeUp mill;
+  mill.runs = 48, mill.each = 16, mill.again = 24, mill.run_noise = 1;
+  for (const double cubic : {0.0, 0.5, 2.0}) {
+    mill.cubic = cubic;
+    const Nothing n = nothing_missing(mill, 10077);
+    CAPTURE(cubic, n.alarms, n.below_half);
+    check_level(n);
+    CHECK(n.below_half >= 12);
+  }
+}
+
 TEST_CASE("a small bank of runs chancier than the recording keeps the level, faint effects among its candidates") {
   MadeUp mill;
   mill.runs = 32, mill.each = 8, mill.again = 8, mill.run_noise = 1.6;

@@ -174,8 +174,7 @@ std::vector<BankPoint> plan_group(const Question& question, const Group& of, int
 }
 
 std::vector<BankPoint> plan_again(const Question& question) {
-  const int base = question.bank.base;
-  std::vector<BankPoint> points = plan_group(question, {}, std::min(base, std::max(kLeastAgain, base / 2)));
+  std::vector<BankPoint> points = plan_group(question, {}, std::max(kLeastAgain, question.bank.base / 2));
   for (BankPoint& p : points) p.group = "again";
   return points;
 }

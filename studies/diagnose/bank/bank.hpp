@@ -38,7 +38,7 @@ std::vector<Index> varied_apart(const Question& question);
 /// Sobol' points over the ranges; what is simulated of a group does not depend on the other groups, on how many are asked for, nor on the
 /// camera's nuisances, so that a bank grows without losing a run. One-sided strengths lie in 0.1 … 1.
 std::vector<BankPoint> plan_group(const Question& question, const Group& group, int count);
-/// The first without a candidate, each once more with another seed: what runs differ by alone, Surrogate::chance().
+/// The first half without a candidate, eight at least, each once more with another seed: what runs differ by alone, Surrogate::chance().
 std::vector<BankPoint> plan_again(const Question& question);
 /// What tells which candidates cannot matter: all without a candidate, the first with every candidate alone.
 std::vector<BankPoint> plan_screening(const Question& question);
