@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "kernel/base/random.hpp"
+#include "studies/campaign/campaign.hpp"
 #include "studies/challenge/plan.hpp"
-#include "studies/diagnose/bank/bank.hpp"
 
 namespace millscope::challenge {
 

@@ -244,6 +244,12 @@ class Proof(unittest.TestCase):
         (self.root / "configs/proof/part.yaml").write_text("sets:\n  - kind: none\n")
         self.assertIn("'  - kind: none' is not", self.proof("--plan")[1])
 
+    def test_no_file_that_makes_recordings_includes_what_judges(self):
+        for name in ("make", "record", "draw", "plan"):
+            for file in (SOURCE / "studies/challenge").glob(name + ".?pp"):
+                for room in ("naming", "bank", "verdict", "pages"):
+                    self.assertNotIn("studies/diagnose/" + room, file.read_text(), file)
+
     def test_the_docs_show_the_plan(self):
         done = subprocess.run([sys.executable, str(SOURCE / "tools/proof.py"), "--plan"], capture_output=True, text=True, check=True)
         self.assertIn(done.stdout, (SOURCE / "docs/challenge.md").read_text())
