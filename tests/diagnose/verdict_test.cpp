@@ -273,7 +273,7 @@ TEST_CASE("candidates that cannot matter get their first simulations alone") {
   calibrate::Machinery machinery = mill.machinery();
   machinery.progress = [&](const std::string& line) { said.push_back(line); };
   const Diagnosis d = diagnose::diagnose(q, machinery, mill.evidence(), quick());
-  CHECK(d.bank.points.size() == 24 + 8 + 10 + 10 + 4);
+  CHECK(d.bank.points.size() == 24 + 12 + 10 + 10 + 4);
   CHECK(std::any_of(said.begin(), said.end(), [](const std::string& s) {
     return s.rfind("lifter_wear: at its strongest", 0) == 0 && s.find("cannot matter here") != std::string::npos;
   }));
@@ -305,33 +305,26 @@ TEST_CASE("a camera that stands aside is named, and no physics") {
 
 TEST_CASE("a mill that is stiffer than the fitted one is no missing physics where that is a nuisance, and its friction is covered") {
   const Scratch folder;
-  const auto diagnosed_with = [&](const std::string& nuisances) {
-    const Question q =
-        question_of(folder, nuisances + "hypotheses: {rolling_resistance: {}, lifter_wear: {}}\nbank: {base: 24, each: 10}\n");
-    MadeUpMill mill(q, usual(), {kTheta[0], kTheta[1], "stiffness_factor=0.008"}, 0.4);
-    if (q.nuisances.empty()) {  // the formula needs what the study does not doubt
-      const Question doubted = question_of(
-          folder,
-          "nuisances: {stiffness_factor: {range: [0.001, 0.01], mean: 0.004, sigma: 0.004, apart: true}}\nhypotheses: {lifter_wear: {}}\n");
-      mill = MadeUpMill(doubted, usual(), {kTheta[0], kTheta[1], "stiffness_factor=0.008"}, 0.4);
-    }
-    return found(q, mill);
-  };
-  const Diagnosis taken_for_granted = diagnosed_with("");
-  INFO(taken_for_granted.sentence);
-  CHECK(taken_for_granted.verdict != Verdict::no_mismatch);
-  const Diagnosis doubted =
-      diagnosed_with("nuisances: {stiffness_factor: {range: [0.001, 0.01], mean: 0.004, sigma: 0.004, name: stiffness, apart: true}}\n");
-  INFO(doubted.sentence);
-  CHECK(doubted.verdict == Verdict::no_mismatch);
+  const std::string others = "hypotheses: {rolling_resistance: {}, lifter_wear: {}}\nbank: {base: 24, each: 10}\n";
+  const Question certain = question_of(folder, others),
+                 doubted = question_of(
+                     folder, "nuisances: {stiffness_factor: {range: [0.001, 0.01], mean: 0.004, sigma: 0.004, apart: true}}\n" + others);
+  constexpr int kRecordings = 10;
   const std::vector<double> truth{0.3, 0.4, 0.008};
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    INFO(doubted.problem.data.theta[i].name);
-    CHECK(doubted.naming.base_theta[i].low < truth[i]);
-    CHECK(doubted.naming.base_theta[i].high > truth[i]);
+  std::vector<int> held(truth.size());
+  int alarms = 0;
+  for (std::uint64_t seed = 0; seed < kRecordings; ++seed) {
+    MadeUpMill mill(doubted, usual(), {kTheta[0], kTheta[1], "stiffness_factor=0.008"}, 0.4);  // the formula needs what a study doubts
+    mill.seed = seed;
+    if (seed == 0) CHECK(found(certain, mill).verdict != Verdict::no_mismatch);
+    const Diagnosis d = found(doubted, mill);
+    alarms += d.verdict != Verdict::no_mismatch ? 1 : 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) held[i] += d.naming.base_theta[i].holds(truth[i]) ? 1 : 0;
+    // The practice retunes friction alone: its mill is as soft as it was.
+    for (const Score& s : d.held_out.front().scores) CHECK(s.prediction.failure.empty());
   }
-  // The practice retunes friction alone: its mill is as soft as it was.
-  for (const Score& s : doubted.held_out.front().scores) CHECK(s.prediction.failure.empty());
+  CHECK(alarms <= 2);                              // of ten at 5 %: more by chance once in 90
+  for (const int count : held) CHECK(count >= 6);  // of ten at 90 %: fewer by chance once in 600
 }
 
 TEST_CASE("draws that cannot resolve the study's level are refused before anything is simulated") {

@@ -82,7 +82,7 @@ TEST_CASE("each end is given once, within group and condition, and four of a gro
     CHECK(run.simulation.donor->label.starts_with(run.group + "_"));
     CHECK(run.simulation.donor->label.ends_with("_" + q.study.conditions[run.condition].name));
   }
-  CHECK(warm == 3 * (20 + 4 + 2 * 6));
+  CHECK(warm == 3 * (20 + 8 + 2 * 6));
   CHECK(at_rest[{"base", 0}] == 4);
   CHECK(at_rest[{"again", 0}] == 4);
   CHECK(at_rest[{"stiffness_factor", 2}] == 24);  // another stiffness each
