@@ -16,6 +16,7 @@ changed.
 """
 
 import argparse
+import collections
 import hashlib
 import io
 import json
@@ -64,9 +65,9 @@ def read_by(file, known=None):
     return known
 
 
-def changed_since(commit, until=None):
-    """Paths that decide verdicts and are not as in a commit: in the working tree, or in another commit."""
-    differ = git("diff", "--name-only", commit, *([until] if until else []), "--", *DECIDES)
+def changed_since(commit, until=None, besides=()):
+    """Paths that decide verdicts and are not as in a commit: in the working tree, or in another commit. Without those of `besides`."""
+    differ = git("diff", "--name-only", commit, *([until] if until else []), "--", *DECIDES, *besides)
     if differ is None:
         raise Failure("commit %s is not in this clone; fetch it" % commit)
     return differ.split() + ([] if until else [line[3:] for line in (git("status", "--porcelain", "--", *DECIDES) or "").splitlines()])
@@ -152,10 +153,10 @@ def hidden_in(challenge):
 
 def show_plan(plan):
     """A table of what is hidden, part by part: sets of all batches."""
-    parts = list(dict.fromkeys((part, challenge) for _, part, challenge in plan))
-    batches = {part: sum(of == part for _, of, _ in plan) for part, _ in parts}
+    challenges = {part: challenge for _, part, challenge in plan}
+    batches = collections.Counter(part for _, part, _ in plan)
     counts = {}
-    for part, challenge in parts:
+    for part, challenge in challenges.items():
         for what, count in hidden_in(challenge):
             row = counts.setdefault(what, dict.fromkeys(batches, 0))
             row[part] += count * batches[part]
@@ -213,11 +214,11 @@ class Batch:
         mark = self.work / "commit.txt"
         if not mark.exists():
             return None
-        reads = {str(path.relative_to(ROOT)) for path in read_by(self.challenge.resolve()) if ROOT in path.parents}
-        changed = git("diff", "--name-only", mark.read_text(), commit, "--", *DECIDES, *JUDGES)
-        if changed is None:
+        try:
+            changed = self.counting(changed_since(mark.read_text(), commit, JUDGES))
+        except Failure:
             return "a commit that this clone lacks"
-        return next((path for path in changed.split() if not path.startswith("configs/") or path in reads), None)
+        return "another " + changed[0] if changed else None
 
     def ensure_made(self):
         """Recordings and sealed answers are in WORK. What another program made is made again, from a new seed. Returns the commit that is put
@@ -226,9 +227,8 @@ class Batch:
         self.check_program(commit)
         changed = self.makes_others(commit)
         if changed:
-            print("%s: made anew, for its recordings were made with another %s" % (self.name, changed))
-            shutil.rmtree(self.work)
-        if not (self.work / "commit.txt").exists():
+            print("%s: made anew, for its recordings were made with %s" % (self.name, changed))
+        if changed or not (self.work / "commit.txt").exists():
             shutil.rmtree(self.work, ignore_errors=True)
             replace(self.work / "seed.txt", str(secrets.randbelow(9 * 10**15)).encode())
             replace(self.work / "commit.txt", commit.encode())
@@ -262,9 +262,13 @@ class Batch:
         shutil.rmtree(self.work / "answers")
         (self.work / "seed.txt").unlink(missing_ok=True)
 
-    def check_program(self, commit):
+    def counting(self, paths):
+        """Without cases and challenges that this batch does not read."""
         reads = {str(path.relative_to(ROOT)) for path in read_by(self.challenge.resolve()) if ROOT in path.parents}
-        changed = [path for path in changed_since(commit) if not path.startswith("configs/") or path in reads]  # other batches' are free
+        return [path for path in paths if not path.startswith("configs/") or path in reads]
+
+    def check_program(self, commit):
+        changed = self.counting(changed_since(commit))
         changed += [path for path in changed_since(commit, built_from(self.binary)) if not path.startswith("configs/")]  # read, not built
         if changed:
             raise Failure("%s is for commit %s, and %s differs since; use a clone and a build of that commit, or make fresh sets" %

@@ -106,6 +106,8 @@ class Namer {
  private:
   Index count() const { return std::ssize(p_.alternatives); }
   bool tested(Index j) const { return out_.judged[j].tested; }
+  /// Too small to be seen, from its squared length in noise units.
+  bool unseen(double lambda) const { return std::sqrt(lambda) < o_.noise_units; }
   void say(const std::string& line) const {
     if (o_.say) o_.say(line);
   }
@@ -153,7 +155,7 @@ class Namer {
     judged.tested = !alternative.candidate || (judged.runs > 0 && !alternative.screened_out);
     judged.lambda = seen.lambda(), judged.kappa = seen.kappa(), judged.lambda_found = seen.at(found);
     judged.lambda_curve = seen.curve();
-    judged.undetectable = alternative.screened_out || std::sqrt(judged.lambda) < o_.noise_units;
+    judged.undetectable = alternative.screened_out || unseen(judged.lambda);
     judged.strength = without_interval(found);
     for (Index i = 0; i < judged.fit.coded.size(); ++i)
       judged.theta.push_back(without_interval(p_.data.theta[i].natural(judged.fit.coded[i])));
@@ -239,7 +241,7 @@ class Namer {
       const Visibility beside(p_, pseudo_.surrogate(), pseudo_.weighting(), {alone.coded, active_of(p_.alternatives[first], alone)}, k);
       out_.judged[k].lambda_beside = beside.lambda();
       // What cannot be seen beside the first at its strongest is not what is seen: a few runs make slopes by chance, which fit some rest.
-      if (p_.alternatives[k].candidate && beside.lambda() < o_.noise_units * o_.noise_units) continue;
+      if (p_.alternatives[k].candidate && unseen(beside.lambda())) continue;
       others.push_back(k);
       choices.push_back({first, k});
     }
