@@ -138,6 +138,44 @@ TEST_CASE("two candidates that have runs together are more than their sum, and l
   CHECK_FALSE(Features(alone.data).product(0, 2));
 }
 
+TEST_CASE("an effect that begins slowly gets a higher degree, and a faint one its true strength") {
+  MadeUp mill;
+  mill.each = 16, mill.weakest = 0.1, mill.slow = true;
+  double mean = 0, square = 0;
+  constexpr int kMills = 20;
+  for (std::uint64_t seed = 1; seed <= kMills; ++seed) {
+    Problem p = made_up_problem(mill, point(0.2, -0.3, 0), {0, 0, 0}, seed);
+    p.observed = truth_of(mill, point(0.2, -0.3, 0), {0.2, 0, 0});
+    const auto strength = [&p] {
+      const Surrogate s(p.data);
+      const Weighting w(p.covariance, s);
+      return Model(p.data, s, w, {{0}, std::vector<StrengthRange>(3)}).fit(p.observed).strengths[0];
+    };
+    square += strength() / kMills;
+    choose_terms(p.data, p.covariance);
+    CHECK(p.data.degree[0] > 2);
+    mean += strength() / kMills;
+  }
+  CHECK_THAT(mean, WithinAbs(0.2, 0.02));
+  CHECK(std::fabs(square - 0.2) > 0.05);  // without it
+}
+
+TEST_CASE("an effect that grows as its strength rarely gets a higher degree, few runs never") {
+  MadeUp mill;
+  mill.each = 16, mill.weakest = 0.1;
+  int higher = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Problem p = made_up_problem(mill, point(0.2, -0.3, 0), {0, 0, 0}, seed);
+    choose_terms(p.data, p.covariance);
+    higher += p.data.degree[0] > 2 ? 1 : 0;
+  }
+  CHECK(higher <= 4);
+  mill.slow = true, mill.each = 11;
+  Problem p = made_up_problem(mill, point(0.2, -0.3, 0), {0, 0, 0}, 1);
+  choose_terms(p.data, p.covariance);
+  CHECK(p.data.degree[0] == 2);
+}
+
 TEST_CASE("too few runs to leave one out tell nothing") {
   Problem p = made_up_problem({}, point(0, 0, 0), {0, 0, 0}, 1);
   std::erase_if(p.data.rows, [](const BankRow& row) { return !row.active.empty(); });
@@ -207,7 +245,9 @@ TEST_CASE("a fit's Q is the misfit as it is written, and nowhere within the limi
   mill.runs = 48, mill.each = 24;
   base::RandomStream random(5, 0);
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const Problem p = made_up_problem(mill, point(0.3, -0.2, 0), {0.6, 0, 0}, seed);
+    mill.slow = seed == 5;
+    Problem p = made_up_problem(mill, point(0.3, -0.2, 0), {0.6, 0, 0}, seed);
+    if (mill.slow) p.data.degree = {4, 3, 2};
     const Surrogate s(p.data);
     const Weighting w(p.covariance, s);
     for (const std::vector<Index>& on : {std::vector<Index>{}, {0}, {0, 1}, {1, 2}}) {

@@ -55,6 +55,7 @@ bool repeats(const BankRow& a, const BankRow& b);
 struct BankData {
   std::vector<Coordinate> theta;
   Index candidates = 0;
+  std::vector<int> degree = {};  ///< of the surrogate in each candidate's strength, 2 to 4; empty: 2 for all
   std::vector<BankRow> rows;
   MatrixXd value;                          ///< rows × observables
   std::vector<Index> condition;            ///< under which each observable was seen; a label

@@ -77,7 +77,10 @@ void Model::list_products() {
   std::vector<Index> place(features.factors(), -1);  // strengths that are not on have none
   place[0] = 0;
   for (Index i = 0; i < theta_; ++i) place[features.factor_of_coordinate(i)] = 1 + i;
-  for (Index k = 0; k < std::ssize(active_); ++k) place[features.factor_of_strength(active_[k])] = 1 + theta_ + k;
+  for (Index k = 0; k < std::ssize(active_); ++k) {
+    place[features.factor_of_strength(active_[k])] = 1 + theta_ + k;
+    place[features.factor_of_square(active_[k])] = 1 + theta_ + std::ssize(active_) + k;
+  }
   for (const Index column : columns_) {
     const Product& p = features.of_column(column);
     products_.push_back({place[p.one], place[p.other]});
@@ -156,17 +159,18 @@ struct Model::Work {
   MatrixXd jacobian, normal, damped;
   Eigen::LDLT<MatrixXd> damped_factor;
 
-  /// Factors of t: 1 before it.
-  void at(const VectorXd& t) {
-    factor.resize(1 + t.size());
+  /// Factors of t: 1 before it, the strengths' squares after it.
+  void at(const VectorXd& t, Index strengths) {
+    factor.resize(1 + t.size() + strengths);
     factor[0] = 1;
-    factor.tail(t.size()) = t;
+    factor.segment(1, t.size()) = t;
+    factor.tail(strengths) = t.tail(strengths).cwiseAbs2();
   }
 };
 
 void Model::residual(const VectorXd& t, Work& work, VectorXd& out) const {
   const Index fitted = r_.rows();
-  work.at(t);
+  work.at(t, std::ssize(active_));
   work.feature.resize(r_.cols());
   for (Index k = 0; k < r_.cols(); ++k) work.feature[k] = work.factor[products_[k].one] * work.factor[products_[k].other];
   out.resize(fitted + theta_);
@@ -177,12 +181,17 @@ void Model::residual(const VectorXd& t, Work& work, VectorXd& out) const {
 
 void Model::jacobian(const VectorXd& t, Work& work) const {
   const Index fitted = r_.rows();
-  work.at(t);
+  work.at(t, std::ssize(active_));
   work.jacobian.setZero(fitted + theta_, t.size());
+  const auto add = [&](Index factor, double rest, Index column) {
+    if (factor == 0) return;
+    const bool square = factor > t.size();
+    const Index of = square ? factor - std::ssize(active_) : factor;
+    work.jacobian.col(of - 1).head(fitted) += (square ? 2 * work.factor[of] : 1) * rest * r_.col(column);
+  };
   for (Index k = 0; k < r_.cols(); ++k) {
     const auto [one, other] = products_[k];
-    if (one > 0) work.jacobian.col(one - 1).head(fitted) += work.factor[other] * r_.col(k);
-    if (other > 0) work.jacobian.col(other - 1).head(fitted) += work.factor[one] * r_.col(k);
+    add(one, work.factor[other], k), add(other, work.factor[one], k);
   }
   for (Index i = 0; i < theta_; ++i) work.jacobian(fitted + i, i) = weight_[i];
 }

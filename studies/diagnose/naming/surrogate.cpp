@@ -11,13 +11,16 @@
 #include <utility>
 
 #include "kernel/base/error.hpp"
+#include "studies/diagnose/naming/fit.hpp"
 
 namespace millscope::naming {
 namespace {
 
-constexpr std::size_t kForSquare = 3;      // different strengths
-constexpr std::size_t kRunsForSquare = 6;  // fewer leave the far end of the range open
-constexpr std::size_t kSpare = 2;          // runs beyond the coefficients of a candidate's block
+constexpr std::size_t kForSquare = 3;             // different strengths
+constexpr std::size_t kRunsForSquare = 6;         // fewer leave the far end of the range open
+constexpr int kLeastDegree = 2, kMostDegree = 4;  // in a strength: some effects begin slowly, rise, and flatten
+constexpr std::size_t kRunsForDegree = 4;         // for each degree, above the least
+constexpr std::size_t kSpare = 2;                 // runs beyond the coefficients of a candidate's block
 constexpr double kMostLeverage = 0.95;
 constexpr double kColumnRounding = 1e-11;  // of a column's norm
 constexpr double kLeastFreedom = 1;        // runs beyond the coefficients that they decide
@@ -172,9 +175,12 @@ void Features::add_candidate(const BankData& data, Index candidate) {
   }
   if (alone >= 1 + (square ? 1 : 0) + parameters.size() + kSpare) multiply.insert(multiply.end(), parameters.begin(), parameters.end());
   first_.push_back(size());
-  const Index strength = factor_of_strength(candidate);
+  const Index strength = factor_of_strength(candidate), squared = factor_of_square(candidate);
+  const int degree = square && !data.degree.empty() ? data.degree[candidate] : kLeastDegree;
   if (runs > 0) products_.push_back({0, strength});
   if (square) products_.push_back({strength, strength});
+  if (degree >= 3) products_.push_back({strength, squared});
+  if (degree >= 4) products_.push_back({squared, squared});
   for (const Index i : multiply) products_.push_back({strength, factor_of_coordinate(i)});
   count_.push_back(size() - first_.back());
 }
@@ -214,7 +220,10 @@ VectorXd Features::all(const VectorXd& u, const std::vector<ActiveCandidate>& ac
   VectorXd factor = VectorXd::Zero(factors()), x(size());
   factor[0] = 1;
   factor.segment(factor_of_coordinate(0), coordinates_) = u;
-  for (const ActiveCandidate& e : active) factor[factor_of_strength(e.candidate)] = e.strength;
+  for (const ActiveCandidate& e : active) {
+    factor[factor_of_strength(e.candidate)] = e.strength;
+    factor[factor_of_square(e.candidate)] = e.strength * e.strength;
+  }
   for (Index k = 0; k < x.size(); ++k) x[k] = factor[products_[k].one] * factor[products_[k].other];
   return x;
 }
@@ -292,19 +301,45 @@ double Surrogate::leverage_of(const VectorXd& coded, const std::vector<ActiveCan
   return x.dot(coefficient_error_ * x);
 }
 
-void choose_scales(BankData& data) {
-  const auto press = [&] {
-    const Surrogate s(data);
-    const MatrixXd centred = data.value.rowwise() - data.value.colwise().mean();
-    double sum = 0;
-    for (Index i = 0; i < centred.cols(); ++i) sum += s.left_out().col(i).squaredNorm() / std::max(1e-300, centred.col(i).squaredNorm());
-    return sum;
+namespace {
+
+/// In a candidate's strength, as its runs with all else as usual allow.
+int highest_degree(const BankData& data, Index candidate) {
+  std::set<double> strengths;
+  std::size_t alone = 0;
+  for (const BankRow& row : data.rows) {
+    if (row.candidate() != candidate || row.active.size() != 1 || !data.usual(row)) continue;
+    strengths.insert(row.active[0].strength), ++alone;
+  }
+  return std::clamp(static_cast<int>(std::min(strengths.size() - 1, alone / kRunsForDegree)), kLeastDegree, kMostDegree);
+}
+
+}  // namespace
+
+void choose_terms(BankData& data, const MatrixXd& recording) {
+  data.degree.assign(data.candidates, kLeastDegree);
+  const Surrogate plain(data);
+  const MatrixXd white = whitener(recording + plain.residual_covariance(recording)), seen = white.transpose() * plain.span(white);
+  const auto press = [&] { return (Surrogate(data).left_out() * seen).squaredNorm(); };
+  double least = press();
+  const auto better = [&] {
+    const double now = press();
+    if (now >= least) return false;
+    least = now;
+    return true;
   };
   for (Coordinate& c : data.theta) {
     if (c.nuisance() || !(c.low > 0) || c.high < kWideRange * c.low) continue;
-    const double plain = press();
     c.logarithmic = true;
-    if (press() > plain) c.logarithmic = false;
+    c.logarithmic = better();
+  }
+  for (Index j = 0; j < data.candidates; ++j) {
+    int best = kLeastDegree;
+    for (int degree = best + 1; degree <= highest_degree(data, j); ++degree) {
+      data.degree[j] = degree;
+      if (better()) best = degree;
+    }
+    data.degree[j] = best;
   }
 }
 

@@ -1,8 +1,8 @@
-// One emulator for the whole bank: quadratic in θ; for each candidate linear and square in its strength, and its product with the fitted
-// parameters and with the nuisances that are varied apart; for two candidates that have runs together the product of their strengths. All
-// observables share the runs, so that one factorisation serves them all.
+// One emulator for the whole bank: quadratic in θ; for each candidate quadratic in its strength or, where that serves better, cubic or
+// quartic, and linear in its products with the fitted parameters and with the nuisances that are varied apart; for two candidates that have
+// runs together the product of their strengths. All observables share the runs, so that one factorisation serves them all.
 //
-//   m(u, s) = b₀ + Σ b_i u_i + Σ b_ij u_i u_j + Σ_j (c_j s_j + d_j s_j² + Σ_i e_ji s_j u_i) + Σ f_jk s_j s_k,  u: coded θ, s: strengths
+//   m(u, s) = b₀ + Σ b_i u_i + Σ b_ij u_i u_j + Σ_j (c_j s_j + d_j s_j² + … + Σ_i e_ji s_j u_i) + Σ f_jk s_j s_k,  u: coded θ, s: strengths
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@
 
 namespace millscope::naming {
 
-/// A feature: the product of two factors, which are counted 1, coordinates, strengths of all candidates.
+/// A feature: the product of two factors, which are counted 1, coordinates, strengths of all candidates, squares of these.
 struct Product {
   Index one = 0, other = 0;
 };
@@ -32,9 +32,10 @@ class Features {
   Index first(Index candidate) const { return first_[candidate]; }
   Index count(Index candidate) const { return count_[candidate]; }
   const Product& of_column(Index column) const { return products_[column]; }
-  Index factors() const { return 1 + coordinates_ + candidates_; }
+  Index factors() const { return 1 + coordinates_ + 2 * candidates_; }
   Index factor_of_coordinate(Index i) const { return 1 + i; }
   Index factor_of_strength(Index candidate) const { return 1 + coordinates_ + candidate; }
+  Index factor_of_square(Index candidate) const { return 1 + coordinates_ + candidates_ + candidate; }
   VectorXd all(const VectorXd& coded, const std::vector<ActiveCandidate>& active) const;
   /// Column of the product of two candidates' strengths; nothing: too few runs have both.
   std::optional<Index> product(Index a, Index b) const;
@@ -85,6 +86,8 @@ class Surrogate {
   /// (pure error; Montgomery 2013, ch. 10). The low end of its 90 % interval, over all observables or in the span of what coordinates
   /// and candidates do, whichever is lower: what a surface cannot follow there would pass for a candidate. 0: no run is repeated.
   double chance(const MatrixXd& recording) const;
+  /// Orthonormal: what every coordinate, every candidate, and every two that were simulated together do, in units of a whitener.
+  MatrixXd span(const MatrixXd& whitener) const;
   /// Covariance of the surrogate's error, (1 − ρ + h̄) S with the mean leverage h̄ of the runs without a candidate.
   MatrixXd error_covariance(const MatrixXd& recording) const;
   /// The same of one prediction, ((1 − ρ) e + h) S with its own leverage h and the scatter e of runs with what is active.
@@ -93,8 +96,6 @@ class Surrogate {
  private:
   Features features_;
   void keep_scatter(const std::vector<std::vector<Index>>& points, const MatrixXd& y, const VectorXd& scatter);
-  MatrixXd first_order() const;
-
   MatrixXd coefficients_, coefficient_error_, residual_, left_out_;
   std::vector<double> scatter_with_;  ///< of groups
   MatrixXd scatter_;                  ///< [points, observables], as of runs without a candidate
@@ -107,8 +108,9 @@ class Surrogate {
 /// either: [runs, observables]. The chance of single runs is in it. No rows where the others would be too few.
 MatrixXd left_out_deviations(const BankData& data, std::optional<Index> candidate);
 
-/// Chooses for every positive coordinate with a range of a factor of 2 or more whether its logarithm serves better: the smaller sum of
-/// squared left-out residuals over their spread.
-void choose_scales(BankData& data);
+/// Chooses for every positive coordinate with a range of a factor of 2 or more whether its logarithm serves better, and for every candidate
+/// with enough runs the degree in its strength: the smaller sum of squared left-out residuals in the span of what coordinates and
+/// candidates do, in noise units of the recording and of a run. There an error would pass for a candidate.
+void choose_terms(BankData& data, const MatrixXd& recording);
 
 }  // namespace millscope::naming

@@ -82,23 +82,18 @@ double Surrogate::chance(const MatrixXd& recording) const {
     const double degrees = static_cast<double>(degrees_repeated_) * trace * trace / all.squaredNorm();
     return p / trace / (1 + base::kNormal90 * std::sqrt(2 / degrees));
   };
-  const Index n = s.rows();
-  Eigen::ColPivHouseholderQR<MatrixXd> directions(w * first_order().transpose());
-  const MatrixXd span = directions.householderQ() * MatrixXd::Identity(n, directions.rank());
-  return std::min({1.0, low_end(MatrixXd::Identity(n, n)), low_end(span)});
+  return std::min({1.0, low_end(MatrixXd::Identity(s.rows(), s.rows())), low_end(span(w))});
 }
 
-/// What every coordinate, every candidate, and every two that were simulated together do to the observables.
-MatrixXd Surrogate::first_order() const {
+MatrixXd Surrogate::span(const MatrixXd& whitener) const {
   std::vector<Index> rows;
   for (Index i = 0; i < features_.coordinates(); ++i) rows.push_back(1 + i);
   for (Index j = 0; j < features_.candidates(); ++j) {
     if (features_.count(j) > 0) rows.push_back(features_.first(j));
   }
   for (const Index column : features_.product_columns()) rows.push_back(column);
-  MatrixXd out(rows.size(), coefficients_.cols());
-  for (std::size_t k = 0; k < rows.size(); ++k) out.row(k) = coefficients_.row(rows[k]);
-  return out;
+  Eigen::ColPivHouseholderQR<MatrixXd> directions(whitener * coefficients_(rows, Eigen::all).transpose());
+  return directions.householderQ() * MatrixXd::Identity(whitener.rows(), directions.rank());
 }
 
 MatrixXd Surrogate::error_covariance(const MatrixXd& recording) const {

@@ -117,7 +117,7 @@ naming::Problem problem_of(const Question& question, const Evidence& evidence, c
   p.data = data_of(question, bank, conditions);
   p.alternatives = alternatives_of(question);
   add_recorded(question, evidence, bank, conditions, p);
-  naming::choose_scales(p.data);
+  naming::choose_terms(p.data, p.covariance);
   return p;
 }
 
@@ -126,6 +126,7 @@ naming::Problem problem_alone(const Question& question, const Evidence& evidence
   naming::Problem p;
   p.data = data_of(question, bank, {condition});
   for (std::size_t i = 0; i < p.data.theta.size(); ++i) p.data.theta[i].logarithmic = like.theta[i].logarithmic;
+  p.data.degree = like.degree;
   add_recorded(question, evidence, bank, {condition}, p);
   return p;
 }
