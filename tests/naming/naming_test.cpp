@@ -166,10 +166,12 @@ TEST_CASE("where an effect is there its model is not rejected and its strength's
   mill.each = 16, mill.again = 8, mill.run_noise = 0.7;
   Options o = quick();
   constexpr int kMills = 40;
-  for (const double strength : {0.15, 0.8, 1.0}) {
+  for (const auto& [strength, whole] : {std::pair(0.15, 0.0), {0.8, 0.0}, {1.0, 0.0}, {0.15, 1.0}, {0.3, 1.0}}) {
+    mill.whole = whole, mill.weakest = whole > 0 ? 0.1 : 0.55;
     int inside = 0, rejected = 0;
     for (std::uint64_t seed = 1; seed <= kMills; ++seed) {
-      const Problem p = made_up_problem(mill, point(0.1, -0.2, 0.1), {strength, 0, 0}, 100 + seed);
+      Problem p = made_up_problem(mill, point(0.1, -0.2, 0.1), {strength, 0, 0}, 100 + seed);
+      choose_terms(p.data, p.covariance);
       const PseudoData pseudo(p, o);
       const FitResult fit = pseudo.fit({0});
       inside += pseudo.intervals({0}, fit, o.comparison_draws, 1).back().holds(strength) ? 1 : 0;
@@ -177,7 +179,7 @@ TEST_CASE("where an effect is there its model is not rejected and its strength's
       for (const auto& d : pseudo.draw(pseudo.truth({0}, fit), {{0}}, {o.comparison_draws, 2})) beyond += d.fit[0].q >= fit.q ? 1 : 0;
       rejected += beyond < 0.05 * o.comparison_draws ? 1 : 0;
     }
-    CAPTURE(strength, inside, rejected);
+    CAPTURE(strength, whole, inside, rejected);
     CHECK(inside >= 31);   // of 36 expected
     CHECK(rejected <= 6);  // of 2 expected
   }
@@ -275,7 +277,7 @@ TEST_CASE("runs as chancy as the recording make tests cautious unless some are r
 
 TEST_CASE("the level is kept where half of the runs without a candidate are repeated, whatever the surface cannot follow") {
   MadeUp mill;
-  mill.runs = 48, mill.each = 16, mill.again = 24, mill.run_noise = 1, mill.weakest = 0.1, mill.slow = true;
+  mill.runs = 48, mill.each = 16, mill.again = 24, mill.run_noise = 1, mill.weakest = 0.1, mill.whole = 1;
   for (const double cubic : {0.0, 0.5, 2.0}) {
     mill.cubic = cubic;
     const Nothing n = nothing_missing(mill, 10077);

@@ -101,7 +101,7 @@ class Model {
   bool corrected_ = false;
   std::vector<Index> active_;
   std::vector<Index> columns_;     ///< of all features those that are in use
-  std::vector<Product> products_;  ///< the same, their factors counted 1, θ, strengths of `active_`
+  std::vector<Product> products_;  ///< the same, their factors counted 1, θ, strengths of `active_`, squares of these
   bool exact_ = false;
   VectorXd low_, high_, prior_, weight_;  ///< of (u, s); weight 1/σ in coded units, 0: flat
   Index theta_ = 0;

@@ -122,10 +122,9 @@ double PseudoData::part_of(const LeftOut& left, const Truth& truth, double chanc
 }
 
 double PseudoData::reliability(const Truth& truth, const ActiveCandidate& candidate) const {
-  const double strength = std::copysign(std::max(kFaint, std::fabs(candidate.strength)), candidate.strength);
-  const std::vector<ActiveCandidate> some{{candidate.candidate, strength}};
-  const double square = (weighting_->whitener * (surrogate_->at(truth.coded, some) - surrogate_->at(truth.coded))).squaredNorm();
-  const double chance = weighting_->run_noise * surrogate_->leverage_of(truth.coded, some);
+  const std::vector<ActiveCandidate> whole{{candidate.candidate, std::copysign(1.0, candidate.strength)}};
+  const double square = (weighting_->whitener * (surrogate_->at(truth.coded, whole) - surrogate_->at(truth.coded))).squaredNorm();
+  const double chance = weighting_->run_noise * surrogate_->leverage_of(truth.coded, whole);
   return square > 0 ? std::max(0.0, 1 - chance / square) : 1;
 }
 

@@ -19,7 +19,8 @@ namespace {
 constexpr std::size_t kForSquare = 3;             // different strengths
 constexpr std::size_t kRunsForSquare = 6;         // fewer leave the far end of the range open
 constexpr int kLeastDegree = 2, kMostDegree = 4;  // in a strength: some effects begin slowly, rise, and flatten
-constexpr std::size_t kRunsForDegree = 4;         // for each degree, above the least
+constexpr std::size_t kRunsForDegree = 4;         // runs alone for each power, where there is a third or a fourth
+constexpr Index kSparePoints = 3;                 // beyond all coefficients, so that each can be left out
 constexpr std::size_t kSpare = 2;                 // runs beyond the coefficients of a candidate's block
 constexpr double kMostLeverage = 0.95;
 constexpr double kColumnRounding = 1e-11;  // of a column's norm
@@ -168,15 +169,18 @@ void Features::add_candidate(const BankData& data, Index candidate) {
     }
   }
   const bool square = strengths.size() >= kForSquare && alone >= kRunsForSquare;
+  int degree = square ? kLeastDegree : 1;
+  const int asked = data.degree.empty() ? kLeastDegree : data.degree[candidate];
+  while (square && degree < asked && strengths.size() > degree + 1U && alone >= kRunsForDegree * (degree + 1)) ++degree;
   std::vector<Index> multiply, parameters;
   for (Index i = 0; i < std::ssize(varied); ++i) {
     if (varied[i] >= kLeastTogether) multiply.push_back(i);
     if (!data.theta[i].nuisance()) parameters.push_back(i);
   }
-  if (alone >= 1 + (square ? 1 : 0) + parameters.size() + kSpare) multiply.insert(multiply.end(), parameters.begin(), parameters.end());
+  if (alone >= degree + parameters.size() + kSpare) multiply.insert(multiply.end(), parameters.begin(), parameters.end());
+  ends_.emplace_back(strengths.empty() ? 0 : std::min(0.0, *strengths.begin()), strengths.empty() ? 0 : std::max(0.0, *strengths.rbegin()));
   first_.push_back(size());
   const Index strength = factor_of_strength(candidate), squared = factor_of_square(candidate);
-  const int degree = square && !data.degree.empty() ? data.degree[candidate] : kLeastDegree;
   if (runs > 0) products_.push_back({0, strength});
   if (square) products_.push_back({strength, strength});
   if (degree >= 3) products_.push_back({strength, squared});
@@ -301,45 +305,38 @@ double Surrogate::leverage_of(const VectorXd& coded, const std::vector<ActiveCan
   return x.dot(coefficient_error_ * x);
 }
 
-namespace {
-
-/// In a candidate's strength, as its runs with all else as usual allow.
-int highest_degree(const BankData& data, Index candidate) {
-  std::set<double> strengths;
-  std::size_t alone = 0;
-  for (const BankRow& row : data.rows) {
-    if (row.candidate() != candidate || row.active.size() != 1 || !data.usual(row)) continue;
-    strengths.insert(row.active[0].strength), ++alone;
-  }
-  return std::clamp(static_cast<int>(std::min(strengths.size() - 1, alone / kRunsForDegree)), kLeastDegree, kMostDegree);
-}
-
-}  // namespace
-
 void choose_terms(BankData& data, const MatrixXd& recording) {
   data.degree.assign(data.candidates, kLeastDegree);
+  std::vector<Coordinate*> wide;
+  for (Coordinate& c : data.theta) {
+    if (c.nuisance() || !(c.low > 0) || c.high < kWideRange * c.low) continue;
+    c.logarithmic = false;
+    wide.push_back(&c);
+  }
   const Surrogate plain(data);
   const MatrixXd white = whitener(recording + plain.residual_covariance(recording)), seen = white.transpose() * plain.span(white);
-  const auto press = [&] { return (Surrogate(data).left_out() * seen).squaredNorm(); };
-  double least = press();
+  VectorXd weight(std::ssize(data.rows));
+  for (Index r = 0; r < weight.size(); ++r) weight[r] = 1 / std::sqrt(plain.scatter_of(data.rows[r].active));
+  const auto press = [&](const Surrogate& s) { return (weight.asDiagonal() * s.left_out() * seen).squaredNorm(); };
+  const Index points = std::ssize(points_of(data, std::vector<bool>(data.rows.size(), true)));
+  double least = press(plain);
   const auto better = [&] {
-    const double now = press();
-    if (now >= least) return false;
+    if (points < Features(data).size() + kSparePoints) return false;
+    const double now = press(Surrogate(data));
+    if (!(now < least - least / static_cast<double>(points))) return false;  // by more than one run is off on average
     least = now;
     return true;
   };
-  for (Coordinate& c : data.theta) {
-    if (c.nuisance() || !(c.low > 0) || c.high < kWideRange * c.low) continue;
-    c.logarithmic = true;
-    c.logarithmic = better();
+  for (Coordinate* c : wide) {
+    c->logarithmic = true;
+    c->logarithmic = better();
   }
-  for (Index j = 0; j < data.candidates; ++j) {
-    int best = kLeastDegree;
-    for (int degree = best + 1; degree <= highest_degree(data, j); ++degree) {
-      data.degree[j] = degree;
+  for (int& degree : data.degree) {
+    int best = degree;
+    for (degree = best + 1; degree <= kMostDegree; ++degree) {
       if (better()) best = degree;
     }
-    data.degree[j] = best;
+    degree = best;
   }
 }
 

@@ -39,6 +39,8 @@ class Features {
   VectorXd all(const VectorXd& coded, const std::vector<ActiveCandidate>& active) const;
   /// Column of the product of two candidates' strengths; nothing: too few runs have both.
   std::optional<Index> product(Index a, Index b) const;
+  /// The strengths of a candidate's runs, with 0: lowest and highest.
+  const std::pair<double, double>& ends(Index candidate) const { return ends_[candidate]; }
   /// Which runs scatter alike: those with the same candidates on. Nothing: with none, or with two that have no product.
   std::optional<Index> group(const std::vector<ActiveCandidate>& active) const;
   Index groups() const { return candidates() + std::ssize(together_); }
@@ -54,6 +56,7 @@ class Features {
   Index base_size_ = 0, coordinates_ = 0, candidates_ = 0;
   std::vector<Product> products_;  ///< of columns
   std::vector<Index> first_, count_;
+  std::vector<std::pair<double, double>> ends_;
   std::map<std::pair<Index, Index>, Index> together_;  ///< of two candidates, the lower first: column of their product
 };
 
@@ -79,14 +82,15 @@ class Surrogate {
   Index degrees() const { return degrees_; }  ///< points − coefficients
   /// Row residuals, each from a fit without that row: (y − m)/(1 − h).
   const MatrixXd& left_out() const { return left_out_; }
-  /// S, covariance of one run without a candidate about the surface: the runs' chance and what a quadratic surface cannot follow; that of
+  /// S, covariance of one run without a candidate about the surface: the runs' chance and what the surface cannot follow; that of
   /// runs with some is scatter_of() times as large. Correlations are shrunk in coordinates in which the recording's noise has none.
   MatrixXd residual_covariance(const MatrixXd& recording) const;
   /// ρ, the part of S that is chance, of which a recording has its own instead: by what runs of equal parameters and other seeds differ
   /// (pure error; Montgomery 2013, ch. 10). The low end of its 90 % interval, over all observables or in the span of what coordinates
   /// and candidates do, whichever is lower: what a surface cannot follow there would pass for a candidate. 0: no run is repeated.
   double chance(const MatrixXd& recording) const;
-  /// Orthonormal: what every coordinate, every candidate, and every two that were simulated together do, in units of a whitener.
+  /// Orthonormal, in units of a whitener: what every coordinate does, every candidate at the ends of its strengths, and every two that were
+  /// simulated together.
   MatrixXd span(const MatrixXd& whitener) const;
   /// Covariance of the surrogate's error, (1 − ρ + h̄) S with the mean leverage h̄ of the runs without a candidate.
   MatrixXd error_covariance(const MatrixXd& recording) const;
@@ -109,8 +113,8 @@ class Surrogate {
 MatrixXd left_out_deviations(const BankData& data, std::optional<Index> candidate);
 
 /// Chooses for every positive coordinate with a range of a factor of 2 or more whether its logarithm serves better, and for every candidate
-/// with enough runs the degree in its strength: the smaller sum of squared left-out residuals in the span of what coordinates and
-/// candidates do, in noise units of the recording and of a run. There an error would pass for a candidate.
+/// with enough runs the degree in its strength: the surely smaller sum of squared left-out residuals, each over its run's scatter, in the
+/// span of what coordinates and candidates do, in noise units of the recording and of a run. There an error would pass for a candidate.
 void choose_terms(BankData& data, const MatrixXd& recording);
 
 }  // namespace millscope::naming

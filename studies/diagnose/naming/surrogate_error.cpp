@@ -86,13 +86,18 @@ double Surrogate::chance(const MatrixXd& recording) const {
 }
 
 MatrixXd Surrogate::span(const MatrixXd& whitener) const {
-  std::vector<Index> rows;
-  for (Index i = 0; i < features_.coordinates(); ++i) rows.push_back(1 + i);
+  const VectorXd centre = VectorXd::Zero(features_.coordinates()), none = features_.all(centre, {});
+  std::vector<VectorXd> does;
+  for (Index i = 0; i < features_.coordinates(); ++i) does.push_back(VectorXd::Unit(features_.size(), 1 + i));
   for (Index j = 0; j < features_.candidates(); ++j) {
-    if (features_.count(j) > 0) rows.push_back(features_.first(j));
+    for (const double end : {features_.ends(j).first, features_.ends(j).second}) {
+      if (end != 0) does.push_back(features_.all(centre, {{j, end}}) - none);
+    }
   }
-  for (const Index column : features_.product_columns()) rows.push_back(column);
-  Eigen::ColPivHouseholderQR<MatrixXd> directions(whitener * coefficients_(rows, Eigen::all).transpose());
+  for (const Index column : features_.product_columns()) does.push_back(VectorXd::Unit(features_.size(), column));
+  MatrixXd effects(whitener.rows(), does.size());
+  for (std::size_t k = 0; k < does.size(); ++k) effects.col(k) = whitener * (coefficients_.transpose() * does[k]);
+  Eigen::ColPivHouseholderQR<MatrixXd> directions(effects);
   return directions.householderQ() * MatrixXd::Identity(whitener.rows(), directions.rank());
 }
 

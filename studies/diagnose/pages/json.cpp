@@ -23,6 +23,21 @@ Json by_name(const Told& t, const VectorXd& theta) {
   return out;
 }
 
+/// Of the surrogate, in the strength of each candidate.
+Json degrees(const Told& t) {
+  Json out = Json::object();
+  for (std::size_t j = 0; j < t.question.candidates.size(); ++j) out[t.question.candidates[j].name] = t.diagnosis.problem.data.degree[j];
+  return out;
+}
+
+Json logarithmic(const naming::BankData& data) {
+  Json out = Json::array();
+  for (const naming::Coordinate& c : data.theta) {
+    if (c.logarithmic) out.push_back(c.name);
+  }
+  return out;
+}
+
 /// The fitted value of the candidate's own parameter.
 Json own_parameter(const Told& t, Index j) {
   const naming::Alternative& alternative = t.diagnosis.problem.alternatives[j];
@@ -224,6 +239,8 @@ Json diagnosis_json(const Told& t) {
            {{"parameter_sets", d.bank.points.size()},
             {"used", d.problem.data.rows.size()},
             {"chance", d.naming.chance},
+            {"degree", degrees(t)},
+            {"logarithmic", logarithmic(t.diagnosis.problem.data)},
             {"failures", d.bank.failures}}},
           {"doubts", campaign::doubts_json(d.doubts)},
           {"notes", d.notes},
