@@ -55,7 +55,7 @@ struct Observation {
   std::string of;  ///< what was looked at, for messages
   std::vector<Observable> observables;
   Eigen::VectorXd value;       ///< NaN: undefined, see require_defined
-  Eigen::MatrixXd covariance;  ///< of all errors, correlations shrunk (naming/shrinkage.hpp), widened for few blocks
+  Eigen::MatrixXd covariance;  ///< of all errors, correlations shrunk (naming/covariance.hpp), widened for few blocks
   Eigen::MatrixXd resampled;  ///< what resampling says of it, as it is; 0 where nothing is resampled: a meter's power, the frame's readings
   PowerFigure power;
   Histogram x, speed;       ///< fine bins, for Eq. 4.3 of Chagas 2015 and pictures

@@ -13,7 +13,7 @@
 #include "kernel/base/error.hpp"
 #include "kernel/base/mill_regions.hpp"
 #include "kernel/base/statistics.hpp"
-#include "studies/diagnose/naming/shrinkage.hpp"
+#include "studies/diagnose/naming/covariance.hpp"
 
 namespace millscope::calibrate {
 namespace {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "kernel/base/random.hpp"
+#include "studies/diagnose/naming/covariance.hpp"
 #include "studies/diagnose/naming/naming.hpp"
 #include "studies/diagnose/naming/visibility.hpp"
 

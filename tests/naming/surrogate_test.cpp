@@ -7,8 +7,8 @@
 
 #include "kernel/base/random.hpp"
 #include "made_up_bank.hpp"
+#include "studies/diagnose/naming/covariance.hpp"
 #include "studies/diagnose/naming/fit.hpp"
-#include "studies/diagnose/naming/shrinkage.hpp"
 
 using namespace millscope;
 using namespace millscope::naming;

@@ -1,7 +1,5 @@
 #include "studies/diagnose/naming/fit.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -10,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "kernel/base/error.hpp"
+#include "studies/diagnose/naming/covariance.hpp"
 
 namespace millscope::naming {
 namespace {
@@ -27,19 +25,6 @@ constexpr int kLevels = 3;  // of the grid of starting points, for each flat coo
 bool below(double limit, const MatrixXd& a, const MatrixXd& b) { return Eigen::LLT<MatrixXd>(limit * b - a).info() == Eigen::Success; }
 
 }  // namespace
-
-MatrixXd factor(const MatrixXd& covariance) {
-  const Eigen::LLT<MatrixXd> llt(covariance);
-  if (llt.info() != Eigen::Success) {
-    throw base::UserError(
-        "the covariance of the observables is not positive definite; lengthen the recording or leave groups out (objective.without)");
-  }
-  return llt.matrixL();
-}
-
-MatrixXd whitener(const MatrixXd& covariance) {
-  return factor(covariance).triangularView<Eigen::Lower>().solve(MatrixXd::Identity(covariance.rows(), covariance.cols()));
-}
 
 Weighting::Weighting(const MatrixXd& recording, const Surrogate& surrogate, double longer)
     : run(surrogate.residual_covariance(recording)),

@@ -20,11 +20,6 @@
 
 namespace millscope::naming {
 
-/// Lower triangular L⁻¹ with Σ = L Lᵀ. Throws base::UserError when Σ is not positive definite.
-MatrixXd whitener(const MatrixXd& covariance);
-/// L itself.
-MatrixXd factor(const MatrixXd& covariance);
-
 /// What a difference between observations and surrogate is measured with.
 struct Weighting {
   /// `recording`: its covariance, here as if it were `longer` times as long; what the surrogate is wrong by stays.

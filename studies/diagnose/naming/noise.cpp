@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "studies/diagnose/naming/fit.hpp"
+#include "studies/diagnose/naming/covariance.hpp"
 
 namespace millscope::naming {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "kernel/base/error.hpp"
-#include "studies/diagnose/naming/fit.hpp"
+#include "studies/diagnose/naming/covariance.hpp"
 
 namespace millscope::naming {
 namespace {
@@ -168,21 +168,21 @@ void Features::add_candidate(const BankData& data, Index candidate) {
       if (const auto& usual = data.theta[i].usual) varied[i] += row.theta[i] != *usual ? 1 : 0;
     }
   }
-  const bool square = strengths.size() >= kForSquare && alone >= kRunsForSquare;
-  int degree = square ? kLeastDegree : 1;
   const int asked = data.degree.empty() ? kLeastDegree : data.degree[candidate];
-  while (square && degree < asked && strengths.size() > degree + 1U && alone >= kRunsForDegree * (degree + 1)) ++degree;
+  int degree = strengths.size() >= kForSquare && alone >= kRunsForSquare ? kLeastDegree : 1;
+  while (degree < asked && strengths.size() > degree + 1U && alone >= kRunsForDegree * (degree + 1)) ++degree;
   std::vector<Index> multiply, parameters;
   for (Index i = 0; i < std::ssize(varied); ++i) {
     if (varied[i] >= kLeastTogether) multiply.push_back(i);
     if (!data.theta[i].nuisance()) parameters.push_back(i);
   }
   if (alone >= degree + parameters.size() + kSpare) multiply.insert(multiply.end(), parameters.begin(), parameters.end());
-  ends_.emplace_back(strengths.empty() ? 0 : std::min(0.0, *strengths.begin()), strengths.empty() ? 0 : std::max(0.0, *strengths.rbegin()));
+  strengths.insert(0);
+  ends_.emplace_back(*strengths.begin(), *strengths.rbegin());
   first_.push_back(size());
   const Index strength = factor_of_strength(candidate), squared = factor_of_square(candidate);
   if (runs > 0) products_.push_back({0, strength});
-  if (square) products_.push_back({strength, strength});
+  if (degree >= 2) products_.push_back({strength, strength});
   if (degree >= 3) products_.push_back({strength, squared});
   if (degree >= 4) products_.push_back({squared, squared});
   for (const Index i : multiply) products_.push_back({strength, factor_of_coordinate(i)});

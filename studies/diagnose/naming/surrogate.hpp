@@ -100,6 +100,7 @@ class Surrogate {
  private:
   Features features_;
   void keep_scatter(const std::vector<std::vector<Index>>& points, const MatrixXd& y, const VectorXd& scatter);
+
   MatrixXd coefficients_, coefficient_error_, residual_, left_out_;
   std::vector<double> scatter_with_;  ///< of groups
   MatrixXd scatter_;                  ///< [points, observables], as of runs without a candidate

@@ -5,8 +5,7 @@
 
 #include "kernel/base/parallel.hpp"
 #include "kernel/base/statistics.hpp"
-#include "studies/diagnose/naming/fit.hpp"
-#include "studies/diagnose/naming/shrinkage.hpp"
+#include "studies/diagnose/naming/covariance.hpp"
 #include "studies/diagnose/naming/surrogate.hpp"
 
 namespace millscope::naming {
@@ -86,19 +85,19 @@ double Surrogate::chance(const MatrixXd& recording) const {
 }
 
 MatrixXd Surrogate::span(const MatrixXd& whitener) const {
-  const VectorXd centre = VectorXd::Zero(features_.coordinates()), none = features_.all(centre, {});
-  std::vector<VectorXd> does;
-  for (Index i = 0; i < features_.coordinates(); ++i) does.push_back(VectorXd::Unit(features_.size(), 1 + i));
+  const VectorXd centre = VectorXd::Zero(features_.coordinates());
+  std::vector<VectorXd> effects;
+  for (Index i = 0; i < features_.coordinates(); ++i) effects.emplace_back(coefficients_.row(1 + i));
   for (Index j = 0; j < features_.candidates(); ++j) {
     for (const double end : {features_.ends(j).first, features_.ends(j).second}) {
-      if (end != 0) does.push_back(features_.all(centre, {{j, end}}) - none);
+      if (end != 0) effects.push_back(at(centre, {{j, end}}) - at(centre));
     }
   }
-  for (const Index column : features_.product_columns()) does.push_back(VectorXd::Unit(features_.size(), column));
-  MatrixXd effects(whitener.rows(), does.size());
-  for (std::size_t k = 0; k < does.size(); ++k) effects.col(k) = whitener * (coefficients_.transpose() * does[k]);
-  Eigen::ColPivHouseholderQR<MatrixXd> directions(effects);
-  return directions.householderQ() * MatrixXd::Identity(whitener.rows(), directions.rank());
+  for (const Index column : features_.product_columns()) effects.emplace_back(coefficients_.row(column));
+  MatrixXd white(whitener.rows(), effects.size());
+  for (std::size_t k = 0; k < effects.size(); ++k) white.col(k) = whitener * effects[k];
+  Eigen::ColPivHouseholderQR<MatrixXd> directions(white);
+  return directions.householderQ() * MatrixXd::Identity(white.rows(), directions.rank());
 }
 
 MatrixXd Surrogate::error_covariance(const MatrixXd& recording) const {

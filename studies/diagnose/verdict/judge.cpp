@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kernel/base/random.hpp"
+#include "studies/diagnose/naming/covariance.hpp"
 
 namespace millscope::diagnose {
 namespace {

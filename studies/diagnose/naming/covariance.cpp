@@ -1,7 +1,10 @@
-#include "studies/diagnose/naming/shrinkage.hpp"
+#include "studies/diagnose/naming/covariance.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "kernel/base/error.hpp"
 
 namespace millscope::naming {
 
@@ -33,6 +36,19 @@ MatrixXd shrunk(MatrixXd c, double blocks) {
     }
   }
   return c;
+}
+
+MatrixXd factor(const MatrixXd& covariance) {
+  const Eigen::LLT<MatrixXd> llt(covariance);
+  if (llt.info() != Eigen::Success) {
+    throw base::UserError(
+        "the covariance of the observables is not positive definite; lengthen the recording or leave groups out (objective.without)");
+  }
+  return llt.matrixL();
+}
+
+MatrixXd whitener(const MatrixXd& covariance) {
+  return factor(covariance).triangularView<Eigen::Lower>().solve(MatrixXd::Identity(covariance.rows(), covariance.cols()));
 }
 
 }  // namespace millscope::naming
