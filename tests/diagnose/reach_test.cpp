@@ -152,7 +152,7 @@ TEST_CASE("what could be seen for itself but not beside what was found is told")
   CHECK(judged(d, "capillary_bridge").lambda_beside < 9);
   CHECK(judged(d, "lifter_wear").lambda_beside > 9);
   CHECK(std::any_of(d.notes.begin(), d.notes.end(), [](const std::string& note) {
-    return note.find("could not show even at its strongest: capillary_bridge") != std::string::npos &&
+    return note.find("could not show at any strength: capillary_bridge") != std::string::npos &&
            note.find("lifter_wear") == std::string::npos;
   }));
 }

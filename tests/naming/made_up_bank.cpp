@@ -28,13 +28,19 @@ MatrixXd spread(int runs, int dimensions) {
 /// From 0 to 1, level at both ends.
 double slow_step(double x) { return x * x * (3 - 2 * x); }
 
+/// How much of what is visible a strength does.
+double visible_of(const MadeUp& mill, double s) {
+  if (mill.goes_again) return 4 * s * (1 - s);
+  return mill.whole > 0 ? slow_step(std::min(1.0, s / mill.whole)) : s;
+}
+
 }  // namespace
 
 VectorXd truth_of(const MadeUp& mill, const VectorXd& u, const std::vector<double>& s) {
   VectorXd y =
       3 * direction(mill, 1) * (u[0] - 0.5 * mill.flattens * u[0] * u[0]) + 2 * direction(mill, 2) * u[1] + 1.5 * direction(mill, 3) * u[2];
   y += 0.8 * direction(mill, 4) * u[0] * u[0] + 0.5 * direction(mill, 5) * u[0] * u[1];
-  const double visible = mill.whole > 0 ? slow_step(std::min(1.0, s[0] / mill.whole)) : s[0];
+  const double visible = visible_of(mill, s[0]);
   y += visible * (2.5 * direction(mill, 6) + 2 * direction(mill, 1)) + 0.5 * visible * u[0] * direction(mill, 7);
   y += s[1] * direction(mill, 1);
   y += s[2] * 0.02 * direction(mill, 8);

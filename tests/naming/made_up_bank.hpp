@@ -12,8 +12,9 @@ struct MadeUp {
   double chancier = 1;                   ///< noise of runs with an effect over that of the others
   int conditions = 2, observables = 18;  ///< of each
   double cubic = 0;                      ///< what no quadratic surface follows
-  double whole = 0;     ///< above 0: what is visible begins slowly, as x² (3 − 2 x) with x = s/whole, and is whole at x = 1
-  double flattens = 0;  ///< 1: bead friction does nothing more at the upper end of its range
+  double whole = 0;         ///< above 0: what is visible begins slowly, as x² (3 − 2 x) with x = s/whole, and is whole at x = 1
+  bool goes_again = false;  ///< what is visible is 4 s (1 − s): nothing at full strength
+  double flattens = 0;      ///< 1: bead friction does nothing more at the upper end of its range
 };
 
 /// What the formula says at coded θ with strengths of three candidates: "visible" changes what friction cannot, "concealed" does what

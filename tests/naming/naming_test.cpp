@@ -67,6 +67,19 @@ TEST_CASE("what friction imitates is concealed, what does nothing is undetectabl
   CHECK_FALSE(n.best);
 }
 
+TEST_CASE("an effect that goes again at full strength can be seen, and lambda is that where it shows best") {
+  MadeUp mill;
+  mill.goes_again = true, mill.weakest = 0.1, mill.each = 16;
+  const Result n = name_candidates(made_up_problem(mill, point(0, 0, 0), {0, 0, 0}, 4), quick());
+  const Judged& visible = n.judged[0];
+  CHECK(visible.lambda_curve.back().second < 9);
+  CHECK(visible.lambda == std::max_element(visible.lambda_curve.begin(), visible.lambda_curve.end(), [](const auto& a, const auto& b) {
+                            return a.second < b.second;
+                          })->second);
+  CHECK(visible.lambda > 9);
+  CHECK_FALSE(visible.undetectable);
+}
+
 TEST_CASE("lambda is what the nearest retuned base is away, wherever it lies") {
   const MadeUp mill;
   const VectorXd u = point(-0.4, 0.3, 0.2);

@@ -106,7 +106,7 @@ class StaticPages(Pages):
             ({"verdict": "outside_library", "named": []},
              "Something is left out that is not among the candidates: rolling resistance helps most, but does not suffice (p < 0.001 for the retuned simulation)."),
             ({"verdict": "no_mismatch", "named": [], "base": {"p_value": 0.4}}, "Nothing is left out that these recordings could show: once retuned, the simulation describes them (p = 0.4)."),
-            ({"verdict": "undetectable", "named": []}, "These recordings cannot tell: even at its strongest, no candidate could be seen in them."),
+            ({"verdict": "undetectable", "named": []}, "These recordings cannot tell: no candidate could be seen in them, at any strength."),
         ]:
             lines, diagnosis = self.answers(**changes)
             self.assertEqual(lines[1], sentence)

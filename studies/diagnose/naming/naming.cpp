@@ -154,7 +154,7 @@ class Namer {
     const Alternative& alternative = p_.alternatives[j];
     judged.tested = !alternative.candidate || (judged.runs > 0 && !alternative.screened_out);
     judged.lambda = seen.lambda(), judged.kappa = seen.kappa(), judged.lambda_found = seen.at(found);
-    judged.lambda_curve = seen.curve();
+    if (alternative.candidate) judged.lambda_curve = seen.curve();
     judged.undetectable = alternative.screened_out || unseen(judged.lambda);
     judged.strength = without_interval(found);
     for (Index i = 0; i < judged.fit.coded.size(); ++i)
@@ -240,7 +240,7 @@ class Namer {
       if (!tested(k) || !together(p_.alternatives[first], p_.alternatives[k])) continue;
       const Visibility beside(p_, pseudo_.surrogate(), pseudo_.weighting(), {alone.coded, active_of(p_.alternatives[first], alone)}, k);
       out_.judged[k].lambda_beside = beside.lambda();
-      // What cannot be seen beside the first at its strongest is not what is seen: a few runs make slopes by chance, which fit some rest.
+      // What cannot be seen beside the first at any strength is not what is seen: a few runs make slopes by chance, which fit some rest.
       if (p_.alternatives[k].candidate && unseen(beside.lambda())) continue;
       others.push_back(k);
       choices.push_back({first, k});

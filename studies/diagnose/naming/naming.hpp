@@ -78,13 +78,13 @@ struct Judged {
   FitResult fit;
   double delta_q = 0, p = 1, p_family = 1;
   double kappa = 0;         ///< part of what it does that θ cannot imitate, at full strength: 0 is fully concealed
-  double lambda = 0;        ///< visibility.hpp, about what was fitted with the candidate: at full strength
+  double lambda = 0;        ///< visibility.hpp, about what was fitted with the candidate: where it shows best
   double lambda_found = 0;  ///< at the fitted strength
   std::vector<std::pair<double, double>> lambda_curve;  ///< (strength, λ), strengths rising; of candidates
   bool undetectable = false;
   int runs = 0;  ///< of the bank with this candidate
   double lambda_beside =
-      kNotWorkedOut;          ///< λ at full strength beside the best candidate, which is refitted as well; of others that may be there too
+      kNotWorkedOut;          ///< the same beside the best candidate, which is refitted as well; of others that may be there too
   bool tested = true;         ///< else it has no runs, or its first ones showed that it cannot matter; its p are 1
   base::Interval90 strength;  ///< its interval is worked out when some candidate is significant
   std::vector<base::Interval90> theta;  ///< natural units; the same

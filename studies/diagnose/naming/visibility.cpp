@@ -40,18 +40,23 @@ Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const
   const auto n = static_cast<double>(weighting.whitener.rows());
   run_covariance_ = weighting.whitener * weighting.run * weighting.whitener.transpose();
   run_noise_ = weighting.run_noise * (n - static_cast<double>(coded_.size())) / n;
-  const std::vector<double> far = ends();
-  const double full = far.front();
-  lambda_ = this->at(full);
+  for (const double strength : strengths()) curve_.emplace_back(strength, this->at(strength));
+  for (const auto& [strength, lambda] : curve_) lambda_ = std::max(lambda_, lambda);
+  const double full = range().high;
   const double whole = std::max(0.0, (weighting.whitener * (observed(full) - observed(none()))).squaredNorm() - noise(full));
-  kappa_ = whole > 0 ? std::min(1.0, std::sqrt(lambda_ / whole)) : 0;
-  if (far.size() > 1) lambda_ = std::max(lambda_, this->at(far.back()));
+  kappa_ = whole > 0 ? std::min(1.0, std::sqrt(this->at(full) / whole)) : 0;
 }
 
-std::vector<double> Visibility::ends() const {
-  const StrengthRange full = alternative_.prior.value_or(alternative_.freed ? StrengthRange{-1, 1} : alternative_.range);
-  if (full.low < 0) return {full.high, full.low};
-  return {full.high};
+StrengthRange Visibility::range() const {
+  return alternative_.prior.value_or(alternative_.freed ? StrengthRange{-1, 1} : alternative_.range);
+}
+
+std::vector<double> Visibility::strengths() const {
+  const StrengthRange all = range();
+  if (alternative_.freed) return {all.low, all.high};
+  std::vector<double> out;
+  for (int k = all.low < 0 ? -kSteps : 0; k <= kSteps; ++k) out.push_back((k < 0 ? -all.low : all.high) * k / kSteps);
+  return out;
 }
 
 double Visibility::none() const {
@@ -62,7 +67,7 @@ double Visibility::none() const {
 
 double Visibility::lambda_high() const {
   double most = 0;
-  for (const double end : ends()) most = std::max(most, high(end));
+  for (const double strength : strengths()) most = std::max(most, high(strength));
   return most;
 }
 
@@ -102,17 +107,5 @@ double Visibility::high(double strength) const {
 }
 
 double Visibility::at(double strength) const { return std::max(0.0, rest(strength).square - noise(strength)); }
-
-std::vector<std::pair<double, double>> Visibility::curve() const {
-  std::vector<std::pair<double, double>> out;
-  if (alternative_.freed) return out;
-  const std::vector<double> far = ends();
-  const double low = far.size() > 1 ? far.back() : 0;
-  for (int k = low < 0 ? -kSteps : 0; k <= kSteps; ++k) {
-    const double strength = (k < 0 ? -low : far.front()) * k / kSteps;
-    out.emplace_back(strength, at(strength));
-  }
-  return out;
-}
 
 }  // namespace millscope::naming

@@ -28,14 +28,16 @@ class Visibility {
   Visibility(const Problem&, Surrogate&&, const Weighting&, const About&, Index) = delete;
   Visibility(const Problem&, const Surrogate&, Weighting&&, const About&, Index) = delete;
 
-  double lambda() const { return lambda_; }  ///< at full strength, the better visible end of a two-sided range
+  /// Where it shows best in its range: at full strength, unless parameters imitate more of it there or few runs make it seem so.
+  double lambda() const { return lambda_; }
   double kappa() const { return kappa_; }
-  /// λ is below it with 95 %: that whose estimate would be as low as this in one of twenty banks, λ + z²b/2 + z √(a + b λ + z²b²/4).
+  /// λ is below it with 95 %, wherever it shows best: that whose estimate would be as low as this in one of twenty banks, λ + z²b/2 + z √(a
+  /// + b λ + z²b²/4).
   double lambda_high() const;
   /// λ at a strength (of a freed nuisance: at its coded value).
   double at(double strength) const;
-  /// (strength, λ) over a candidate's range, its ends and zero among them; nothing for a nuisance.
-  std::vector<std::pair<double, double>> curve() const;
+  /// (strength, λ) over its range, its ends among them, and zero for a candidate.
+  const std::vector<std::pair<double, double>>& curve() const { return curve_; }
 
  private:
   struct Rest {
@@ -47,8 +49,9 @@ class Visibility {
   double leverage(double strength) const;
   double noise(double strength) const;
   double high(double strength) const;
-  double none() const;               ///< strength at which there is nothing
-  std::vector<double> ends() const;  ///< of the range: full strength, and the other one of a two-sided range
+  double none() const;  ///< strength at which there is nothing
+  StrengthRange range() const;
+  std::vector<double> strengths() const;  ///< over the range, its ends among them; of a nuisance these alone
 
   const Problem& problem_;
   const Surrogate& surrogate_;
@@ -59,6 +62,7 @@ class Visibility {
   Model base_;
   MatrixXd run_covariance_;  ///< M
   double run_noise_ = 0;     ///< tr M (n − d)/n
+  std::vector<std::pair<double, double>> curve_;
   double lambda_ = 0, kappa_ = 0;
 };
 

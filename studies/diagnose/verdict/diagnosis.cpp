@@ -62,7 +62,7 @@ Screened screened(const Question& question, const calibrate::Machinery& machiner
     const naming::Visibility seen(problem, surrogate, weighting, {base.coded}, j);
     const double most = std::sqrt(seen.lambda_high());
     const std::string what =
-        fmt::format("{}: at its strongest {:.1f} noise units beyond what the parameters imitate, below {:.1f} with 95 %",
+        fmt::format("{}: at most {:.1f} noise units beyond what the parameters imitate, below {:.1f} with 95 %",
                     question.candidates[j].name, std::sqrt(seen.lambda()), most);
     machinery.say(what + (most < limit ? ": it cannot matter here" : ": looked at closely"));
     out.candidate[j] = most < limit;

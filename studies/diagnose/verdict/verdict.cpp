@@ -81,7 +81,7 @@ std::string to_see(const Diagnosis& diagnosis, double noise_units) {
   if (!which) return "";
   double longer = 1;
   while (longer < kLongest && std::sqrt(lambda_if(diagnosis, *which, longer)) < noise_units) longer *= 1.25;
-  const std::string now = fmt::format("The most visible candidate, {}, stands {:.1f} noise units out at its strongest",
+  const std::string now = fmt::format("The most visible candidate, {}, stands {:.1f} noise units out where it shows best",
                                       name_of(diagnosis, *which), std::sqrt(diagnosis.naming.judged[*which].lambda));
   if (longer >= kLongest) return now + "; a longer recording alone would not show it: the bank has to grow (bank.base, bank.each).";
   const double recorded = seconds(diagnosis.evidence, diagnosis.fit);
@@ -179,7 +179,7 @@ void tell_hidden(double noise_units, Diagnosis& diagnosis) {
   }
   if (hidden.empty()) return;
   diagnosis.notes.push_back(fmt::format(
-      "beside {}, these data could not show even at its strongest: {}. It may be there as well; another speed, filling or a longer "
+      "beside {}, these data could not show at any strength: {}. It may be there as well; another speed, filling or a longer "
       "recording would tell",
       name_of(diagnosis, *diagnosis.naming.best), fmt::join(hidden, ", ")));
 }
@@ -215,7 +215,7 @@ void reservations(Diagnosis& diagnosis) {
     if (diagnosis.naming.judged[j].tested) continue;
     diagnosis.notes.push_back(
         fmt::format("{} was not tested: {}", r.name,
-                    r.screened_out ? "even at its strongest its first simulations differ too little from what the parameters imitate"
+                    r.screened_out ? "its first simulations differ too little, at any strength, from what the parameters imitate"
                                    : "none of its simulations came to its end"));
   }
   for (const HeldOut& h : diagnosis.held_out) {
@@ -259,7 +259,7 @@ void nothing_named(const Question& question, double level, double noise_units, D
   diagnosis.verdict = blind ? Verdict::undetectable : Verdict::no_mismatch;
   if (blind) {
     diagnosis.sentence = fmt::format(
-        "The recordings look like the retuned base (p = {:.2g}), but no candidate could be seen in them even at its strongest: these data "
+        "The recordings look like the retuned base (p = {:.2g}), but no candidate could be seen in them at any strength: these data "
         "cannot tell.",
         diagnosis.naming.base_p);
     diagnosis.next_experiment = to_see(diagnosis, noise_units);

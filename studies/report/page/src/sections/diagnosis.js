@@ -73,7 +73,7 @@ function found(diagnosis, key) {
   const second = pairs.map((pair) => `Beside ${words(pair.first)} (${pValue(pair.p_first)}), ${words(pair.second)} helps most, with ${pValue(pair.p_second)}`
     + (pair.p_second < 0.05 ? "." : ": it is not needed."));
   const why = { no_mismatch: "The base with its parameters retuned describes the recordings, so nothing was looked for further.",
-    undetectable: "No candidate could be seen in these data, even at its strongest.", outside_library: "The base is rejected, and no candidate brings it near enough.",
+    undetectable: "No candidate could be seen in these data, at any strength.", outside_library: "The base is rejected, and no candidate brings it near enough.",
     ambiguous: diagnosis.named_together ? "Two effects are asked for together." : "The candidates above cannot be told apart with these data, or the held-out data do not confirm them yet." }[verdict];
   return block(`${key}-found`, "What was found", why ? paragraph(why) : null, lines.length ? list(lines) : null,
     others.length ? table({ caption: "The other candidates: if one of them were true, how often would the best seem better by so much?", rows: others, columns: [

@@ -34,7 +34,7 @@ function verdictSentence(found, best) {
     case "ambiguous": return ambiguousSentence(found, best);
     case "outside_library": return `Something is left out that is not among the candidates${best ? `: ${words(best.name)} helps most, but does not suffice` : ""} (${base} for the retuned simulation).`;
     case "no_mismatch": return `Nothing is left out that these recordings could show: once retuned, the simulation describes them (${base}).`;
-    case "undetectable": return "These recordings cannot tell: even at its strongest, no candidate could be seen in them.";
+    case "undetectable": return "These recordings cannot tell: no candidate could be seen in them, at any strength.";
     default: return readable(found.sentence);
   }
 }
