@@ -137,6 +137,21 @@ TEST_CASE("an effect that no candidate has is outside the library") {
   CHECK(std::fabs(d.naming.mismatch.front().z) > 3);
 }
 
+TEST_CASE("what helps but does not suffice is simulated as often again before something is said to lie outside") {
+  std::vector<Physics> physics = usual();
+  physics.push_back({"stiffness_factor", 0, 1, 4, {91, 92, 93}});
+  const Diagnosis d = diagnosed(physics, with("stiffness_factor=1", kRolling + "=0.12"));
+  INFO(d.sentence);
+  CHECK(d.verdict == Verdict::outside_library);
+  const auto of = [&](const std::string& group) {
+    return std::count_if(d.bank.points.begin(), d.bank.points.end(), [&](const BankPoint& p) { return p.group == group; });
+  };
+  CHECK(of("rolling_resistance") == 20);
+  CHECK(of("capillary_bridge") == 10);
+  CHECK(std::count(d.notes.begin(), d.notes.end(),
+                   "rolling_resistance helps most but does not suffice: 10 more parameter sets with it are simulated") == 1);
+}
+
 TEST_CASE("what shows in the held-out condition alone is said, and how it could be named") {
   const Scratch folder;
   const Question q = question_of(folder, kSections);

@@ -61,9 +61,8 @@ Screened screened(const Question& question, const calibrate::Machinery& machiner
     }
     const naming::Visibility seen(problem, surrogate, weighting, {base.coded}, j);
     const double most = std::sqrt(seen.lambda_high());
-    const std::string what =
-        fmt::format("{}: at most {:.1f} noise units beyond what the parameters imitate, below {:.1f} with 95 %",
-                    question.candidates[j].name, std::sqrt(seen.lambda()), most);
+    const std::string what = fmt::format("{}: at most {:.1f} noise units beyond what the parameters imitate, below {:.1f} with 95 %",
+                                         question.candidates[j].name, std::sqrt(seen.lambda()), most);
     machinery.say(what + (most < limit ? ": it cannot matter here" : ": looked at closely"));
     out.candidate[j] = most < limit;
     if (most < limit) continue;
@@ -149,6 +148,23 @@ void simulate_pairs(const Question& asked, const calibrate::Machinery& machinery
   diagnosis.problem = problem_after(screening, diagnosis);
 }
 
+/// Where the best candidate does not suffice, as many simulations with it again before something is said to lie outside the library: few
+/// leave the surrogate wrong by more than their residuals tell, and what is wrong there looks like more missing physics.
+void ask_again(const Question& asked, const calibrate::Machinery& machinery, const naming::Options& options, Screened& screening,
+               Diagnosis& diagnosis) {
+  if (!helps_but_does_not_suffice(diagnosis.naming, options.level)) return;
+  const naming::Alternative& best = diagnosis.problem.alternatives[*diagnosis.naming.best];
+  if (!best.candidate) return;
+  std::vector<BankPoint> more = plan_group(asked, {best.candidate, {}}, 2 * asked.bank.each);
+  std::erase_if(more, [&](const BankPoint& p) { return p.index < asked.bank.each; });
+  note(machinery, {fmt::format("{} helps most but does not suffice: {} more parameter sets with it are simulated", best.name, more.size())},
+       diagnosis);
+  screening.points.insert(screening.points.end(), more.begin(), more.end());
+  diagnosis.bank = filled(asked, machinery, screening.points, diagnosis.bank.conditions, diagnosis);
+  diagnosis.problem = problem_after(screening, diagnosis);
+  diagnosis.naming = naming::name_candidates(diagnosis.problem, options);
+}
+
 /// What was noted of the recordings; what holds for several is said once.
 void note_recordings(const Question& question, Diagnosis& diagnosis) {
   std::vector<std::pair<std::string, std::string>> lines;  // what; of which conditions
@@ -227,6 +243,7 @@ Diagnosis diagnose(const Question& asked, const calibrate::Machinery& given, Evi
   reach_farther(machinery, screening, diagnosis);
   simulate_pairs(asked, machinery, options.noise_units, screening, diagnosis);
   diagnosis.naming = naming::name_candidates(diagnosis.problem, options);
+  ask_again(asked, machinery, options, screening, diagnosis);
   hold_out(asked, machinery, diagnosis);
   const HeldOutRequest request{.question = question,
                                .machinery = machinery,

@@ -178,10 +178,10 @@ void tell_hidden(double noise_units, Diagnosis& diagnosis) {
       hidden.push_back(fmt::format("{} ({:.1f} noise units)", diagnosis.problem.alternatives[j].name, std::sqrt(g.lambda_beside)));
   }
   if (hidden.empty()) return;
-  diagnosis.notes.push_back(fmt::format(
-      "beside {}, these data could not show at any strength: {}. It may be there as well; another speed, filling or a longer "
-      "recording would tell",
-      name_of(diagnosis, *diagnosis.naming.best), fmt::join(hidden, ", ")));
+  diagnosis.notes.push_back(
+      fmt::format("beside {}, these data could not show at any strength: {}. It may be there as well; another speed, filling or a longer "
+                  "recording would tell",
+                  name_of(diagnosis, *diagnosis.naming.best), fmt::join(hidden, ", ")));
 }
 
 /// Two that are both asked for but do not describe the recordings either, though the bank may have them together.
@@ -213,10 +213,10 @@ void reservations(Diagnosis& diagnosis) {
   for (std::size_t j = 0; j < diagnosis.naming.judged.size(); ++j) {
     const naming::Alternative& r = diagnosis.problem.alternatives[j];
     if (diagnosis.naming.judged[j].tested) continue;
-    diagnosis.notes.push_back(
-        fmt::format("{} was not tested: {}", r.name,
-                    r.screened_out ? "its first simulations differ too little, at any strength, from what the parameters imitate"
-                                   : "none of its simulations came to its end"));
+    diagnosis.notes.push_back(fmt::format("{} was not tested: {}", r.name,
+                                          r.screened_out
+                                              ? "its first simulations differ too little, at any strength, from what the parameters imitate"
+                                              : "none of its simulations came to its end"));
   }
   for (const HeldOut& h : diagnosis.held_out) {
     for (const std::string& f : h.failures) diagnosis.notes.push_back("held out, failed: " + f);
@@ -291,7 +291,7 @@ void decide(double level, double noise_units, Diagnosis& diagnosis) {
     diagnosis.next_experiment = "Hold both against a condition that was not fitted: put them into the base case and diagnose again.";
     return;
   }
-  if (best.goodness_p <= level) {
+  if (helps_but_does_not_suffice(diagnosis.naming, level)) {
     diagnosis.verdict = Verdict::outside_library;
     diagnosis.sentence = fmt::format(
         "{} helps most (family-wise p = {:.2g}) but does not suffice: with it the recordings still do not look like the model (p = "
@@ -331,6 +331,10 @@ void decide(double level, double noise_units, Diagnosis& diagnosis) {
 bool about_to_name(const naming::Result& naming, double level) {
   return naming.best && second_beside(naming, level) == nullptr && naming.judged[*naming.best].goodness_p > level &&
          naming.kept.size() == 1;
+}
+
+bool helps_but_does_not_suffice(const naming::Result& naming, double level) {
+  return naming.best && second_beside(naming, level) == nullptr && naming.judged[*naming.best].goodness_p <= level;
 }
 
 std::pair<naming::FitResult, std::vector<naming::ActiveCandidate>> fit_of(const Diagnosis& diagnosis) {
