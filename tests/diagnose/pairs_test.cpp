@@ -80,7 +80,19 @@ TEST_CASE("a second effect that shows nothing of what it does alone is found") {
   CHECK(std::set<std::string>(d.named.begin(), d.named.end()) == std::set<std::string>{"rolling_resistance", "lifter_wear"});
 }
 
-TEST_CASE("nothing is simulated together where nothing helps surely") {
+TEST_CASE("what helps is simulated twice as often before anything is judged") {
+  const Diagnosis d = diagnosed(usual(), with(kRolling + "=0.12"));
+  const auto of = [&](const std::string& group) {
+    return std::count_if(d.bank.points.begin(), d.bank.points.end(), [&](const BankPoint& p) { return p.group == group; });
+  };
+  CHECK(of("rolling_resistance") == 20);
+  CHECK(of("capillary_bridge") == 10);
+  CHECK(judged(d, "rolling_resistance").runs == 20 + of("capillary_bridge+rolling_resistance") + of("lifter_wear+rolling_resistance"));
+  CHECK(std::count(d.notes.begin(), d.notes.end(), "simulated twice as often, for it helps: rolling_resistance") == 1);
+}
+
+TEST_CASE("nothing is simulated further where nothing helps surely") {
   const Diagnosis d = diagnosed(usual(), kTheta);
+  CHECK(std::none_of(d.notes.begin(), d.notes.end(), [](const std::string& n) { return n.starts_with("simulated "); }));
   CHECK(std::none_of(d.bank.points.begin(), d.bank.points.end(), [](const BankPoint& p) { return p.active.size() == 2; }));
 }

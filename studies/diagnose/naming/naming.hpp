@@ -77,7 +77,7 @@ inline base::Interval90 without_interval(double value) { return {value, kNotWork
 struct Judged {
   FitResult fit;
   double delta_q = 0, p = 1, p_family = 1;
-  double kappa = 0;         ///< part of what it does that θ cannot imitate, at full strength: 0 is fully concealed
+  double kappa = 0;         ///< part of what it does that θ cannot imitate, where it shows best: 0 is fully concealed
   double lambda = 0;        ///< visibility.hpp, about what was fitted with the candidate: where it shows best
   double lambda_found = 0;  ///< at the fitted strength
   std::vector<std::pair<double, double>> lambda_curve;  ///< (strength, λ), strengths rising; of candidates

@@ -40,11 +40,19 @@ Visibility::Visibility(const Problem& problem, const Surrogate& surrogate, const
   const auto n = static_cast<double>(weighting.whitener.rows());
   run_covariance_ = weighting.whitener * weighting.run * weighting.whitener.transpose();
   run_noise_ = weighting.run_noise * (n - static_cast<double>(coded_.size())) / n;
-  for (const double strength : strengths()) curve_.emplace_back(strength, this->at(strength));
-  for (const auto& [strength, lambda] : curve_) lambda_ = std::max(lambda_, lambda);
-  const double full = range().high;
-  const double whole = std::max(0.0, (weighting.whitener * (observed(full) - observed(none()))).squaredNorm() - noise(full));
-  kappa_ = whole > 0 ? std::min(1.0, std::sqrt(this->at(full) / whole)) : 0;
+  for (const double strength : strengths()) seen_.push_back(look(strength));
+}
+
+const Visibility::Seen& Visibility::best() const {
+  return *std::max_element(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) { return a.lambda < b.lambda; });
+}
+
+double Visibility::kappa() const { return best().whole > 0 ? std::min(1.0, std::sqrt(best().lambda / best().whole)) : 0; }
+
+std::vector<std::pair<double, double>> Visibility::curve() const {
+  std::vector<std::pair<double, double>> out;
+  for (const Seen& s : seen_) out.emplace_back(s.strength, s.lambda);
+  return out;
 }
 
 StrengthRange Visibility::range() const {
@@ -54,6 +62,7 @@ StrengthRange Visibility::range() const {
 std::vector<double> Visibility::strengths() const {
   const StrengthRange all = range();
   if (alternative_.freed) return {all.low, all.high};
+  if (all.low == all.high) return {0, all.high};  // on or off
   std::vector<double> out;
   for (int k = all.low < 0 ? -kSteps : 0; k <= kSteps; ++k) out.push_back((k < 0 ? -all.low : all.high) * k / kSteps);
   return out;
@@ -67,18 +76,17 @@ double Visibility::none() const {
 
 double Visibility::lambda_high() const {
   double most = 0;
-  for (const double strength : strengths()) most = std::max(most, high(strength));
+  for (const Seen& s : seen_) most = std::max(most, high(s));
   return most;
 }
 
 /// Of what the candidate adds to those beside it.
 double Visibility::leverage(double strength) const {
+  if (alternative_.freed) return 0;
   std::vector<ActiveCandidate> on = beside_;
   on.push_back({*alternative_.candidate, strength});
   return surrogate_.leverage_of(coded_, on, beside_);
 }
-
-double Visibility::noise(double strength) const { return alternative_.freed ? 0 : run_noise_ * leverage(strength); }
 
 VectorXd Visibility::observed(double strength) const {
   std::vector<ActiveCandidate> on = beside_;
@@ -90,22 +98,24 @@ VectorXd Visibility::observed(double strength) const {
   return surrogate_.at(moved, on);
 }
 
-Visibility::Rest Visibility::rest(double strength) const {
+Visibility::Seen Visibility::look(double strength) const {
   const VectorXd y = observed(strength);
   const FitResult fit = base_.fit(y);
-  return {weighting_.whitener * (y - surrogate_.at(fit.coded, base_.active(fit))), fit.q};
+  Seen seen{strength, weighting_.whitener * (y - surrogate_.at(fit.coded, base_.active(fit))), 0, 0, leverage(strength)};
+  const double noise = run_noise_ * seen.h;
+  seen.whole = std::max(0.0, (weighting_.whitener * (y - observed(none()))).squaredNorm() - noise);
+  seen.lambda = std::max(0.0, fit.q - noise);
+  return seen;
 }
 
-double Visibility::high(double strength) const {
-  if (alternative_.freed) return at(strength);
-  const double h = leverage(strength), degrees = static_cast<double>(surrogate_.degrees());
-  const Rest left = rest(strength);
-  const double along = left.white.squaredNorm(), seen = std::max(0.0, left.square - noise(strength));
-  const double a = 2 * h * h * run_covariance_.squaredNorm() * (1 + 1 / std::max(1.0, degrees));
-  const double b = along > 0 ? 4 * h * left.white.dot(run_covariance_ * left.white) / along : 0, bend = 0.5 * base::kNormal90 * b;
-  return seen + base::kNormal90 * (bend + std::sqrt(a + b * seen + bend * bend));
+double Visibility::high(const Seen& seen) const {
+  if (alternative_.freed) return seen.lambda;
+  const double degrees = static_cast<double>(surrogate_.degrees()), along = seen.white.squaredNorm();
+  const double a = 2 * seen.h * seen.h * run_covariance_.squaredNorm() * (1 + 1 / std::max(1.0, degrees));
+  const double b = along > 0 ? 4 * seen.h * seen.white.dot(run_covariance_ * seen.white) / along : 0, bend = 0.5 * base::kNormal90 * b;
+  return seen.lambda + base::kNormal90 * (bend + std::sqrt(a + b * seen.lambda + bend * bend));
 }
 
-double Visibility::at(double strength) const { return std::max(0.0, rest(strength).square - noise(strength)); }
+double Visibility::at(double strength) const { return look(strength).lambda; }
 
 }  // namespace millscope::naming

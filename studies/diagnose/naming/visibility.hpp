@@ -1,7 +1,7 @@
 // Whether data can show a candidate at all: how far its noise-free data stay from the base, however that is retuned.
 //
-//   λ(φ) = min over u of [(m(θ, φ) − m(u))ᵀ Σ⁻¹ (m(θ, φ) − m(u)) + P(u)] − ε,  κ = √(λ / (sᵀ Σ⁻¹ s − ε)):  0 is fully concealed
-//   s = m(θ, full strength) − m(θ, none),  P: the nuisances' priors, about θ
+//   λ(φ) = min over u of [(m(θ, φ) − m(u))ᵀ Σ⁻¹ (m(θ, φ) − m(u)) + P(u)] − ε,  κ(φ) = √(λ / (sᵀ Σ⁻¹ s − ε)):  0 is fully concealed
+//   s = m(θ, φ) − m(θ, none),  P: the nuisances' priors, about θ
 //
 // The base is refitted in earnest: where retuning moves it far, its own curvature imitates more than its slope at θ would. At the fitted θ
 // and strength λ is what ΔQ is on average.
@@ -28,27 +28,30 @@ class Visibility {
   Visibility(const Problem&, Surrogate&&, const Weighting&, const About&, Index) = delete;
   Visibility(const Problem&, const Surrogate&, Weighting&&, const About&, Index) = delete;
 
-  /// Where it shows best in its range: at full strength, unless parameters imitate more of it there or few runs make it seem so.
-  double lambda() const { return lambda_; }
-  double kappa() const { return kappa_; }
+  /// λ and κ where it shows best in its range: at full strength, unless parameters imitate more of it there or few runs make it seem so.
+  double lambda() const { return best().lambda; }
+  double kappa() const;
   /// λ is below it with 95 %, wherever it shows best: that whose estimate would be as low as this in one of twenty banks, λ + z²b/2 + z √(a
   /// + b λ + z²b²/4).
   double lambda_high() const;
   /// λ at a strength (of a freed nuisance: at its coded value).
   double at(double strength) const;
   /// (strength, λ) over its range, its ends among them, and zero for a candidate.
-  const std::vector<std::pair<double, double>>& curve() const { return curve_; }
+  std::vector<std::pair<double, double>> curve() const;
 
  private:
-  struct Rest {
-    VectorXd white;     ///< W (m(θ, φ) − m(u))
-    double square = 0;  ///< with the priors, without ε
+  struct Seen {
+    double strength = 0;
+    VectorXd white;    ///< W (m(θ, φ) − m(u))
+    double whole = 0;  ///< sᵀ Σ⁻¹ s − ε
+    double lambda = 0;
+    double h = 0;  ///< leverage
   };
-  Rest rest(double strength) const;
+  Seen look(double strength) const;
+  const Seen& best() const;
   VectorXd observed(double strength) const;
   double leverage(double strength) const;
-  double noise(double strength) const;
-  double high(double strength) const;
+  double high(const Seen& seen) const;
   double none() const;  ///< strength at which there is nothing
   StrengthRange range() const;
   std::vector<double> strengths() const;  ///< over the range, its ends among them; of a nuisance these alone
@@ -62,8 +65,7 @@ class Visibility {
   Model base_;
   MatrixXd run_covariance_;  ///< M
   double run_noise_ = 0;     ///< tr M (n − d)/n
-  std::vector<std::pair<double, double>> curve_;
-  double lambda_ = 0, kappa_ = 0;
+  std::vector<Seen> seen_;   ///< over the range, rising
 };
 
 }  // namespace millscope::naming

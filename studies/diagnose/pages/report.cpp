@@ -48,7 +48,7 @@ void where_it_differs(const Told& t, std::string& out) {
 void what_was_tried(const Told& t, std::string& out) {
   const Diagnosis& d = t.diagnosis;
   out +=
-      "## What was tried\n\n| candidate | fitted | ΔQ | p, family-wise | visible at most (noise units) | concealed by the "
+      "## What was tried\n\n| candidate | fitted | ΔQ | p, family-wise | visible where it shows best (noise units) | concealed by the "
       "parameters | p against the best |\n|---|---|---|---|---|---|---|\n";
   for (Index j = 0; j < std::ssize(d.naming.judged); ++j) {
     const naming::Judged& g = d.naming.judged[j];

@@ -61,8 +61,9 @@ Screened screened(const Question& question, const calibrate::Machinery& machiner
     }
     const naming::Visibility seen(problem, surrogate, weighting, {base.coded}, j);
     const double most = std::sqrt(seen.lambda_high());
-    const std::string what = fmt::format("{}: at most {:.1f} noise units beyond what the parameters imitate, below {:.1f} with 95 %",
-                                         question.candidates[j].name, std::sqrt(seen.lambda()), most);
+    const std::string what =
+        fmt::format("{}: where it shows best {:.1f} noise units beyond what the parameters imitate, below {:.1f} with 95 %",
+                    question.candidates[j].name, std::sqrt(seen.lambda()), most);
     machinery.say(what + (most < limit ? ": it cannot matter here" : ": looked at closely"));
     out.candidate[j] = most < limit;
     if (most < limit) continue;
@@ -131,38 +132,30 @@ void reach_farther(const calibrate::Machinery& machinery, Screened& screening, D
   diagnosis.problem = problem_after(screening, diagnosis);
 }
 
-/// Simulations of two candidates at once, of the question as it was asked.
-void simulate_pairs(const Question& asked, const calibrate::Machinery& machinery, double noise_units, Screened& screening,
-                    Diagnosis& diagnosis) {
-  const auto pairs = pairs_asked_for(diagnosis.problem, kMargin * noise_units);
-  if (pairs.empty()) return;
+/// As many simulations again with each candidate that helps, and those of two at once; of the question as it was asked.
+void simulate_further(const Question& asked, const calibrate::Machinery& machinery, double noise_units, Screened& screening,
+                      Diagnosis& diagnosis) {
+  const AskedFor further = asked_for(diagnosis.problem, kMargin * noise_units);
   const auto& alternatives = diagnosis.problem.alternatives;
-  std::vector<std::string> names;
-  for (const auto& [first, second] : pairs) {
-    names.push_back(alternatives[first].name + " with " + alternatives[second].name);
-    const std::vector<BankPoint> points = plan_pair(asked, *alternatives[first].candidate, *alternatives[second].candidate);
+  const auto add = [&](const std::vector<BankPoint>& points) {
     screening.points.insert(screening.points.end(), points.begin(), points.end());
+  };
+  std::vector<std::string> again, together;
+  for (const Index a : further.helpful) {
+    std::vector<BankPoint> points = plan_group(asked, {alternatives[a].candidate, {}}, 2 * asked.bank.each);
+    std::erase_if(points, [&](const BankPoint& p) { return p.index < asked.bank.each; });
+    again.push_back(alternatives[a].name);
+    add(points);
   }
-  note(machinery, {fmt::format("simulated together: {}", fmt::join(names, ", "))}, diagnosis);
+  for (const auto& [first, second] : further.pairs) {
+    together.push_back(alternatives[first].name + " with " + alternatives[second].name);
+    add(plan_pair(asked, *alternatives[first].candidate, *alternatives[second].candidate));
+  }
+  if (again.empty()) return;
+  note(machinery, {fmt::format("simulated twice as often, for it helps: {}", fmt::join(again, ", "))}, diagnosis);
+  if (!together.empty()) note(machinery, {fmt::format("simulated together: {}", fmt::join(together, ", "))}, diagnosis);
   diagnosis.bank = filled(asked, machinery, screening.points, diagnosis.bank.conditions, diagnosis);
   diagnosis.problem = problem_after(screening, diagnosis);
-}
-
-/// Where the best candidate does not suffice, as many simulations with it again before something is said to lie outside the library: few
-/// leave the surrogate wrong by more than their residuals tell, and what is wrong there looks like more missing physics.
-void ask_again(const Question& asked, const calibrate::Machinery& machinery, const naming::Options& options, Screened& screening,
-               Diagnosis& diagnosis) {
-  if (!helps_but_does_not_suffice(diagnosis.naming, options.level)) return;
-  const naming::Alternative& best = diagnosis.problem.alternatives[*diagnosis.naming.best];
-  if (!best.candidate) return;
-  std::vector<BankPoint> more = plan_group(asked, {best.candidate, {}}, 2 * asked.bank.each);
-  std::erase_if(more, [&](const BankPoint& p) { return p.index < asked.bank.each; });
-  note(machinery, {fmt::format("{} helps most but does not suffice: {} more parameter sets with it are simulated", best.name, more.size())},
-       diagnosis);
-  screening.points.insert(screening.points.end(), more.begin(), more.end());
-  diagnosis.bank = filled(asked, machinery, screening.points, diagnosis.bank.conditions, diagnosis);
-  diagnosis.problem = problem_after(screening, diagnosis);
-  diagnosis.naming = naming::name_candidates(diagnosis.problem, options);
 }
 
 /// What was noted of the recordings; what holds for several is said once.
@@ -241,9 +234,8 @@ Diagnosis diagnose(const Question& asked, const calibrate::Machinery& given, Evi
   diagnosis.bank = filled(question, machinery, screening.points, diagnosis.fit, diagnosis);
   diagnosis.problem = problem_after(screening, diagnosis);
   reach_farther(machinery, screening, diagnosis);
-  simulate_pairs(asked, machinery, options.noise_units, screening, diagnosis);
+  simulate_further(asked, machinery, options.noise_units, screening, diagnosis);
   diagnosis.naming = naming::name_candidates(diagnosis.problem, options);
-  ask_again(asked, machinery, options, screening, diagnosis);
   hold_out(asked, machinery, diagnosis);
   const HeldOutRequest request{.question = question,
                                .machinery = machinery,

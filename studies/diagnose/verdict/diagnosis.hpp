@@ -49,9 +49,6 @@ std::pair<naming::FitResult, std::vector<naming::ActiveCandidate>> fit_of(const 
 /// beside it.
 bool about_to_name(const naming::Result& naming, double level);
 
-/// Whether one helps most, and neither it nor two together suffice.
-bool helps_but_does_not_suffice(const naming::Result& naming, double level);
-
 /// Verdict, sentence, names and next experiment of a diagnosis that has everything else.
 void conclude(const Question& asked, double level, double noise_units, Diagnosis& diagnosis);
 

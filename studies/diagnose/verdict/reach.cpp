@@ -84,7 +84,7 @@ std::vector<End> ends_reached(const Question& question, const naming::Problem& p
   return ends;
 }
 
-std::vector<std::pair<Index, Index>> pairs_asked_for(const naming::Problem& problem, double noise_units) {
+AskedFor asked_for(const naming::Problem& problem, double noise_units) {
   const FirstLook look(problem);
   const auto& alternatives = problem.alternatives;
   const std::vector<Index> tested = look.candidates();
@@ -99,12 +99,13 @@ std::vector<std::pair<Index, Index>> pairs_asked_for(const naming::Problem& prob
   std::copy_if(tested.begin(), tested.end(), std::back_inserter(seconds), [&](Index a) {
     return std::sqrt(naming::Visibility(problem, look.surrogate, look.weighting, {look.base.coded}, a).lambda_high()) >= noise_units;
   });
-  std::vector<std::pair<Index, Index>> out;
+  AskedFor out;
   for (std::size_t k = 0; k < tested.size(); ++k) {
     if (q[k] > least + kHelps) continue;  // not the first by far
+    out.helpful.push_back(tested[k]);
     for (const Index a : seconds) {
-      const bool known = std::find(out.begin(), out.end(), std::pair(a, tested[k])) != out.end();
-      if (!known && naming::together(alternatives[tested[k]], alternatives[a])) out.emplace_back(tested[k], a);
+      const bool known = std::find(out.pairs.begin(), out.pairs.end(), std::pair(a, tested[k])) != out.pairs.end();
+      if (!known && naming::together(alternatives[tested[k]], alternatives[a])) out.pairs.emplace_back(tested[k], a);
     }
   }
   return out;

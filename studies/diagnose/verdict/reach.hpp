@@ -1,4 +1,5 @@
-// What a first look at the fits asks of the bank: simulations beyond a range that turns out too narrow, and with two candidates at once.
+// What a first look at the fits asks of the bank: simulations beyond a range that turns out too narrow, more with a candidate that helps,
+// and with two candidates at once.
 #pragma once
 
 #include <string>
@@ -14,10 +15,17 @@ namespace millscope::diagnose {
 /// alternative that helps; of priors where such a candidate's does.
 std::vector<End> ends_reached(const Question& question, const naming::Problem& problem);
 
-/// Alternatives: each candidate that helps as much as the best, where that may be named, with each other that may be beside it. What a
-/// second does beside the first may be quite another thing than what it does alone (worn lifters where beads resist rolling), so that
+/// Alternatives with candidates.
+struct AskedFor {
+  std::vector<Index> helpful;
+  std::vector<std::pair<Index, Index>> pairs;
+};
+
+/// `helpful`: each candidate that helps as much as the best, where that may be named. The verdict hangs on what the surrogate says of it:
+/// what is wrong there for want of runs looks like more missing physics. `pairs`: each of them with each other that may be beside it. What
+/// a second does beside the first may be quite another thing than what it does alone (worn lifters where beads resist rolling), so that
 /// without simulations of both it cannot be looked for. `noise_units`: what surely does less, by itself, is left out.
-std::vector<std::pair<Index, Index>> pairs_asked_for(const naming::Problem& problem, double noise_units);
+AskedFor asked_for(const naming::Problem& problem, double noise_units);
 
 /// "bead_friction: a fit stands at the upper end of its range, 0.6; simulated up to 0.85".
 std::string sentence_of(const Question& before, const End& end);

@@ -291,7 +291,7 @@ void decide(double level, double noise_units, Diagnosis& diagnosis) {
     diagnosis.next_experiment = "Hold both against a condition that was not fitted: put them into the base case and diagnose again.";
     return;
   }
-  if (helps_but_does_not_suffice(diagnosis.naming, level)) {
+  if (best.goodness_p <= level) {
     diagnosis.verdict = Verdict::outside_library;
     diagnosis.sentence = fmt::format(
         "{} helps most (family-wise p = {:.2g}) but does not suffice: with it the recordings still do not look like the model (p = "
@@ -331,10 +331,6 @@ void decide(double level, double noise_units, Diagnosis& diagnosis) {
 bool about_to_name(const naming::Result& naming, double level) {
   return naming.best && second_beside(naming, level) == nullptr && naming.judged[*naming.best].goodness_p > level &&
          naming.kept.size() == 1;
-}
-
-bool helps_but_does_not_suffice(const naming::Result& naming, double level) {
-  return naming.best && second_beside(naming, level) == nullptr && naming.judged[*naming.best].goodness_p <= level;
 }
 
 std::pair<naming::FitResult, std::vector<naming::ActiveCandidate>> fit_of(const Diagnosis& diagnosis) {

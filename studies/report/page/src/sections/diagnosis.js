@@ -57,8 +57,8 @@ function tried({ hypotheses = [], notes = [] }, key) {
       { label: "strength (90 %)", wide: true, value: strength }, { label: "gain ΔQ", number: true, value: (row) => number(Math.abs(row.delta_q) < 1e-6 ? 0 : row.delta_q, 3) },
       { label: "κ", number: true, value: (row) => number(row.kappa, 2) }, { label: "λ", number: true, value: (row) => number(row.lambda, 3) },
       { label: "could be seen", value: canMatter }] }),
-  note("p, all candidates together: how often chance would bring one of them so far. κ: part of the effect that retuned friction cannot imitate (0: concealed wholly). "
-    + "λ: the square of that part in noise units at the candidate's strongest; below 9 it cannot be seen in these data. ΔQ: by how much the candidate lowers the misfit."),
+  note("p, all candidates together: how often chance would bring one of them so far. κ: part of the effect that retuned friction cannot imitate, at the strength where it shows best (0: concealed wholly). "
+    + "λ: the square of that part in noise units; below 9 it cannot be seen in these data. ΔQ: by how much the candidate lowers the misfit."),
   untested.length ? disclosure(`${key}-untested`, `Not tested (${untested.length})`, () => list(untested.map((one) => one.replace(/^not tested: /, "")))) : null);
 }
 
