@@ -278,7 +278,7 @@ def markdown(results):
                      (c["case"], c["beads"], c["mesh"], c["triangles"], len(c["pairs"]), c["liggghts_M_median"], c["millscope_M_median"],
                       c["ratio_median"], c["ratio_min"], c["ratio_max"]))
     for t in results.get("threads", []):
-        lines += ["", "Two threads of one program against two programs of one thread at once, %s, wall time: median **%.3f** (%.3f to %.3f) of %d pairs; "
+        lines += ["", "Two threads of one program against two programs of one thread at once. Wall time on the %s: median **%.3f** (%.3f to %.3f) of %d pairs; "
                   "state hash of all: %s." % (t["case"], t["share_median"], t["share_min"], t["share_max"], len(t["pairs"]),
                                               "the same" if t["same_hash"] else "**different**")]
     if "sizes" in results:
