@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Are the errors right by which a diagnosis weighs a recording? bench/look_errors.py BUILD -o FOLDER [--beads 24,60] [--starts 40]
+[--case CASE.yaml] [--seconds 10]
 
-The mill of the proof is simulated from many starts (10 s at 75 % of critical), and each is looked at as a recording of some of its beads. All show
+The mill of the proof is simulated from many starts (at 75 % of critical), and each is looked at as a recording of some of its beads. All show
 one mill, so that they differ from their mean by chance alone. The misfit of one recording is the mean square of that, d' C^-1 d/n with its n
 numbers. It is 1 where the errors C are right, less where they are taken for too large. Three C: the recording's own, its correlations shrunk;
-what simulations of 3 s with 150 beads have, as large as the recording's own in the median (nearly what a diagnosis takes); the same, as large
-as simulations say by the second of a bead. Debian's python3, for numpy.
+what simulations of 3 s with 150 beads have, as large as the recording's own along their own directions (nearly what a diagnosis takes); the
+same, as large as the recording's own in the median of the numbers; the same, as large as simulations say by the second of a bead. Debian's python3, for numpy.
 """
 
 import argparse
@@ -18,11 +19,10 @@ from pathlib import Path
 import numpy
 
 ROOT = Path(__file__).resolve().parent.parent
-CASE = ROOT / "configs/proof/story.yaml"
 SPEED = "mill.speed=75 %critical"
 STUDY = """base: %s
 conditions:
-  speed75: {set: {mill.speed: 75 %%critical, time.end_s: 11, time.analyze_from_s: 1}, recording: recording.yaml, role: fit}
+  speed75: {set: {mill.speed: 75 %%critical, time.end_s: %d, time.analyze_from_s: 1}, recording: recording.yaml, role: fit}
 parameters: {pairs.glass~glass.static_friction: {range: [0.1, 0.6]}}
 observe: {beads: %d}
 """
@@ -34,9 +34,9 @@ def call(*command):
         raise RuntimeError("%s failed (%d): %s" % (" ".join(map(str, command)), done.returncode, done.stderr.strip()))
 
 
-def simulate(binary, out, seed, seconds, output):
+def simulate(how, out, seed, seconds, output):
     if not (out / "summary.json").exists():
-        call(binary, "run", CASE, "-o", out, "--force", "--quiet", "--threads", 1, "--set", "seed=%d" % seed, "--set", SPEED, "--set",
+        call(how.build / "bin/millscope", "run", how.case, "-o", out, "--force", "--quiet", "--threads", 1, "--set", "seed=%d" % seed, "--set", SPEED, "--set",
              "time={end_s: %d, analyze_from_s: 1}" % (1 + seconds), *(w for setting in output for w in ("--set", "output." + setting)))
     return out
 
@@ -62,12 +62,13 @@ class Look:
         self.covariance, self.resampled = (m + numpy.tril(m, -1).T for m in (full(rows), full(resampled)))
 
 
-def look(bench, folder, beads, run):
+def look(how, beads, run):
+    folder = how.output
     file = folder / ("%s-%d.txt" % (run.name, beads))
     if not file.exists():
         study = folder / ("study-%d.yaml" % beads)
-        study.write_text(STUDY % (CASE, beads))
-        call(bench, study, "--run", run, "--looks", 1, "--values", file.with_suffix(".new"))
+        study.write_text(STUDY % (how.case, 1 + how.seconds, beads))
+        call(how.build / "bin/millscope_look_bench", study, "--run", run, "--looks", 1, "--values", file.with_suffix(".new"))
         os.replace(file.with_suffix(".new"), file)
     return Look(file)
 
@@ -78,11 +79,16 @@ def misfits(looks, pool):
     second = numpy.mean([o.seconds * o.resampled for o in pool], axis=0)
     tracked = numpy.diag(second) > 0
 
-    def ratio(o):
+    kept = numpy.ix_(tracked, tracked)
+
+    def along(o):
+        return numpy.trace(numpy.linalg.solve(second[kept], o.resampled[kept])) / tracked.sum()
+
+    def median(o):
         return numpy.median(numpy.diag(o.resampled)[tracked] / numpy.diag(second)[tracked])
 
-    kept = numpy.ix_(tracked, tracked)
-    for name, covariance in (("the recording's own", lambda o: o.covariance), ("simulations', the recording's size", lambda o: ratio(o) * second),
+    for name, covariance in (("the recording's own", lambda o: o.covariance), ("simulations', the recording's size", lambda o: along(o) * second),
+                             ("simulations', its size by the median number", lambda o: median(o) * second),
                              ("simulations'", lambda o: second / o.seconds)):
         yield name, [d[tracked] @ numpy.linalg.solve(covariance(o)[kept], d[tracked]) / tracked.sum() for o, d in zip(looks, deviations)]
 
@@ -93,22 +99,23 @@ def main():
     parser.add_argument("-o", "--output", type=Path, required=True)
     parser.add_argument("--beads", default="24,60", help="as many are seen in a recording, from 20")
     parser.add_argument("--starts", type=int, default=40)
-    options = parser.parse_args()
-    folder = options.output
+    parser.add_argument("--case", type=lambda name: Path(name).resolve(), default=ROOT / "configs/proof/story.yaml", help="the mill")
+    parser.add_argument("--seconds", type=int, default=10, help="of a recording")
+    how = parser.parse_args()
+    folder = how.output
     folder.mkdir(parents=True, exist_ok=True)
-    binary, bench = options.build / "bin/millscope", options.build / "bin/millscope_look_bench"
     frames = ["frames.every_s=0.005", "tracks=~", "vtk=~"]
     try:
         if not (folder / "recording.yaml").exists():
-            simulate(binary, folder / "recorded", 1, 10, ["tracks={beads: 60, every_s: 0.0005}", "frames=~", "vtk=~"])
-            call(binary, "pept", "synthesize", folder / "recorded", "-o", folder / "recording.a", "--camera", ROOT / "configs/cameras/study.yaml")
+            simulate(how, folder / "recorded", 1, how.seconds, ["tracks={beads: 60, every_s: 0.0005}", "frames=~", "vtk=~"])
+            call(how.build / "bin/millscope", "pept", "synthesize", folder / "recorded", "-o", folder / "recording.a", "--camera", ROOT / "configs/cameras/study.yaml")
         with ThreadPoolExecutor(os.cpu_count()) as threads:
-            starts = list(threads.map(lambda k: simulate(binary, folder / ("start-%d" % k), 1000 + k, 10, frames), range(options.starts)))
-            short = list(threads.map(lambda k: simulate(binary, folder / ("short-%d" % k), 2000 + k, 3, frames), range(options.starts)))
-            pool = list(threads.map(lambda run: look(bench, folder, 150, run), short))
-            print("| beads seen for 10 s | errors | misfit of a recording | scatter of it | largest |\n|---|---|---|---|---|")
-            for beads in (int(b) for b in options.beads.split(",")):
-                looks = list(threads.map(lambda run: look(bench, folder, beads, run), starts))
+            starts = list(threads.map(lambda k: simulate(how, folder / ("start-%d" % k), 1000 + k, how.seconds, frames), range(how.starts)))
+            short = list(threads.map(lambda k: simulate(how, folder / ("short-%d" % k), 2000 + k, 3, frames), range(how.starts)))
+            pool = list(threads.map(lambda run: look(how, 150, run), short))
+            print("| beads seen for %d s | errors | misfit of a recording | scatter of it | largest |\n|---|---|---|---|---|" % how.seconds)
+            for beads in (int(b) for b in how.beads.split(",")):
+                looks = list(threads.map(lambda run: look(how, beads, run), starts))
                 for name, found in misfits(looks, pool):
                     print("| %d | %s | %.2f | %.2f | %.2f |" % (beads, name, numpy.mean(found), numpy.std(found, ddof=1), max(found)), flush=True)
     except RuntimeError as e:

@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kSurely = 3.09;    // normal: 99.9 %
 constexpr double kSmallest = 1e-6;  // of a variance, left of sums that are always the same: one number that is compared twice
+// Directions that tell as much of the common size as one whose blocks are independent would. Tried: the size of one recording scatters by 4
+// to 8 % (bench/look_errors.py), which is 340 to 1200 degrees of freedom; a third of 33 directions of 32 to 58 blocks is 340 to 630.
+constexpr double kDirectionsForOne = 3;
 
 /// Of the variances of two covariances the median ratio, where both have some.
 double median_ratio(const MatrixXd& own, const MatrixXd& other) {
@@ -25,9 +28,9 @@ double median_ratio(const MatrixXd& own, const MatrixXd& other) {
   return ratios.empty() ? 0 : base::quantile(ratios, 0.5);
 }
 
-/// What resampling says of a condition's simulations without a candidate, each as large as the recording's own, on average. Empty where
-/// there is none.
-MatrixXd by_simulations(const MatrixXd& own, const Bank& bank, std::size_t condition) {
+/// What resampling says of a condition's simulations without a candidate, on average, each scaled to the recording's variances: their
+/// shape. Empty where there is none.
+MatrixXd shape_of(const MatrixXd& own, const Bank& bank, std::size_t condition) {
   const std::optional<std::size_t> k = bank.place_of(condition);
   MatrixXd sum;
   double runs = 0;
@@ -48,21 +51,42 @@ double at_most(double degrees) {
   return std::pow(1 - v + kSurely * std::sqrt(v), 3);
 }
 
-/// The same; in those of its own directions in which the recording surely has more, what it has there.
-MatrixXd raised(const MatrixXd& simulated, const MatrixXd& own, double degrees) {
-  const VectorXd variance = simulated.diagonal().cwiseMax(own.diagonal());
+/// The mean, without what is surely larger than the rest: a recording's own.
+double typical(std::vector<double> ratios, double degrees) {
+  const double most = at_most(degrees) * base::quantile(ratios, 0.5);
+  double sum = 0, count = 0;
+  for (const double ratio : ratios) {
+    if (ratio <= most) sum += ratio, ++count;
+  }
+  return sum / count;
+}
+
+/// A shape as large as the recording's own errors, and of how many directions that is the mean. Every direction counts alike, as in a
+/// misfit: the variances of the numbers hang on the few directions that are slow, which a recording knows worst.
+struct Sized {
+  MatrixXd covariance;
+  Index directions = 0;
+};
+
+/// In those of the shape's own directions in which the recording surely has more, what it has there.
+Sized sized(const MatrixXd& shape, const MatrixXd& own, double degrees) {
+  const VectorXd variance = shape.diagonal().cwiseMax(own.diagonal());
   std::vector<Index> some;
   for (Index i = 0; i < variance.size(); ++i) {
     if (variance[i] > 0) some.push_back(i);
   }
   const VectorXd unit = variance(some).cwiseSqrt(), per_unit = unit.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(per_unit.asDiagonal() * simulated(some, some) * per_unit.asDiagonal());
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(per_unit.asDiagonal() * shape(some, some) * per_unit.asDiagonal());
   const MatrixXd directions = unit.asDiagonal() * solver.eigenvectors(), across = per_unit.asDiagonal() * solver.eigenvectors();
   const VectorXd recorded = (across.transpose() * own(some, some) * across).diagonal();
-  const VectorXd known = solver.eigenvalues().cwiseMax(kSmallest);
+  std::vector<double> ratios;
+  for (Index i = 0; i < recorded.size(); ++i) {
+    if (solver.eigenvalues()[i] > kSmallest) ratios.push_back(recorded[i] / solver.eigenvalues()[i]);
+  }
+  const VectorXd known = typical(ratios, degrees) * solver.eigenvalues().cwiseMax(kSmallest);
   const VectorXd along = (recorded.array() > at_most(degrees) * known.array()).select(recorded, known);
-  MatrixXd out = MatrixXd::Zero(own.rows(), own.cols());
-  out(some, some) = directions * along.asDiagonal() * directions.transpose();
+  Sized out{MatrixXd::Zero(own.rows(), own.cols()), std::ssize(ratios)};
+  out.covariance(some, some) = directions * along.asDiagonal() * directions.transpose();
   return out;
 }
 
@@ -75,13 +99,15 @@ struct Errors {
 /// See recorded_problem.hpp.
 Errors errors_of(const calibrate::Observation& recorded, const Bank& bank, std::size_t condition) {
   if (!recorded.of_tracks() || recorded.resampled.size() == 0) return {recorded.covariance};
-  const MatrixXd simulated = by_simulations(recorded.resampled, bank, condition);
-  if (simulated.size() == 0) return {recorded.covariance};
+  const MatrixXd shape = shape_of(recorded.resampled, bank, condition);
+  if (shape.size() == 0) return {recorded.covariance};
+  const double degrees = std::max(1.0, recorded.blocks - 1);
   Errors out;
-  out.size.degrees = std::max(1.0, recorded.blocks - 1);
   const MatrixXd resampled = calibrate::few_blocks_factor(recorded.blocks) * recorded.resampled;
   const VectorXd others = (recorded.covariance - resampled).diagonal().cwiseMax(0);
-  out.covariance = raised(simulated, recorded.resampled, out.size.degrees);
+  const Sized found = sized(shape, recorded.resampled, degrees);
+  out.covariance = found.covariance;
+  out.size.degrees = std::max(1.0, static_cast<double>(found.directions) / kDirectionsForOne) * degrees;
   out.covariance.diagonal() += others;
   for (Index i = 0; i < others.size(); ++i) {  // those of which resampling tells most
     if (others[i] < 0.5 * out.covariance(i, i)) out.size.observables.push_back(i);
