@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -14,10 +15,12 @@ namespace millscope::diagnose {
 namespace {
 
 constexpr double kSurely = 3.09;    // normal: 99.9 %
+constexpr double kLikely = 1.645;   // 95 %: an error taken for too small is the worse mistake
 constexpr double kSmallest = 1e-6;  // of a variance, left of sums that are always the same: one number that is compared twice
 // Directions that tell as much of the common size as one whose blocks are independent would. Tried: the size of one recording scatters by 4
 // to 8 % (bench/look_errors.py), which is 340 to 1200 degrees of freedom; a third of 33 directions of 32 to 58 blocks is 340 to 630.
 constexpr double kDirectionsForOne = 3;
+constexpr double kFewBlocks = 30;  // nobody has tried fewer: then the size is as unsure as one direction
 
 /// Of the variances of two covariances the median ratio, where both have some.
 double median_ratio(const MatrixXd& own, const MatrixXd& other) {
@@ -45,20 +48,23 @@ MatrixXd shape_of(const MatrixXd& own, const Bank& bank, std::size_t condition) 
   return sum / runs;
 }
 
-/// By how much a variance of ν degrees of freedom comes out too large in one of a thousand (Wilson & Hilferty 1931).
-double at_most(double degrees) {
+/// What a variance of ν degrees of freedom comes out as, in parts of itself, at a normal quantile (Wilson & Hilferty 1931).
+double chance_of_variance(double degrees, double quantile) {
   const double v = 2 / (9 * degrees);
-  return std::pow(1 - v + kSurely * std::sqrt(v), 3);
+  return std::pow(std::max(0.0, 1 - v + quantile * std::sqrt(v)), 3);
 }
 
-/// The mean, without what is surely larger than the rest: a recording's own.
-double typical(std::vector<double> ratios, double degrees) {
-  const double most = at_most(degrees) * base::quantile(ratios, 0.5);
-  double sum = 0, count = 0;
-  for (const double ratio : ratios) {
-    if (ratio <= most) sum += ratio, ++count;
-  }
-  return sum / count;
+/// The mean of the ratios that chance lets differ so (99.9 %), and their number. The others are a recording's own: a camera that wanders, a
+/// region that only simulated beads visit.
+std::pair<double, Index> common_size(std::vector<double> ratios, double degrees) {
+  std::erase_if(ratios, [](double ratio) { return !(ratio > 0); });
+  if (ratios.empty()) return {1, 0};
+  const double middle = base::quantile(ratios, 0.5) / chance_of_variance(degrees, 0);
+  std::erase_if(ratios, [&](double ratio) {
+    return ratio > chance_of_variance(degrees, kSurely) * middle || ratio < chance_of_variance(degrees, -kSurely) * middle;
+  });
+  if (ratios.empty()) return {middle, 0};
+  return {std::accumulate(ratios.begin(), ratios.end(), 0.0) / static_cast<double>(ratios.size()), std::ssize(ratios)};
 }
 
 /// A shape as large as the recording's own errors, and of how many directions that is the mean. Every direction counts alike, as in a
@@ -68,7 +74,7 @@ struct Sized {
   Index directions = 0;
 };
 
-/// In those of the shape's own directions in which the recording surely has more, what it has there.
+/// In those of the shape's own directions in which the recording likely has more, what it has there.
 Sized sized(const MatrixXd& shape, const MatrixXd& own, double degrees) {
   const VectorXd variance = shape.diagonal().cwiseMax(own.diagonal());
   std::vector<Index> some;
@@ -83,9 +89,10 @@ Sized sized(const MatrixXd& shape, const MatrixXd& own, double degrees) {
   for (Index i = 0; i < recorded.size(); ++i) {
     if (solver.eigenvalues()[i] > kSmallest) ratios.push_back(recorded[i] / solver.eigenvalues()[i]);
   }
-  const VectorXd known = typical(ratios, degrees) * solver.eigenvalues().cwiseMax(kSmallest);
-  const VectorXd along = (recorded.array() > at_most(degrees) * known.array()).select(recorded, known);
-  Sized out{MatrixXd::Zero(own.rows(), own.cols()), std::ssize(ratios)};
+  const auto [size, alike] = common_size(std::move(ratios), degrees);
+  const VectorXd known = size * solver.eigenvalues().cwiseMax(kSmallest);
+  const VectorXd along = (recorded.array() > chance_of_variance(degrees, kLikely) * known.array()).select(recorded, known);
+  Sized out{MatrixXd::Zero(own.rows(), own.cols()), alike};
   out.covariance(some, some) = directions * along.asDiagonal() * directions.transpose();
   return out;
 }
@@ -107,7 +114,8 @@ Errors errors_of(const calibrate::Observation& recorded, const Bank& bank, std::
   const VectorXd others = (recorded.covariance - resampled).diagonal().cwiseMax(0);
   const Sized found = sized(shape, recorded.resampled, degrees);
   out.covariance = found.covariance;
-  out.size.degrees = std::max(1.0, static_cast<double>(found.directions) / kDirectionsForOne) * degrees;
+  const double alike = recorded.blocks < kFewBlocks ? 1 : static_cast<double>(found.directions) / kDirectionsForOne;
+  out.size.degrees = std::max(1.0, alike) * degrees;
   out.covariance.diagonal() += others;
   for (Index i = 0; i < others.size(); ++i) {  // those of which resampling tells most
     if (others[i] < 0.5 * out.covariance(i, i)) out.size.observables.push_back(i);
