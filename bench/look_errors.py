@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """Are the errors right by which a diagnosis weighs a recording? bench/look_errors.py BUILD -o FOLDER [--beads 24,60] [--starts 40]
-[--case CASE.yaml] [--seconds 10]
+[--case CASE.yaml] [--percent 75] [--seconds 10]
 
-The mill of the proof is simulated from many starts (at 75 % of critical), and each is looked at as a recording of some of its beads. All show
+The mill of the proof is simulated from many starts (at 75 % of critical, or another speed), and each is looked at as a recording of some of its beads. All show
 one mill, so that they differ from their mean by chance alone. The misfit of one recording is the mean square of that, d' C^-1 d/n with its n
 numbers. It is 1 where the errors C are right, less where they are taken for too large. Three C: the recording's own, its correlations shrunk;
 what simulations of 3 s with 150 beads have, as large as the recording's own along their own directions (nearly what a diagnosis takes); the
-same, as large as the recording's own in the median of the numbers; the same, as large as simulations say by the second of a bead. Debian's python3, for numpy.
+same, as large as the recording's own in the median of the numbers; the same, as large as simulations say by the second of a bead. Debian's
+python3, for numpy.
 """
 
 import argparse
@@ -19,10 +20,9 @@ from pathlib import Path
 import numpy
 
 ROOT = Path(__file__).resolve().parent.parent
-SPEED = "mill.speed=75 %critical"
 STUDY = """base: %s
 conditions:
-  speed75: {set: {mill.speed: 75 %%critical, time.end_s: %d, time.analyze_from_s: 1}, recording: recording.yaml, role: fit}
+  speed: {set: {mill.speed: %d %%critical, time.end_s: %d, time.analyze_from_s: 1}, recording: recording.yaml, role: fit}
 parameters: {pairs.glass~glass.static_friction: {range: [0.1, 0.6]}}
 observe: {beads: %d}
 """
@@ -36,8 +36,10 @@ def call(*command):
 
 def simulate(how, out, seed, seconds, output):
     if not (out / "summary.json").exists():
-        call(how.build / "bin/millscope", "run", how.case, "-o", out, "--force", "--quiet", "--threads", 1, "--set", "seed=%d" % seed, "--set", SPEED, "--set",
-             "time={end_s: %d, analyze_from_s: 1}" % (1 + seconds), *(w for setting in output for w in ("--set", "output." + setting)))
+        settings = ["seed=%d" % seed, "mill.speed=%d %%critical" % how.percent, "time={end_s: %d, analyze_from_s: 1}" % (1 + seconds)]
+        settings += ["output." + setting for setting in output]
+        call(how.build / "bin/millscope", "run", how.case, "-o", out, "--force", "--quiet", "--threads", 1,
+             *(word for setting in settings for word in ("--set", setting)))
     return out
 
 
@@ -67,7 +69,7 @@ def look(how, beads, run):
     file = folder / ("%s-%d.txt" % (run.name, beads))
     if not file.exists():
         study = folder / ("study-%d.yaml" % beads)
-        study.write_text(STUDY % (how.case, 1 + how.seconds, beads))
+        study.write_text(STUDY % (how.case, how.percent, 1 + how.seconds, beads))
         call(how.build / "bin/millscope_look_bench", study, "--run", run, "--looks", 1, "--values", file.with_suffix(".new"))
         os.replace(file.with_suffix(".new"), file)
     return Look(file)
@@ -100,6 +102,7 @@ def main():
     parser.add_argument("--beads", default="24,60", help="as many are seen in a recording, from 20")
     parser.add_argument("--starts", type=int, default=40)
     parser.add_argument("--case", type=lambda name: Path(name).resolve(), default=ROOT / "configs/proof/story.yaml", help="the mill")
+    parser.add_argument("--percent", type=int, default=75, help="of the critical speed")
     parser.add_argument("--seconds", type=int, default=10, help="of a recording")
     how = parser.parse_args()
     folder = how.output
@@ -108,7 +111,8 @@ def main():
     try:
         if not (folder / "recording.yaml").exists():
             simulate(how, folder / "recorded", 1, how.seconds, ["tracks={beads: 60, every_s: 0.0005}", "frames=~", "vtk=~"])
-            call(how.build / "bin/millscope", "pept", "synthesize", folder / "recorded", "-o", folder / "recording.a", "--camera", ROOT / "configs/cameras/study.yaml")
+            call(how.build / "bin/millscope", "pept", "synthesize", folder / "recorded", "-o", folder / "recording.a", "--camera",
+                 ROOT / "configs/cameras/study.yaml")
         with ThreadPoolExecutor(os.cpu_count()) as threads:
             starts = list(threads.map(lambda k: simulate(how, folder / ("start-%d" % k), 1000 + k, how.seconds, frames), range(how.starts)))
             short = list(threads.map(lambda k: simulate(how, folder / ("short-%d" % k), 2000 + k, 3, frames), range(how.starts)))

@@ -146,6 +146,13 @@ void check_varied_apart(const Question& question, const naming::BankData& data) 
   }
 }
 
+/// Those with a candidate alone that follow the first `from`, of `count`.
+std::vector<BankPoint> plan_next(const Question& question, Index candidate, int from, int count) {
+  std::vector<BankPoint> points = plan_group(question, {candidate, {}}, count);
+  std::erase_if(points, [&](const BankPoint& p) { return p.index < from; });
+  return points;
+}
+
 }  // namespace
 
 std::vector<Index> varied_apart(const Question& question) {
@@ -209,10 +216,13 @@ std::vector<BankPoint> plan_together(const Question& question, Index candidate, 
 }
 
 std::vector<BankPoint> plan_rest(const Question& question, Index candidate) {
-  std::vector<BankPoint> all = plan_group(question, {candidate, {}}, question.bank.each);
-  std::erase_if(all, [&](const BankPoint& p) { return p.index < question.bank.first; });
+  std::vector<BankPoint> all = plan_next(question, candidate, question.bank.first, question.bank.each);
   for (const Index nuisance : varied_apart(question)) append(all, plan_together(question, candidate, nuisance));
   return all;
+}
+
+std::vector<BankPoint> plan_more(const Question& question, Index candidate) {
+  return plan_next(question, candidate, question.bank.each, 2 * question.bank.each);
 }
 
 std::vector<BankPoint> plan_pair(const Question& question, Index one, Index other) {

@@ -48,6 +48,8 @@ std::vector<BankPoint> plan_screening(const Question& question);
 std::vector<BankPoint> plan_together(const Question& question, Index candidate, Index nuisance);
 /// What a candidate that may matter has besides: the rest of those with it alone, and those with it and each nuisance that is varied apart.
 std::vector<BankPoint> plan_rest(const Question& question, Index candidate);
+/// As many with a candidate alone as the bank has already, for one that helps.
+std::vector<BankPoint> plan_more(const Question& question, Index candidate);
 /// Two candidates at once, as many as with one: whether they add up. Named and seeded alike in either order.
 std::vector<BankPoint> plan_pair(const Question& question, Index one, Index other);
 /// Both, for all candidates.

@@ -14,6 +14,9 @@ struct CommonSize {
   double degrees = 0;
 };
 
+/// What a variance of ν degrees of freedom comes out as, in parts of itself, at a standard normal quantile (Wilson & Hilferty 1931).
+double variance_at(double degrees, double normal);
+
 class Noise {
  public:
   Noise() = default;

@@ -47,7 +47,11 @@ const Visibility::Seen& Visibility::best() const {
   return *std::max_element(seen_.begin(), seen_.end(), [](const Seen& a, const Seen& b) { return a.lambda < b.lambda; });
 }
 
-double Visibility::kappa() const { return best().whole > 0 ? std::min(1.0, std::sqrt(best().lambda / best().whole)) : 0; }
+double Visibility::kappa() const {
+  const Seen& at = best();
+  const double whole = (weighting_.whitener * (observed(at.strength) - observed(none()))).squaredNorm() - run_noise_ * at.h;
+  return whole > 0 ? std::min(1.0, std::sqrt(at.lambda / whole)) : 0;
+}
 
 std::vector<std::pair<double, double>> Visibility::curve() const {
   std::vector<std::pair<double, double>> out;
@@ -55,12 +59,8 @@ std::vector<std::pair<double, double>> Visibility::curve() const {
   return out;
 }
 
-StrengthRange Visibility::range() const {
-  return alternative_.prior.value_or(alternative_.freed ? StrengthRange{-1, 1} : alternative_.range);
-}
-
 std::vector<double> Visibility::strengths() const {
-  const StrengthRange all = range();
+  const StrengthRange all = alternative_.prior.value_or(alternative_.freed ? StrengthRange{-1, 1} : alternative_.range);
   if (alternative_.freed) return {all.low, all.high};
   if (all.low == all.high) return {0, all.high};  // on or off
   std::vector<double> out;
@@ -101,15 +101,12 @@ VectorXd Visibility::observed(double strength) const {
 Visibility::Seen Visibility::look(double strength) const {
   const VectorXd y = observed(strength);
   const FitResult fit = base_.fit(y);
-  Seen seen{strength, weighting_.whitener * (y - surrogate_.at(fit.coded, base_.active(fit))), 0, 0, leverage(strength)};
-  const double noise = run_noise_ * seen.h;
-  seen.whole = std::max(0.0, (weighting_.whitener * (y - observed(none()))).squaredNorm() - noise);
-  seen.lambda = std::max(0.0, fit.q - noise);
+  Seen seen{strength, weighting_.whitener * (y - surrogate_.at(fit.coded, base_.active(fit))), 0, leverage(strength)};
+  seen.lambda = std::max(0.0, fit.q - run_noise_ * seen.h);
   return seen;
 }
 
 double Visibility::high(const Seen& seen) const {
-  if (alternative_.freed) return seen.lambda;
   const double degrees = static_cast<double>(surrogate_.degrees()), along = seen.white.squaredNorm();
   const double a = 2 * seen.h * seen.h * run_covariance_.squaredNorm() * (1 + 1 / std::max(1.0, degrees));
   const double b = along > 0 ? 4 * seen.h * seen.white.dot(run_covariance_ * seen.white) / along : 0, bend = 0.5 * base::kNormal90 * b;

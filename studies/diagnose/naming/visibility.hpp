@@ -42,8 +42,7 @@ class Visibility {
  private:
   struct Seen {
     double strength = 0;
-    VectorXd white;    ///< W (m(θ, φ) − m(u))
-    double whole = 0;  ///< sᵀ Σ⁻¹ s − ε
+    VectorXd white;  ///< W (m(θ, φ) − m(u))
     double lambda = 0;
     double h = 0;  ///< leverage
   };
@@ -52,8 +51,7 @@ class Visibility {
   VectorXd observed(double strength) const;
   double leverage(double strength) const;
   double high(const Seen& seen) const;
-  double none() const;  ///< strength at which there is nothing
-  StrengthRange range() const;
+  double none() const;                    ///< strength at which there is nothing
   std::vector<double> strengths() const;  ///< over the range, its ends among them; of a nuisance these alone
 
   const Problem& problem_;

@@ -140,19 +140,17 @@ void simulate_further(const Question& asked, const calibrate::Machinery& machine
   const auto add = [&](const std::vector<BankPoint>& points) {
     screening.points.insert(screening.points.end(), points.begin(), points.end());
   };
-  std::vector<std::string> again, together;
+  std::vector<std::string> helpful, together;
   for (const Index a : further.helpful) {
-    std::vector<BankPoint> points = plan_group(asked, {alternatives[a].candidate, {}}, 2 * asked.bank.each);
-    std::erase_if(points, [&](const BankPoint& p) { return p.index < asked.bank.each; });
-    again.push_back(alternatives[a].name);
-    add(points);
+    helpful.push_back(alternatives[a].name);
+    add(plan_more(asked, *alternatives[a].candidate));
   }
   for (const auto& [first, second] : further.pairs) {
     together.push_back(alternatives[first].name + " with " + alternatives[second].name);
     add(plan_pair(asked, *alternatives[first].candidate, *alternatives[second].candidate));
   }
-  if (again.empty()) return;
-  note(machinery, {fmt::format("simulated twice as often, for it helps: {}", fmt::join(again, ", "))}, diagnosis);
+  if (helpful.empty()) return;
+  note(machinery, {fmt::format("simulated twice as often, for it helps: {}", fmt::join(helpful, ", "))}, diagnosis);
   if (!together.empty()) note(machinery, {fmt::format("simulated together: {}", fmt::join(together, ", "))}, diagnosis);
   diagnosis.bank = filled(asked, machinery, screening.points, diagnosis.bank.conditions, diagnosis);
   diagnosis.problem = problem_after(screening, diagnosis);

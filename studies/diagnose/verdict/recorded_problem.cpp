@@ -9,6 +9,7 @@
 
 #include "kernel/base/statistics.hpp"
 #include "studies/calibrate/power.hpp"
+#include "studies/diagnose/naming/noise.hpp"
 #include "studies/diagnose/naming/surrogate.hpp"
 
 namespace millscope::diagnose {
@@ -48,21 +49,14 @@ MatrixXd shape_of(const MatrixXd& own, const Bank& bank, std::size_t condition) 
   return sum / runs;
 }
 
-/// What a variance of ν degrees of freedom comes out as, in parts of itself, at a normal quantile (Wilson & Hilferty 1931).
-double chance_of_variance(double degrees, double quantile) {
-  const double v = 2 / (9 * degrees);
-  return std::pow(std::max(0.0, 1 - v + quantile * std::sqrt(v)), 3);
-}
-
 /// The mean of the ratios that chance lets differ so (99.9 %), and their number. The others are a recording's own: a camera that wanders, a
 /// region that only simulated beads visit.
 std::pair<double, Index> common_size(std::vector<double> ratios, double degrees) {
   std::erase_if(ratios, [](double ratio) { return !(ratio > 0); });
   if (ratios.empty()) return {1, 0};
-  const double middle = base::quantile(ratios, 0.5) / chance_of_variance(degrees, 0);
-  std::erase_if(ratios, [&](double ratio) {
-    return ratio > chance_of_variance(degrees, kSurely) * middle || ratio < chance_of_variance(degrees, -kSurely) * middle;
-  });
+  const double middle = base::quantile(ratios, 0.5) / naming::variance_at(degrees, 0);
+  const double least = naming::variance_at(degrees, -kSurely) * middle, most = naming::variance_at(degrees, kSurely) * middle;
+  std::erase_if(ratios, [&](double ratio) { return ratio < least || ratio > most; });
   if (ratios.empty()) return {middle, 0};
   return {std::accumulate(ratios.begin(), ratios.end(), 0.0) / static_cast<double>(ratios.size()), std::ssize(ratios)};
 }
@@ -91,7 +85,7 @@ Sized sized(const MatrixXd& shape, const MatrixXd& own, double degrees) {
   }
   const auto [size, alike] = common_size(std::move(ratios), degrees);
   const VectorXd known = size * solver.eigenvalues().cwiseMax(kSmallest);
-  const VectorXd along = (recorded.array() > chance_of_variance(degrees, kLikely) * known.array()).select(recorded, known);
+  const VectorXd along = (recorded.array() > naming::variance_at(degrees, kLikely) * known.array()).select(recorded, known);
   Sized out{MatrixXd::Zero(own.rows(), own.cols()), alike};
   out.covariance(some, some) = directions * along.asDiagonal() * directions.transpose();
   return out;
