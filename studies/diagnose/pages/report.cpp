@@ -111,7 +111,8 @@ void held_out(const Told& t, std::string& out) {
   for (const HeldOut& h : t.diagnosis.held_out) {
     const calibrate::PowerFigure& recorded = t.diagnosis.evidence.recorded[h.condition].power;
     add(out,
-        "{}, recorded power {}. Misfit: mean squared difference over its variance, about 1 when only chance differs.\n\n"
+        "{}, recorded power {}. Misfit: mean squared difference over its variance. It is about 1 when only chance of recording and simulations differs; what the "
+        "fitted parameters are off by is not counted, and adds to it.\n\n"
         "| model | from | misfit | power | improvement of the corrected model (90 %) |\n|---|---|---|---|---|\n",
         t.question.study.conditions[h.condition].name, recorded.known() ? fmt::format("{:.4g} W", recorded.value) : "unknown");
     for (const Score& s : h.scores) {
@@ -210,7 +211,7 @@ std::string diagnosis_text(const Told& t, const std::vector<std::filesystem::pat
   out += "## How sure\n\n";
   add(out,
       "p-values come from pseudo-recordings made of left-out runs of the bank ({} parameter sets, {} used), each refitted in full; they "
-      "hold for all candidates together. Of the runs' scatter about the surrogate at least {:.0f} % is chance of single runs; the rest is "
+      "hold for all candidates together. Of the runs' scatter about the surrogate about {:.0f} % is chance of single runs; the rest is "
       "what the surrogate cannot follow, and counts as error.\n\n",
       d.bank.points.size(), d.problem.data.rows.size(), 100 * d.naming.chance);
   for (const std::string& note : d.notes) add(out, "- {}\n", note);
