@@ -77,23 +77,14 @@ TEST_CASE("runs that are repeated tell the chance of runs from what the surface 
     const Problem p = made_up_problem(mill, point(0, 0, 0), {0, 0, 0}, seed);
     return Surrogate(p.data).chance(p.covariance);
   };
-  double all = 0, rest = 0, exact = 0;
-  int followed = 0;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const Chance found = chance(0.3, 0, seed);
-    all += found.middle() / 40, rest += found.mean_rest() / 40, exact += chance(0.03, 1, seed).middle() / 40;
-    followed += found.at(base::kNormal90) < 1 && found.at(-base::kNormal90) == 1 ? 1 : 0;  // all may be chance, or some of it not
-  }
-  CHECK(all > 0.8);
-  CHECK(all < 1);
-  CHECK(rest > 0.05);  // what eight degrees of freedom leave open
-  CHECK(rest < 0.25);
-  CHECK(followed >= 30);
+  double all = 0, exact = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) all += chance(0.3, 0, seed) / 40, exact += chance(0.03, 1, seed) / 40;
+  CHECK(all > 0.65);  // 1 less what eight degrees of freedom leave open
+  CHECK(all < 0.95);
   CHECK(exact < 0.1);
   const Problem alone = made_up_problem({}, point(0, 0, 0), {0, 0, 0}, 1);
   const Surrogate s(alone.data);
-  CHECK(s.chance(alone.covariance).middle() == 0);
-  CHECK(s.chance(alone.covariance).mean_rest() == 1);
+  CHECK(s.chance(alone.covariance) == 0);
   CHECK(s.error_covariance(alone.covariance)(3, 3) > 1.1 * s.residual_covariance(alone.covariance)(3, 3));
   CHECK(s.error_covariance(alone.covariance)(3, 3) < 1.6 * s.residual_covariance(alone.covariance)(3, 3));
 }

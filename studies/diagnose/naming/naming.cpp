@@ -92,7 +92,7 @@ class Namer {
 
   Result run() {
     out_.covariance = pseudo_.weighting().covariance;
-    out_.chance = pseudo_.chance().middle();
+    out_.chance = pseudo_.chance();
     against_base();
     choose_best();
     if (out_.best) {

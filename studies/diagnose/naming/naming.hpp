@@ -5,9 +5,8 @@
 // surrogate, scaled to what a recording would have of it, and the recording's noise; nuisances are drawn from their priors, and where the
 // model has an effect the bank's slopes are drawn again (pseudo_data.hpp has the equations). Everything is refitted to it with the left-out
 // run's surrogate, so that the emulator's error is part of every p-value. Tests leave out ρ, the part of a run's deviation that is chance
-// of its own, for the recording has its own; each draw has another ρ, as far as it is not known. Intervals keep it, and come from runs
-// with the model's effect alone where they are enough: what makes a model wrong in a recording is not all in the bank. Tried without it, the
-// intervals of both frictions held the truth in four sets of five (docs/naming.md).
+// of its own, for the recording has its own. Intervals keep it, and come from runs with the model's effect alone where they are enough:
+// what makes a model wrong in a recording is not all in the bank (docs/challenge.md has the coverage).
 #pragma once
 
 #include <cstdint>
@@ -120,7 +119,7 @@ struct Result {
   std::vector<Pair> pairs;                   ///< at most one: two together
   std::vector<Mismatch> mismatch;            ///< the largest |z| first
   MatrixXd covariance;                       ///< Σ: recording and surrogate
-  double chance = 0;                         ///< ρ, middle of Surrogate::chance()
+  double chance = 0;                         ///< ρ, Surrogate::chance()
 };
 
 Result name_candidates(const Problem& problem, const Options& options);

@@ -116,8 +116,8 @@ VectorXd PseudoData::drawn_theta(const Truth& truth, base::RandomStream& random)
   return u;
 }
 
-double PseudoData::part_of(const LeftOut& left, const Truth& truth, double rest) const {
-  const double wanted = truth.active.empty() ? rest + left.surrogate->leverage(truth.coded) : rest * scatter_of(truth.active);
+double PseudoData::part_of(const LeftOut& left, const Truth& truth, double chance) const {
+  const double wanted = truth.active.empty() ? 1 - chance + left.surrogate->leverage(truth.coded) : (1 - chance) * scatter_of(truth.active);
   return std::sqrt(wanted / (scatter_of(left.active) + left.leverage));
 }
 
@@ -163,9 +163,8 @@ PseudoData::Drawn PseudoData::drawn(const Refit& refit, const Truth& truth, cons
   const Truth at{drawn_theta(truth, random), truth.active, truth.freed};
   const LeftOut& left = *refit.left;
   const Index n = left.deviation.size();
-  const double rest = how.for_intervals ? 1 : 1 - chance_.at(random.normal());
-  const VectorXd y =
-      refit.coefficients.transpose() * features_->all(at.coded, at.active) + part_of(left, at, rest) * left.deviation + noise_.draw(random);
+  const VectorXd y = refit.coefficients.transpose() * features_->all(at.coded, at.active) +
+                     part_of(left, at, how.for_intervals ? 0 : chance_) * left.deviation + noise_.draw(random);
   std::vector<Model> again;
   if (refit.again.size() > 0) {
     const Index k = refit.again.cols();

@@ -39,7 +39,7 @@ class PseudoData {
   explicit PseudoData(const Problem& problem, const Options& options);
 
   const Surrogate& surrogate() const { return *surrogate_; }
-  const Chance& chance() const { return chance_; }
+  double chance() const { return chance_; }
   const Weighting& weighting() const { return *weighting_; }
   /// The observations themselves, or draw `b` of `truth`.
   FitResult fit(const Choice& choice) const;
@@ -90,7 +90,7 @@ class PseudoData {
   /// θ of the truth with nuisances from their priors.
   VectorXd drawn_theta(const Truth& truth, base::RandomStream& random) const;
   /// The part of the left-out run's deviation that a pseudo-recording has.
-  double part_of(const LeftOut& left, const Truth& truth, double rest) const;
+  double part_of(const LeftOut& left, const Truth& truth, double chance) const;
 
   const Problem& problem_;
   const Options& options_;
@@ -98,7 +98,7 @@ class PseudoData {
   std::unique_ptr<Surrogate> surrogate_;
   std::vector<StrengthRange> ranges_;
   std::vector<LeftOut> left_out_;
-  Chance chance_;
+  double chance_ = 0;  ///< ρ
   std::unique_ptr<Weighting> weighting_;
   MatrixXd run_white_;  ///< W L with L Lᵀ = S
   Noise noise_;

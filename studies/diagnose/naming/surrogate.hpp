@@ -60,23 +60,6 @@ class Features {
   std::map<std::pair<Index, Index>, Index> together_;  ///< of two candidates, the lower first: column of their product
 };
 
-/// ρ, the part of a run's scatter about the surface that is chance, of which a recording has its own instead.
-class Chance {
- public:
-  Chance() = default;
-  /// `part`: as estimated, from so many degrees of freedom; of 0 nothing is known, and ρ is 0.
-  Chance(double part, double degrees) : part_(part), degrees_(degrees) {}
-  /// What ρ may be just as well, at a standard normal quantile: the larger that, the less.
-  double at(double normal) const;
-  /// As a reader is told: the value of which ρ is as likely more as less.
-  double middle() const { return at(0); }
-  /// Of 1 − ρ over all that ρ may be: what counts as the surrogate's error.
-  double mean_rest() const;
-
- private:
-  double part_ = 0, degrees_ = 0;
-};
-
 class Surrogate {
  public:
   /// Least squares on the rows where `used` is true. Throws base::UserError when they are fewer than the coefficients.
@@ -102,15 +85,16 @@ class Surrogate {
   /// S, covariance of one run without a candidate about the surface: the runs' chance and what the surface cannot follow; that of
   /// runs with some is scatter_of() times as large. Correlations are shrunk in coordinates in which the recording's noise has none.
   MatrixXd residual_covariance(const MatrixXd& recording) const;
-  /// By what runs of equal parameters and other seeds differ (pure error; Montgomery 2013, ch. 10), over all observables or in the span of
-  /// what coordinates and candidates do, whichever may be lower: what a surface cannot follow there would pass for a candidate.
-  Chance chance(const MatrixXd& recording) const;
+  /// ρ, the part of S that is chance, of which a recording has its own instead: by what runs of equal parameters and other seeds differ
+  /// (pure error; Montgomery 2013, ch. 10). The low end of its 90 % interval, over all observables or in the span of what coordinates
+  /// and candidates do, whichever is lower: what a surface cannot follow there would pass for a candidate. 0: no run is repeated.
+  double chance(const MatrixXd& recording) const;
   /// Orthonormal, in units of a whitener: what every coordinate does, every candidate at the ends of its strengths, and every two that were
   /// simulated together.
   MatrixXd span(const MatrixXd& whitener) const;
-  /// Covariance of the surrogate's error, (1 − ρ̄ + h̄) S with the means of ρ and of the leverage of runs without a candidate.
+  /// Covariance of the surrogate's error, (1 − ρ + h̄) S with the mean leverage h̄ of the runs without a candidate.
   MatrixXd error_covariance(const MatrixXd& recording) const;
-  /// The same of one prediction, ((1 − ρ̄) e + h) S with its own leverage h and the scatter e of runs with what is active.
+  /// The same of one prediction, ((1 − ρ) e + h) S with its own leverage h and the scatter e of runs with what is active.
   MatrixXd error_covariance(const MatrixXd& recording, const VectorXd& coded, const std::vector<ActiveCandidate>& active) const;
 
  private:

@@ -6,7 +6,6 @@
 #include "kernel/base/parallel.hpp"
 #include "kernel/base/statistics.hpp"
 #include "studies/diagnose/naming/covariance.hpp"
-#include "studies/diagnose/naming/noise.hpp"
 #include "studies/diagnose/naming/surrogate.hpp"
 
 namespace millscope::naming {
@@ -69,36 +68,20 @@ MatrixXd Surrogate::residual_covariance(const MatrixXd& recording) const {
   return out;
 }
 
-double Chance::at(double normal) const {
-  if (!(part_ > 0 && degrees_ > 0)) return 0;
-  return std::min(1.0, part_ / variance_at(degrees_, normal));
-}
-
-double Chance::mean_rest() const {
-  constexpr int kHalf = 40;
-  constexpr double kStep = 0.1;  // of a standard normal law, out to four deviations
-  double sum = 0, weight = 0;
-  for (int k = -kHalf; k <= kHalf; ++k) {
-    const double normal = kStep * k, w = std::exp(-0.5 * normal * normal);
-    sum += w * (1 - at(normal)), weight += w;
-  }
-  return sum / weight;
-}
-
-/// ρ̂ = tr P/tr S in noise units, with the covariance P of repeated runs, of ν* = ν (tr S)²/tr S² degrees of freedom: ν of each observable,
-/// and as many observables as their correlations leave independent.
-Chance Surrogate::chance(const MatrixXd& recording) const {
-  if (degrees_repeated_ == 0) return {};
+/// ρ̂ = tr P/tr S in noise units, with the covariance P of repeated runs. Its relative error is √(2/ν*), ν* = ν (tr S)²/tr S²: ν degrees of
+/// freedom of each observable, and as many observables as their correlations leave independent.
+double Surrogate::chance(const MatrixXd& recording) const {
+  if (degrees_repeated_ == 0) return 0;
   const MatrixXd s = residual_covariance(recording), w = whitener(recording + s), white = w * s * w.transpose(),
                  chance = repeated_ * w.transpose();
-  const auto along = [&](const MatrixXd& basis) -> Chance {
+  const auto low_end = [&](const MatrixXd& basis) {
     const MatrixXd all = basis.transpose() * white * basis;
     const double p = (chance * basis).squaredNorm() / static_cast<double>(degrees_repeated_), trace = all.trace();
-    if (!(trace > 0)) return {};
-    return {p / trace, static_cast<double>(degrees_repeated_) * trace * trace / all.squaredNorm()};
+    if (!(trace > 0)) return 0.0;
+    const double degrees = static_cast<double>(degrees_repeated_) * trace * trace / all.squaredNorm();
+    return p / trace / (1 + base::kNormal90 * std::sqrt(2 / degrees));
   };
-  const Chance whole = along(MatrixXd::Identity(s.rows(), s.rows())), there = along(span(w));
-  return there.at(base::kNormal90) < whole.at(base::kNormal90) ? there : whole;
+  return std::min({1.0, low_end(MatrixXd::Identity(s.rows(), s.rows())), low_end(span(w))});
 }
 
 MatrixXd Surrogate::span(const MatrixXd& whitener) const {
@@ -118,11 +101,11 @@ MatrixXd Surrogate::span(const MatrixXd& whitener) const {
 }
 
 MatrixXd Surrogate::error_covariance(const MatrixXd& recording) const {
-  return (chance(recording).mean_rest() + mean_leverage_) * residual_covariance(recording);
+  return (1 - chance(recording) + mean_leverage_) * residual_covariance(recording);
 }
 
 MatrixXd Surrogate::error_covariance(const MatrixXd& recording, const VectorXd& coded, const std::vector<ActiveCandidate>& active) const {
-  return (chance(recording).mean_rest() * scatter_of(active) + leverage(coded, active)) * residual_covariance(recording);
+  return ((1 - chance(recording)) * scatter_of(active) + leverage(coded, active)) * residual_covariance(recording);
 }
 
 MatrixXd left_out_deviations(const BankData& data, std::optional<Index> candidate) {
