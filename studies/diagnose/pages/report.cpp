@@ -211,7 +211,7 @@ std::string diagnosis_text(const Told& t, const std::vector<std::filesystem::pat
   out += "## How sure\n\n";
   add(out,
       "p-values come from pseudo-recordings made of left-out runs of the bank ({} parameter sets, {} used), each refitted in full; they "
-      "hold for all candidates together. Of the runs' scatter about the surrogate about {:.0f} % is chance of single runs; the rest is "
+      "hold for all candidates together. Of the runs' scatter about the surrogate at least {:.0f} % is chance of single runs; the rest is "
       "what the surrogate cannot follow, and counts as error.\n\n",
       d.bank.points.size(), d.problem.data.rows.size(), 100 * d.naming.chance);
   for (const std::string& note : d.notes) add(out, "- {}\n", note);
