@@ -36,7 +36,17 @@ std::vector<base::Interval90> of_theta(const BankData& data, const std::vector<b
 }
 
 constexpr double kNothing = 0.01;  // of Q: less is no gain
-constexpr double kHelps = 0.05;    // p of a candidate by itself: above that it explains nothing of what the base lacks
+
+/// What each later fit of a draw gains on the first one in one draw of ten; never less than one unit of Q.
+std::vector<double> usual_gains(const std::vector<PseudoData::Drawn>& drawn) {
+  constexpr double kPart = 0.9;
+  std::vector<double> usual(drawn.front().fit.size(), 1);
+  for (std::size_t j = 1; j < usual.size(); ++j) {
+    auto gain = collect(drawn, [j](const auto& d) { return d.fit[0].q - d.fit[j].q; });
+    usual[j] = std::max(1.0, base::quantile(gain, kPart));
+  }
+  return usual;
+}
 
 /// p of several statistics together (min-p; Westfall & Young 1993): how often the smallest p of a draw is as small. Large values are
 /// unlikely ones. Draws and what was observed are ranked together, so that neither has a finer scale.
@@ -190,9 +200,9 @@ class Namer {
     if (!judged.fit.strengths.empty()) judged.strength = found[p_.data.theta.size()];
   }
 
-  /// Under every other candidate k: how often some candidate would seem better than k by as much as the best does. Gains are ranked as
-  /// against the base (min-p), so that a candidate that gains nothing is rejected with it. Where it gains nothing at all its model is the
-  /// base's, and so is p.
+  /// Under every other candidate k: how often some candidate would seem better than k by as much as the best does, each measured by what it
+  /// gains by chance, lest one that gains much so hides the best. Of a candidate that does nothing here the model is the base's, and so is
+  /// p.
   void compare_others() {
     const Index best = *out_.best;
     out_.kept = {best};
@@ -200,22 +210,23 @@ class Namer {
       if (k == best || !tested(k)) continue;
       Judged& judged = out_.judged[k];
       std::vector<Choice> choices{{k}};
-      std::vector<double> observed;
       std::size_t of_best = 0;
       for (Index j = 0; j < count(); ++j) {
         if (j == k || !tested(j)) continue;
-        if (j == best) of_best = observed.size();
+        if (j == best) of_best = choices.size();
         choices.push_back({j});
-        observed.push_back(judged.fit.q - out_.judged[j].fit.q);
       }
       const auto drawn = pseudo_.draw(pseudo_.truth({k}, judged.fit), choices, {o_.comparison_draws, 300 + static_cast<std::uint64_t>(k)});
-      std::vector<std::vector<double>> gains;
-      for (std::size_t j = 1; j < choices.size(); ++j)
-        gains.push_back(collect(drawn, [j](const auto& d) { return d.fit[0].q - d.fit[j].q; }));
+      const std::vector<double> usual = usual_gains(drawn);
+      const auto lead = collect(drawn, [&](const auto& d) {
+        double most = 0;
+        for (std::size_t j = 1; j < d.fit.size(); ++j) most = std::max(most, (d.fit[0].q - d.fit[j].q) / usual[j]);
+        return most;
+      });
       const bool nothing = judged.delta_q < kNothing && p_.alternatives[k].candidate;
-      judged.against_best_p = nothing ? out_.judged[best].p_family : Family(gains).p(of_best, observed);
+      judged.against_best_p = nothing ? out_.judged[best].p_family : tail(lead, (judged.fit.q - out_.judged[best].fit.q) / usual[of_best]);
       look_closer(k);
-      if (judged.against_best_p > o_.level && judged.p <= std::max(kHelps, o_.level)) out_.kept.push_back(k);
+      if (judged.against_best_p > o_.level) out_.kept.push_back(k);
     }
   }
 

@@ -115,7 +115,7 @@ struct Result {
   std::vector<Judged> judged;                ///< one for each alternative
   std::vector<std::string> at_limit;         ///< parameters whose retuned value lies at an end of the bank's range
   std::optional<Index> best;                 ///< of the alternatives; nothing: none is significant
-  std::vector<Index> kept;                   ///< the best and all that help by themselves and are not rejected against it
+  std::vector<Index> kept;                   ///< the best and all that are not rejected against it
   std::vector<Pair> pairs;                   ///< at most one: two together
   std::vector<Mismatch> mismatch;            ///< the largest |z| first
   MatrixXd covariance;                       ///< Σ: recording and surrogate

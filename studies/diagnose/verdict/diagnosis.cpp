@@ -181,7 +181,7 @@ naming::Options at_level_of(const Question& question, naming::Options options) {
   const int least = static_cast<int>(std::ceil(static_cast<double>(alternatives) / options.level));
   if (options.draws == 0) {
     options.draws = std::max(naming::Options{}.draws, kFiner * least);
-    options.comparison_draws = std::max({options.comparison_draws, static_cast<int>(std::ceil(kComparisons / options.level)), 2 * least});
+    options.comparison_draws = std::max(options.comparison_draws, static_cast<int>(std::ceil(kComparisons / options.level)));
   }
   if (options.draws < least)
     throw base::UserError(fmt::format("--draws {}: too few for {} candidates and nuisances at the study's level of {:.3g}; give {} or more",
