@@ -2,12 +2,12 @@
 """Are the errors right by which a diagnosis weighs a recording? bench/look_errors.py BUILD -o FOLDER [--beads 24,60] [--starts 40]
 [--case CASE.yaml] [--percent 75] [--seconds 10]
 
-The mill of the proof is simulated from many starts (at 75 % of critical, or another speed), and each is looked at as a recording of some of its beads. All show
-one mill, so that they differ from their mean by chance alone. The misfit of one recording is the mean square of that, d' C^-1 d/n with its n
-numbers. It is 1 where the errors C are right, less where they are taken for too large. Three C: the recording's own, its correlations shrunk;
-what simulations of 3 s with 150 beads have, as large as the recording's own along their own directions (nearly what a diagnosis takes); the
-same, as large as the recording's own in the median of the numbers; the same, as large as simulations say by the second of a bead. Debian's
-python3, for numpy.
+The mill of the proof is simulated from many starts (at 75 % of critical, or another speed), and each is looked at as a recording of some of
+its beads. All show one mill, so that they differ from their mean by chance alone. The misfit of one recording is the mean square of that,
+d' C^-1 d/n with its n numbers. It is 1 where the errors C are right, less where they are taken for too large. Four C: the recording's own, its
+correlations shrunk; what simulations of 3 s with 150 beads have, as large as the recording's own along their own directions (nearly what a
+diagnosis takes); the same, as large as the recording's own in the median of the numbers; the same, as large as simulations say by the second
+of a bead. Debian's python3, for numpy.
 """
 
 import argparse

@@ -111,8 +111,9 @@ void held_out(const Told& t, std::string& out) {
   for (const HeldOut& h : t.diagnosis.held_out) {
     const calibrate::PowerFigure& recorded = t.diagnosis.evidence.recorded[h.condition].power;
     add(out,
-        "{}, recorded power {}. Misfit: mean squared difference over its variance. It is about 1 when only chance of recording and simulations differs; what the "
-        "fitted parameters are off by is not counted, and adds to it.\n\n"
+        "{}, recorded power {}. Misfit: mean squared difference over its variance. About 1 when only chance differs, smaller where errors "
+        "were "
+        "taken cautiously, larger by what the fitted parameters are off by.\n\n"
         "| model | from | misfit | power | improvement of the corrected model (90 %) |\n|---|---|---|---|---|\n",
         t.question.study.conditions[h.condition].name, recorded.known() ? fmt::format("{:.4g} W", recorded.value) : "unknown");
     for (const Score& s : h.scores) {

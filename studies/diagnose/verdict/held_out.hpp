@@ -41,7 +41,7 @@ struct Reliance {
 
 struct Score {
   Prediction prediction;
-  double misfit = 0;             ///< mean over the observables of rᵀ C⁻¹ r: about 1 when only chance differs, without what θ is off by
+  double misfit = 0;             ///< mean over the observables of rᵀ C⁻¹ r: about 1 when only chance differs, more as θ is off
   double power_percent = 0;      ///< (predicted − recorded)/recorded
   base::Interval90 improvement;  ///< its misfit − that of the corrected model
   Reliance reliance;             ///< on its difference from the corrected model; from the recording where there is none

@@ -59,7 +59,7 @@ function figures(held, sides) {
   const watts = scale("W", [held.recorded_power_W]);
   const power = ({ power_W: value, power_percent: error }) => [number(value * watts.factor), isNumber(error) ? element("small", null, `${signed(error, 2)}\u00a0%`) : null];
   const recorded = { name: "recorded" };
-  return table({ caption: `${held.condition}, which was not fitted`, rows: [recorded, ...sides], classOf: (side) => (side.model === CORRECTED.model ? "strong" : null), columns: [
+  return table({ caption: `${held.condition}, which was not fitted; what the fitted parameters are off by adds to the misfit`, rows: [recorded, ...sides], classOf: (side) => (side.model === CORRECTED.model ? "strong" : null), columns: [
     { label: "", value: (side) => side.name },
     isNumber(held.recorded_power_W) && { label: `power (${watts.unit})`, number: true, value: (side) => power(side === recorded ? { power_W: held.recorded_power_W } : of(side)) },
     ...whole.map((row) => ({ label: `${row.observable} (${row.unit})`, number: true, value: (side) => number(row[side === recorded ? "recorded" : side.model]) })),

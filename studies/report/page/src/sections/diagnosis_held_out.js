@@ -25,7 +25,7 @@ function condition(held, key, index) {
   return block(id, `Held out: ${held.condition}`,
     paragraph((metered ? `Recorded power ${quantity(held.recorded_power_W, "W")}. ` : "")
       + (held.improves_on_every_rival ? "The corrected model predicts this condition better than every rival model." : gained.length ? "The corrected model is not surely better than every rival model here." : "")),
-    element("div", { class: "halves" }, figure("Misfit per number in the condition that was not fitted: about 1 when only chance differs, and smaller where errors were taken cautiously.",
+    element("div", { class: "halves" }, figure("Misfit per number in the condition that was not fitted: about 1 when only chance differs, smaller where errors were taken cautiously, larger by what the fitted parameters are off by.",
       bars(`${id}-misfit`, { label: models.map((model) => `${model.model} ${number(model.misfit, 3)}`).join(", "), rows: models.map((model) => model.model),
         groups: [{ name: "", values: models.map((model) => model.misfit) }], x: { name: "misfit per number" } })),
     powered.length ? figure("Error of the predicted power.", bars(`${id}-power`, { label: powered.map((model) => `${model.model} ${signed(model.power_percent, 2)} %`).join(", "),
