@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -17,8 +18,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kSure = 0.95;  // of every one-sided bound
-constexpr double kStrong = 30;  // λ
+constexpr double kSure = 0.95;               // of every one-sided bound
+constexpr double kFaint = 10, kStrong = 30;  // λ
 
 template <class... Values>
 void add(std::string& out, fmt::format_string<Values...> text, Values&&... values) {
@@ -181,19 +182,31 @@ void add_calibration(const Score& s, const std::vector<ScoredGroup>& groups, std
   add_calibration_of_groups(groups, out);
 }
 
+/// One effect that is listed, alone or in a class of two, where λ lies in a range: of whole bins.
+Count named_between(const Score& s, double low, double high) {
+  Count out;
+  for (const PowerBin& b : s.power) {
+    if (b.low >= low && b.high <= high) out.hits += b.named.hits, out.of += b.named.of;
+  }
+  return out;
+}
+
 /// The counts that matter most.
 void add_groups(const std::vector<ScoredGroup>& groups, std::string& out) {
   if (groups.empty()) return;
   out +=
-      "| played by | diagnosed by commit | sets of | nothing hidden: physics listed | one effect, λ ≥ 30: listed, alone or in a class of "
-      "two | two: both named, together | outside: said so | decoy: physics listed |\n|---|---|---|---|---|---|---|---|\n";
+      "Each group of sets for itself; a later commit judges better than an earlier one. *Listed*: one effect, alone or in a class of two, "
+      "by "
+      "[its λ](#power).\n\n"
+      "| played by | diagnosed by commit | sets of | nothing hidden: physics listed | listed, λ below 10 | λ 10 … 30 | λ ≥ 30 | one "
+      "effect: "
+      "`named`, and right | two: both named, together | outside: said so | decoy: right |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+  constexpr double kAny = std::numeric_limits<double>::infinity();
   for (const auto& [g, s] : groups) {
-    Count strong;
-    for (const PowerBin& b : s.power) {
-      if (b.low >= kStrong) strong.hits += b.named.hits, strong.of += b.named.of;
-    }
-    add(out, "| {} | {} | {} | {} | {} | {} | {} | {} |\n", g.engine, g.program, g.folders, brief(s.false_physics), brief(strong),
-        brief(s.two_both), brief(s.outside_abstained), brief(s.decoys_named));
+    const Count decoys{s.decoys_named.of - s.decoys_named.hits - s.decoys_outside.hits, s.decoys_named.of};
+    add(out, "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", g.engine, g.program, g.folders, brief(s.false_physics),
+        brief(named_between(s, 0, kFaint)), brief(named_between(s, kFaint, kStrong)), brief(named_between(s, kStrong, kAny)),
+        brief(s.named_alone), brief(s.two_both), brief(s.outside_abstained), brief(decoys));
   }
   out += "\n";
 }
