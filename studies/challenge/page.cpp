@@ -195,7 +195,7 @@ Count named_between(const Score& s, double low, double high) {
 void add_groups(const std::vector<ScoredGroup>& groups, std::string& out) {
   if (groups.empty()) return;
   out +=
-      "Each group of sets for itself; a later commit judges better than an earlier one. *Listed*: one effect, alone or in a class of two, "
+      "Each group of sets for itself, in the order of their folders. *Listed*: one effect, alone or in a class of two, "
       "by "
       "[its λ](#power).\n\n"
       "| played by | diagnosed by commit | sets of | nothing hidden: physics listed | listed, λ below 10 | λ 10 … 30 | λ ≥ 30 | one "

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
@@ -299,18 +298,17 @@ bool Marked::missed() const {
 }
 
 std::vector<Group> groups_of(const std::vector<Marked>& sets) {
-  std::map<std::array<std::string, 3>, Group> groups;
+  std::vector<Group> groups;
   for (const Marked& m : sets) {
-    Group& g = groups[{m.study, m.engine(), m.program}];
-    g.engine = m.engine();
-    g.program = m.program;
+    auto own = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
+      return g.sets.front().study == m.study && g.engine == m.engine() && g.program == m.program;
+    });
+    if (own == groups.end()) own = groups.insert(own, {m.engine(), m.program, "", {}});
     const std::string folder = m.folder();
-    if (g.sets.empty() || g.sets.back().folder() != folder) g.folders += (g.folders.empty() ? "" : ", ") + folder;
-    g.sets.push_back(m);
+    if (own->sets.empty() || own->sets.back().folder() != folder) own->folders += (own->folders.empty() ? "" : ", ") + folder;
+    own->sets.push_back(m);
   }
-  std::vector<Group> out;
-  for (auto& [key, group] : groups) out.push_back(std::move(group));
-  return out;
+  return groups;
 }
 
 std::string label_of(const Answer& a) {

@@ -180,7 +180,7 @@ struct Score {
 
 Score score(const std::vector<Marked>& sets);
 
-/// Sets of one mill that one engine played and one program diagnosed.
+/// Sets of one mill that one engine played and one program diagnosed; groups stand in the order of their first sets.
 struct Group {
   std::string engine, program, folders;
   std::vector<Marked> sets;

@@ -270,11 +270,15 @@ TEST_CASE("sets of two mills, engines and programs are counted apart") {
   sets[1].found->base_q = 0.6;
   sets[1].found->hypotheses = {{"rolling", "best", {}, {}, true, true, 0.7}};
   const std::vector<Group> groups = groups_of(sets);
-  CHECK(groups.size() == 5);  // those that tell nothing of how they were made are of no engine
+  REQUIRE(groups.size() == 5);            // those that tell nothing of how they were made are of no engine
+  CHECK(groups[1].engine == "liggghts");  // in the order of the sets
+  CHECK(groups[4].program == "c3dc7bf");
   const std::string text = page_text({sets, score(sets), "", {{"sets", "cafe"}}});
   CHECK(text.find("| liggghts |  |  | 1 of 1 |") != std::string::npos);
   CHECK(text.find("| millscope |  |  | 0 of 1 |") != std::string::npos);
-  CHECK(text.find("|  | c3dc7bf |  |") != std::string::npos);
+  CHECK(text.find("|  | c3dc7bf |  |  |  |  | 1 of 1 | 0 of 1 |  |  |  |") != std::string::npos);  // λ 80, in a class of two
+  CHECK(text.find("|  |  |  |  |  | 1 of 1 |  | 1 of 1 |  |  |  |") != std::string::npos);         // λ 20, named
+  CHECK(text.find("|  |  |  | 0 of 1 | 0 of 1 |  |  | 0 of 2 | 0 of 1 | 1 of 1 |  |") != std::string::npos);
   CHECK(text.find(fmt::format("| liggghts |  |  | 1 | 0.96 | {:.2g} | 0.70 | {:.2g} | 0.60 |  |", high_p({0.96}), high_p({0.7}))) !=
         std::string::npos);
 }
