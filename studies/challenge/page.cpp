@@ -91,12 +91,18 @@ void add_said(const Score& s, std::string& out) {
   out += "\n";
 }
 
-/// Each kind of decoy for itself: a camera is another thing than a belief.
-void add_decoys(const Page& page, std::string& out) {
+/// How many of each kind of decoy are right, by Marked::missed().
+std::map<std::string, Count> right_decoys(const std::vector<Marked>& sets) {
   std::map<std::string, Count> kinds;
-  for (const Marked& m : page.sets) {
+  for (const Marked& m : sets) {
     if (m.found && m.found->failure.empty() && m.answer.kind == Kind::decoy) kinds[m.answer.name].add(!m.missed());
   }
+  return kinds;
+}
+
+/// Each kind of decoy for itself: a camera is another thing than a belief.
+void add_decoys(const Page& page, std::string& out) {
+  const std::map<std::string, Count> kinds = right_decoys(page.sets);
   if (kinds.empty()) return;
   out += "| decoy | right: no physics listed, nor said to lie outside |\n|---|---|\n";
   for (const auto& [name, right] : kinds) add(out, "| {} | {} of {} |\n", name, right.hits, right.of);
@@ -137,7 +143,7 @@ std::string brief(const Count& c) { return c.of == 0 ? std::string() : fmt::form
 Count covered_by_intervals(const Score& s) {
   Count all;
   for (const Coverage& c : s.coverage) {
-    if (c.varies) all.hits += c.inside.hits, all.of += c.inside.of;
+    if (c.varies) all += c.inside;
   }
   return all;
 }
@@ -186,7 +192,7 @@ void add_calibration(const Score& s, const std::vector<ScoredGroup>& groups, std
 Count named_between(const Score& s, double low, double high) {
   Count out;
   for (const PowerBin& b : s.power) {
-    if (b.low >= low && b.high <= high) out.hits += b.named.hits, out.of += b.named.of;
+    if (b.low >= low && b.high <= high) out += b.named;
   }
   return out;
 }
@@ -195,15 +201,15 @@ Count named_between(const Score& s, double low, double high) {
 void add_groups(const std::vector<ScoredGroup>& groups, std::string& out) {
   if (groups.empty()) return;
   out +=
-      "Each group of sets for itself, in the order of their folders. *Listed*: one effect, alone or in a class of two, "
-      "by "
-      "[its λ](#power).\n\n"
-      "| played by | diagnosed by commit | sets of | nothing hidden: physics listed | listed, λ below 10 | λ 10 … 30 | λ ≥ 30 | one "
-      "effect: "
-      "`named`, and right | two: both named, together | outside: said so | decoy: right |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "Each group of sets for itself, in the order of their folders. *Listed*: one effect, alone or in a class of two, by [its "
+      "λ](#power).\n\n"
+      "| played by | diagnosed by commit | sets of | nothing hidden: physics listed | listed, λ below 10 | λ 10 … 30 | λ ≥ 30 "
+      "| one effect: `named`, and right | two: both named, together | outside: said so | decoy: right |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n";
   constexpr double kAny = std::numeric_limits<double>::infinity();
   for (const auto& [g, s] : groups) {
-    const Count decoys{s.decoys_named.of - s.decoys_named.hits - s.decoys_outside.hits, s.decoys_named.of};
+    Count decoys;
+    for (const auto& [name, right] : right_decoys(g.sets)) decoys += right;
     add(out, "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", g.engine, g.program, g.folders, brief(s.false_physics),
         brief(named_between(s, 0, kFaint)), brief(named_between(s, kFaint, kStrong)), brief(named_between(s, kStrong, kAny)),
         brief(s.named_alone), brief(s.two_both), brief(s.outside_abstained), brief(decoys));

@@ -11,6 +11,7 @@ namespace millscope::challenge {
 struct Count {
   int hits = 0, of = 0;
   void add(bool hit) { hits += hit ? 1 : 0, ++of; }
+  void operator+=(const Count& other) { hits += other.hits, of += other.of; }
   double share() const { return of > 0 ? static_cast<double>(hits) / of : std::numeric_limits<double>::quiet_NaN(); }
 };
 
