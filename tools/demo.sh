@@ -32,6 +32,7 @@ quietly validate "$story/study.yaml" --calibration retuned/calibration.json -o r
 grep -E '^(parameter|bead_friction)  ' log.txt
 grep '^no parameters fit' log.txt || true
 grep '^note: bead_friction' log.txt || true
+grep '^The simulation' log.txt
 echo "(Practice fits some numbers of one speed. The diagnosis below fits all numbers of it, so its frictions differ from these.)"
 
 chapter "What differs at 55 %, which was not fitted"

@@ -77,6 +77,7 @@ class Validation(_Finding):
 
     @property
     def passed(self) -> bool:
+        """Every number for itself, and in each condition all of them together."""
         return bool(self.data["pass"])
 
     @property

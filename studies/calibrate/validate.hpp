@@ -11,7 +11,7 @@
 
 namespace millscope::calibrate {
 
-inline constexpr double kFamilyLevel = 0.05;  ///< chance that anything fails when nothing differs, all observables together
+inline constexpr double kFamilyLevel = 0.05;  ///< chance that anything fails when nothing differs
 
 /// Simulated less recorded.
 struct Judged {
@@ -30,7 +30,9 @@ struct ValidatedCondition {
   std::vector<Judged> observables;
   Judged power;  ///< W, however it was measured
   ChagasObjective chagas;
-  double misfit = 0;
+  double misfit = 0;  ///< of all observables together: many small differences may be one that is no chance
+  double p = 1;       ///< of a misfit as large by chance
+  bool pass = false;  ///< p above the level that keeps the family's
   Observation simulated;
   std::filesystem::path folder;
 };
@@ -38,8 +40,9 @@ struct ValidatedCondition {
 struct Validation {
   Eigen::VectorXd point;
   std::vector<ValidatedCondition> conditions;
-  std::size_t judged = 0, passed = 0;
-  bool pass() const { return judged > 0 && judged == passed; }
+  std::size_t judged = 0, passed = 0;  ///< observables, each for itself
+  bool together = true;                ///< of each condition all observables pass together
+  bool pass() const { return judged > 0 && judged == passed && together; }
 };
 
 /// The set that calibration.json holds, in the order of the study's parameters. Throws base::UserError when it is no such file or holds

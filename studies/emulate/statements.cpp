@@ -56,6 +56,8 @@ double freedom(const Posterior& posterior, Index observables) {
 
 }  // namespace
 
+double misfit_probability(double misfit, double freedom) { return boost::math::gamma_q(0.5 * freedom, 0.5 * misfit); }
+
 void add_statements(Posterior& posterior, const Box& box, Index observables) {
   const Index p = box.size();
   for (Index k = 0; k < p; ++k) {
@@ -64,7 +66,7 @@ void add_statements(Posterior& posterior, const Box& box, Index observables) {
     m.statement = sentence(posterior, box, k);
   }
   const double left = freedom(posterior, observables);
-  posterior.misfit_probability = left >= 0.5 ? boost::math::gamma_q(0.5 * left, 0.5 * posterior.misfit) : 1;
+  posterior.misfit_probability = left >= 0.5 ? misfit_probability(posterior.misfit, left) : 1;
   const auto say = [&](std::string text) { posterior.statements.push_back(std::move(text)); };
   if (left < 0.5) {
     say(fmt::format("{} observables for as many determined parameters: that they agree proves nothing", observables));

@@ -153,7 +153,33 @@ TEST_CASE("validation passes with the truth and fails far from it") {
   const Validation good = validate(evaluator, Eigen::Vector2d(0.42, 0.7), study.with_role(Role::held_out));
   CHECK(good.pass());
   CHECK(good.judged == 6);
+  CHECK(good.together);
   const Validation bad = validate(evaluator, Eigen::Vector2d(0.7, 0.4), study.with_role(Role::held_out));
   CHECK_FALSE(bad.pass());
   CHECK(bad.conditions[0].power.low < bad.conditions[0].power.difference);
+}
+
+TEST_CASE("validation fails where many small differences go together") {
+  const Folder folder;
+  const Study study = testing::study_of(folder, kTwo, "");
+  MadeUpMill mill(study, Eigen::Vector2d(0.42, 0.7), 0.02);
+  std::vector<Observation> recorded = mill.recorded();
+  const auto held_out = study.with_role(Role::held_out);
+  // Errors that all go one way, recorded two of them off, up and down by turns: each alone is no surprise, all together are.
+  Observation& of = recorded[held_out[0]];
+  const Eigen::VectorXd sign = Eigen::VectorXd::NullaryExpr(of.value.size(), [](Eigen::Index i) { return i % 2 == 0 ? 1.0 : -1.0; }),
+                        error = 5 * of.covariance.diagonal().cwiseSqrt();
+  of.covariance = error.asDiagonal() *
+                  (Eigen::MatrixXd::Constant(sign.size(), sign.size(), 0.95) + 0.05 * Eigen::MatrixXd::Identity(sign.size(), sign.size())) *
+                  error.asDiagonal();
+  of.value += (2 * error).cwiseProduct(sign);
+  Evaluator evaluator(study, mill.machinery(), recorded);
+  const Validation found = validate(evaluator, Eigen::Vector2d(0.42, 0.7), held_out);
+  CHECK(found.passed == found.judged);
+  CHECK_FALSE(found.together);
+  CHECK_FALSE(found.pass());
+  CHECK(found.conditions[0].p < 1e-6);
+  const std::string text = validation_text(found, evaluator);
+  CHECK(text.find("The simulation and the recordings differ: 6 of 6 observables pass one by one, and together they do not") !=
+        std::string::npos);
 }
