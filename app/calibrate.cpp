@@ -68,7 +68,7 @@ int validate(const Arguments& arguments) {
   Options options(
       "validate STUDY.yaml --calibration OUT/calibration.json -o OUT2",
       "Simulates the calibrated set in the conditions that were held out of the fit and judges every observable, and all of them "
-      "together: difference with interval, pass or fail.",
+      "at once: difference with interval, pass or fail.",
       "millscope validate configs/chagas2015/study.yaml --calibration study-out/calibration.json -o validation-out");
   add_study_options(options);
   options.add()("calibration", po::value<std::string>()->value_name("FILE"), "calibration.json of 'millscope calibrate'");

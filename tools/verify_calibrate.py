@@ -52,7 +52,8 @@ def rows_of(name, calibration, validation):
     rows.append(row("%s: Eq. 4.3 at the optimum" % name, "%.3f" % calibration["at_best"]["chagas2015"]["value"]))
     for condition, v in validation["conditions"].items():
         rows.append(row("%s: power at %s" % (name, condition), "%+.2f %%" % v["power"]["percent"], "pass", v["power"]["pass"]))
-    rows.append(row("%s: observables of the validation that pass" % name, "%d of %d" % (validation["passed"], validation["judged"])))
+        rows.append(row("%s: misfit of all observables at %s" % (name, condition), "%.3g of %d, p %.2g" % (v["misfit"], len(v["observables"]), v["p"]), "pass", v["pass"]))
+    rows.append(row("%s: observables of the validation that pass one by one" % name, "%d of %d" % (validation["passed"], validation["judged"])))
     return rows
 
 

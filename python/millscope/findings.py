@@ -77,8 +77,15 @@ class Validation(_Finding):
 
     @property
     def passed(self) -> bool:
-        """Every number for itself, and in each condition all of them together."""
+        """Every number one by one, and in each condition all of them at once."""
         return bool(self.data["pass"])
+
+    @property
+    def at_once(self) -> pandas.DataFrame:
+        """A row per simulated condition, for all its numbers at once: condition, numbers, misfit, p, pass."""
+        rows = [{"condition": condition, "numbers": len(found.get("observables", [])), **{key: found[key] for key in ("misfit", "p", "pass")}}
+                for condition, found in self.data["conditions"].items() if "failed" not in found]
+        return pandas.DataFrame(rows, columns=["condition", "numbers", "misfit", "p", "pass"])
 
     @property
     def judgements(self) -> pandas.DataFrame:

@@ -11,7 +11,7 @@
 
 namespace millscope::calibrate {
 
-inline constexpr double kFamilyLevel = 0.05;  ///< chance that anything fails when nothing differs
+inline constexpr double kFamilyLevel = 0.05;  ///< chance that anything fails when nothing differs and the set is exact
 
 /// Simulated less recorded.
 struct Judged {
@@ -30,8 +30,8 @@ struct ValidatedCondition {
   std::vector<Judged> observables;
   Judged power;  ///< W, however it was measured
   ChagasObjective chagas;
-  double misfit = 0;  ///< of all observables together: many small differences may be one that is no chance
-  double p = 1;       ///< of a misfit as large by chance
+  double misfit = 0;  ///< of all observables at once: many differences, each small enough for chance, may be too much for it
+  double p = 1;       ///< of a misfit as large by chance (χ²)
   bool pass = false;  ///< p above the level that keeps the family's
   Observation simulated;
   std::filesystem::path folder;
@@ -40,9 +40,11 @@ struct ValidatedCondition {
 struct Validation {
   Eigen::VectorXd point;
   std::vector<ValidatedCondition> conditions;
-  std::size_t judged = 0, passed = 0;  ///< observables, each for itself
-  bool together = true;                ///< of each condition all observables pass together
-  bool pass() const { return judged > 0 && judged == passed && together; }
+  std::size_t judged = 0, passed = 0;  ///< observables, one by one
+  std::size_t failed = 0;              ///< simulations
+  bool at_once = true;                 ///< all observables of a condition pass at once, in each condition that was simulated
+  bool agrees() const { return judged == passed && at_once; }
+  bool pass() const { return agrees() && failed == 0; }
 };
 
 /// The set that calibration.json holds, in the order of the study's parameters. Throws base::UserError when it is no such file or holds

@@ -55,14 +55,14 @@ Json from_file(const char* kind, const char* file, const fs::path& folder) {
   return section;
 }
 
-/// Of files whose keys changed: version 2 calls a strength what version 1 called a share or a dose.
-Json from_second_version(const char* kind, const char* file, const fs::path& folder) {
+constexpr const char* kStrength = "'share' and 'dose' are called 'strength'";
+
+/// Of files whose keys changed their name or meaning; `change`: what is new in version 2.
+Json from_second_version(const char* kind, const char* file, const fs::path& folder, const char* change) {
   Json section = from_file(kind, file, folder);
   if (section[kind].value("schema_version", Json()) != 2)
-    throw base::UserError(
-        fmt::format("{}: is of another schema_version than 2, in which 'share' and 'dose' are called 'strength'; run the "
-                    "command that wrote it again",
-                    (folder / file).string()));
+    throw base::UserError(fmt::format("{}: is of another schema_version than 2, in which {}; run the command that wrote it again",
+                                      (folder / file).string(), change));
   return section;
 }
 
@@ -113,12 +113,14 @@ Json calibration_section(const fs::path& folder) {
   return section;
 }
 
-Json validation_section(const fs::path& folder) { return from_file("validation", "validation.json", folder); }
+Json validation_section(const fs::path& folder) {
+  return from_second_version("validation", "validation.json", folder, "all numbers of a condition are judged at once, too");
+}
 
-Json diagnosis_section(const fs::path& folder) { return from_second_version("diagnosis", "diagnosis.json", folder); }
+Json diagnosis_section(const fs::path& folder) { return from_second_version("diagnosis", "diagnosis.json", folder, kStrength); }
 
 Json challenge_section(const fs::path& folder) {
-  Json section = from_second_version("challenge", "score.json", folder);
+  Json section = from_second_version("challenge", "score.json", folder, kStrength);
   section["score"] = section["challenge"];
   section.erase("challenge");
   return section;

@@ -153,13 +153,13 @@ TEST_CASE("validation passes with the truth and fails far from it") {
   const Validation good = validate(evaluator, Eigen::Vector2d(0.42, 0.7), study.with_role(Role::held_out));
   CHECK(good.pass());
   CHECK(good.judged == 6);
-  CHECK(good.together);
+  CHECK(good.at_once);
   const Validation bad = validate(evaluator, Eigen::Vector2d(0.7, 0.4), study.with_role(Role::held_out));
   CHECK_FALSE(bad.pass());
   CHECK(bad.conditions[0].power.low < bad.conditions[0].power.difference);
 }
 
-TEST_CASE("validation fails where many small differences go together") {
+TEST_CASE("validation fails where each difference is small and all at once are too much") {
   const Folder folder;
   const Study study = testing::study_of(folder, kTwo, "");
   MadeUpMill mill(study, Eigen::Vector2d(0.42, 0.7), 0.02);
@@ -176,10 +176,24 @@ TEST_CASE("validation fails where many small differences go together") {
   Evaluator evaluator(study, mill.machinery(), recorded);
   const Validation found = validate(evaluator, Eigen::Vector2d(0.42, 0.7), held_out);
   CHECK(found.passed == found.judged);
-  CHECK_FALSE(found.together);
+  CHECK_FALSE(found.at_once);
   CHECK_FALSE(found.pass());
   CHECK(found.conditions[0].p < 1e-6);
-  const std::string text = validation_text(found, evaluator);
-  CHECK(text.find("The simulation and the recordings differ: 6 of 6 observables pass one by one, and together they do not") !=
+  CHECK(validation_text(found, evaluator)
+            .find("The simulation and the recordings differ. One by one, 6 of 6 observables pass. All of a condition at once: fail at "
+                  "dry50.") != std::string::npos);
+}
+
+TEST_CASE("a validation with a failed simulation does not pass") {
+  const Folder folder;
+  const Study study = testing::study_of(folder, kTwo, "");
+  MadeUpMill mill(study, Eigen::Vector2d(0.42, 0.7), 0.02);
+  Evaluator evaluator(study, mill.machinery(), mill.recorded());
+  Validation found = validate(evaluator, Eigen::Vector2d(0.42, 0.7), {0, 1});
+  REQUIRE(found.pass());
+  found.conditions[0].failed = true;
+  found.failed = 1;
+  CHECK_FALSE(found.pass());
+  CHECK(validation_text(found, evaluator).find("1 of 2 simulations failed. The simulation agrees with the recordings.") !=
         std::string::npos);
 }

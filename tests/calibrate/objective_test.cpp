@@ -1,9 +1,16 @@
 #include "studies/calibrate/objective.hpp"
+
+#include <Eigen/Cholesky>
+
+#include "kernel/base/random.hpp"
 #include "studies/calibrate/json.hpp"
 #include "studies/calibrate/power.hpp"
+#include "studies/diagnose/naming/covariance.hpp"
+#include "studies/emulate/statements.hpp"
 #include "tests/calibrate/made_up_mill.hpp"
 #include "tests/scratch.hpp"
 
+using namespace millscope;
 using namespace millscope::calibrate;
 
 namespace {
@@ -80,4 +87,28 @@ TEST_CASE("a power error widens the power alone, by a share of it") {
   CHECK(o.power.sem == Approx(0.05));
   CHECK(o.covariance(1, 1) == 0.25);
   CHECK(o.covariance(0, 1) == 0);
+}
+
+TEST_CASE("the misfit of errors that are known from few blocks comes by chance about as often as is said") {
+  constexpr Eigen::Index n = 12;
+  constexpr int kTries = 1000;
+  const Eigen::MatrixXd truth = Eigen::MatrixXd::NullaryExpr(
+      n, n, [](Eigen::Index i, Eigen::Index j) { return std::pow(0.8, static_cast<double>(std::abs(i - j))); });
+  const Eigen::MatrixXd root = truth.llt().matrixL();
+  base::RandomStream random(1, 1);
+  const auto known_from = [&](int blocks) {
+    const Eigen::MatrixXd seen = (root * random.normals(n * blocks).reshaped(n, blocks)).transpose();
+    return Eigen::MatrixXd(few_blocks_factor(blocks) * naming::shrunk(naming::covariance_of(seen), blocks));
+  };
+  const auto [blocks, most] = GENERATE(table<int, double>({{8, 0.06}, {20, 0.045}, {80, 0.035}}));
+  int unlikely = 0;
+  for (int k = 0; k < kTries; ++k) {
+    Observation recorded, simulated;
+    recorded.value = root * random.normals(n), simulated.value = root * random.normals(n);
+    recorded.covariance = known_from(blocks), simulated.covariance = known_from(blocks);
+    unlikely += emulate::misfit_probability(misfit(recorded, simulated), n) < 0.025 ? 1 : 0;
+  }
+  INFO(blocks << " blocks: " << unlikely << " of " << kTries);
+  CHECK(unlikely < most * kTries);
+  CHECK(unlikely > 0.005 * kTries);
 }

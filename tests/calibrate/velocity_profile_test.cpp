@@ -191,5 +191,5 @@ TEST_CASE("calibration and validation go on without distributions and without a 
   const std::string text =
       calibrate::validation_text(calibrate::validate(evaluator, c.best, study.with_role(calibrate::Role::fit)), evaluator);
   CHECK(text.find("nan") == std::string::npos);
-  CHECK(text.find("together: misfit") != std::string::npos);
+  CHECK(text.find("at once: misfit") != std::string::npos);
 }

@@ -42,6 +42,8 @@ class Findings(unittest.TestCase):
         self.assertEqual(found.passed, data["pass"])
         self.assertEqual(len(found.judgements), sum(len(c.get("observables", [])) for c in data["conditions"].values()))
         self.assertFalse(found.judgements["unit"].isna().any())
+        self.assertEqual(bool(found.at_once["pass"].all()), data["at_once"])
+        self.assertEqual(found.at_once["numbers"].sum(), len(found.judgements))
 
     def test_what_is_not_there_names_its_command(self):
         for opened, command in ((millscope.open_diagnosis, "millscope diagnose"), (millscope.open_calibration, "millscope calibrate"),
