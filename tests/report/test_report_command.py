@@ -72,13 +72,13 @@ class Report(unittest.TestCase):
         (self.folder / "broken").mkdir(exist_ok=True)
         (self.folder / "broken" / "diagnosis.json").write_text("{")
         self.assertIn("diagnosis.json: is damaged", self.refused("broken", "-o", "x.html"))
-        for name in ("diagnosis.json", "score.json"):
-            (self.folder / "broken" / "diagnosis.json").unlink(missing_ok=True)
+        (self.folder / "broken" / "diagnosis.json").unlink()
+        for name, change in (("diagnosis.json", "'strength'"), ("score.json", "'strength'"), ("validation.json", "at once")):
             (self.folder / "broken" / name).write_text('{"schema_version": 1}')
             said = self.refused("broken", "-o", "x.html")
             self.assertIn(name + ": is of another schema_version than 2", said)
-            self.assertIn("'strength'", said)
-        (self.folder / "broken" / "score.json").unlink()
+            self.assertIn(change, said)
+            (self.folder / "broken" / name).unlink()
         self.assertFalse((self.folder / "x.html").exists())
 
 
