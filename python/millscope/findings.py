@@ -77,7 +77,7 @@ class Validation(_Finding):
 
     @property
     def passed(self) -> bool:
-        """Every number one by one, and in each condition all of them at once."""
+        """Every number one by one, in each condition all of them at once, and no simulation failed."""
         return bool(self.data["pass"])
 
     @property

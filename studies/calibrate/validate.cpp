@@ -1,7 +1,9 @@
 #include "studies/calibrate/validate.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -60,7 +62,6 @@ void pass_or_fail(Validation& validation) {
   std::size_t conditions = 0;
   for (const ValidatedCondition& c : validation.conditions) {
     validation.judged += c.observables.size();
-    validation.failed += c.failed ? 1 : 0;
     conditions += c.observables.empty() ? 0 : 1;
   }
   const double one = level_of_each(validation.judged), all = level_of_each(conditions);
@@ -77,14 +78,14 @@ void pass_or_fail(Validation& validation) {
 
 /// "The simulation and the recordings differ. One by one …"
 std::string verdict(const Validation& v, const Evaluator& evaluator) {
-  std::string fail;
+  std::vector<std::string> fail;
   for (const ValidatedCondition& c : v.conditions) {
-    if (!c.pass) fail += (fail.empty() ? "" : ", ") + evaluator.study().conditions[c.condition].name;
+    if (!c.pass) fail.push_back(evaluator.study().conditions[c.condition].name);
   }
   return fmt::format("{}{}. One by one, {} of {} observables pass. All of a condition at once: {}. Level: {:.0f} % for all of this.",
-                     v.failed > 0 ? fmt::format("{} of {} simulations failed. ", v.failed, v.conditions.size()) : "",
+                     v.failed() > 0 ? fmt::format("{} of {} simulations failed. ", v.failed(), v.conditions.size()) : "",
                      v.agrees() ? "The simulation agrees with the recordings" : "The simulation and the recordings differ", v.passed,
-                     v.judged, v.at_once ? "pass" : "fail at " + fail, 100 * kFamilyLevel);
+                     v.judged, v.at_once ? "pass" : fmt::format("fail at {}", fmt::join(fail, ", ")), 100 * kFamilyLevel);
 }
 
 Json judged_json(const Judged& j) {
@@ -106,6 +107,10 @@ void add_row(std::string& out, const Judged& j) {
 }
 
 }  // namespace
+
+std::ptrdiff_t Validation::failed() const {
+  return std::count_if(conditions.begin(), conditions.end(), [](const ValidatedCondition& c) { return c.failed; });
+}
 
 Eigen::VectorXd calibrated_set(const fs::path& file, const Study& study) {
   const std::optional<std::string> text = base::text_if_readable(file);

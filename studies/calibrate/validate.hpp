@@ -41,10 +41,10 @@ struct Validation {
   Eigen::VectorXd point;
   std::vector<ValidatedCondition> conditions;
   std::size_t judged = 0, passed = 0;  ///< observables, one by one
-  std::size_t failed = 0;              ///< simulations
   bool at_once = true;                 ///< all observables of a condition pass at once, in each condition that was simulated
+  std::ptrdiff_t failed() const;       ///< simulations
   bool agrees() const { return judged == passed && at_once; }
-  bool pass() const { return agrees() && failed == 0; }
+  bool pass() const { return agrees() && failed() == 0; }
 };
 
 /// The set that calibration.json holds, in the order of the study's parameters. Throws base::UserError when it is no such file or holds
