@@ -111,10 +111,12 @@ int score_sets(const Arguments& arguments) {
 }
 
 int look_for_concealment(const Arguments& arguments) {
-  Options options("challenge conceal CHALLENGE.yaml SETS",
-                  "After the answers are opened: what the practice would have seen of each set. Simulates the truth and the base that was "
-                  "retuned to its power for long, and writes SETS/concealment.json, which 'score' shows.",
-                  "millscope challenge conceal configs/story/challenge.yaml sets");
+  Options options(
+      "challenge conceal CHALLENGE.yaml SETS",
+      "After the answers are opened: what the practice would have seen of each set. Simulates for long the truth, the base "
+      "that was retuned to its power and the one that was refitted to everything, and writes SETS/concealment.json, which 'score' "
+      "shows. What stands there is kept.",
+      "millscope challenge conceal configs/story/challenge.yaml sets");
   options.positional("CHALLENGE.yaml", "the challenge that the sets were made from");
   options.positional("SETS", "diagnosed sets, with their answers");
   options.add()("seconds", po::value<double>()->value_name("T"), "of every run that are looked at (default: 40)");

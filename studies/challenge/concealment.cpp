@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <optional>
 
 #include "kernel/base/statistics.hpp"
 #include "kernel/output/summary.hpp"
@@ -62,57 +62,99 @@ std::vector<std::string> for_long(std::vector<std::string> settings, double from
   return settings;
 }
 
-/// The truth as it was recorded, but longer; the base as the practice retuned it. Nothing: the diagnosis does not tell it.
-std::vector<campaign::Simulation> long_runs(const diagnose::Question& q, const Marked& m, std::size_t condition, double seconds) {
-  const calibrate::Condition& at = q.study.conditions[condition];
-  Eigen::VectorXd theta(static_cast<Eigen::Index>(q.dimensions()));
-  const std::vector<naming::Coordinate> coordinates = q.coordinates();
-  for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    const auto found = m.found->practice.find(coordinates[i].name);
-    if (found == m.found->practice.end()) return {};
-    theta[static_cast<Eigen::Index>(i)] = found->second;
-  }
-  campaign::Simulation truth, base;
-  truth.case_file = base.case_file = q.study.base;
-  truth.settings = m.answer.made.at(at.name).at("settings").get<std::vector<std::string>>();
-  base.settings = at.settings;
-  for (std::string& setting : q.settings(theta, {})) base.settings.push_back(std::move(setting));
-  const double from = config::read_case(q.study.base.string(), base.settings).time.analyze_from;
-  truth.settings = for_long(std::move(truth.settings), from, seconds), base.settings = for_long(std::move(base.settings), from, seconds);
-  truth.label = m.answer.set + ", truth", base.label = m.answer.set + ", retuned base";
-  return {truth, base};
+/// The condition of the long runs and how long they are looked at.
+struct Long {
+  const calibrate::Condition& at;
+  double seconds;
+};
+
+/// The truth as it was recorded, but longer.
+campaign::Simulation truth_of(const diagnose::Question& q, const Marked& m, const Long& how) {
+  campaign::Simulation truth;
+  truth.case_file = q.study.base;
+  truth.label = m.answer.set + ", truth";
+  truth.settings = for_long(m.answer.made.at(how.at.name).at("settings").get<std::vector<std::string>>(),
+                            config::read_case(q.study.base.string(), how.at.settings).time.analyze_from, how.seconds);
+  return truth;
 }
 
-void write(const fs::path& sets, const std::map<std::string, Concealment>& all, const std::string& condition, double seconds) {
+/// The base as it was tuned. Nothing: the diagnosis does not tell it.
+std::optional<campaign::Simulation> base_of(const diagnose::Question& q, const std::map<std::string, double>& tuned, const Long& how) {
+  const std::vector<naming::Coordinate> coordinates = q.coordinates();
+  Eigen::VectorXd theta(static_cast<Eigen::Index>(coordinates.size()));
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const auto found = tuned.find(coordinates[i].name);
+    if (found == tuned.end()) return std::nullopt;
+    theta[static_cast<Eigen::Index>(i)] = found->second;
+  }
+  campaign::Simulation base;
+  base.case_file = q.study.base;
+  base.settings = how.at.settings;
+  for (std::string& setting : q.settings(theta, {})) base.settings.push_back(std::move(setting));
+  const double from = config::read_case(q.study.base.string(), base.settings).time.analyze_from;
+  base.settings = for_long(std::move(base.settings), from, how.seconds);
+  return base;
+}
+
+/// One comparison that is still to be made: places of its two simulations among all.
+struct Pending {
+  std::string set;
+  Tuned tuned;
+  std::size_t truth, base;
+};
+
+/// Plans what a set lacks. What no diagnosis tells is noted as that.
+void plan(const diagnose::Question& q, const Marked& m, const Long& how, std::vector<campaign::Simulation>& simulations,
+          std::vector<Pending>& pending, Practice& known) {
+  std::map<std::string, double> refitted;
+  for (const auto& [name, interval] : m.found->retuned) refitted[name] = interval.value;
+  std::optional<std::size_t> truth;
+  const auto add = [&](Tuned tuned, const std::map<std::string, double>& parameters, const char* label) {
+    if (known.*tuned) return;
+    known.*tuned = Concealment{kUnknown, kUnknown, kUnknown, kUnknown};
+    std::optional<campaign::Simulation> base = base_of(q, parameters, how);
+    if (!base) return;
+    if (!truth) {
+      truth = simulations.size();
+      simulations.push_back(truth_of(q, m, how));
+    }
+    base->label = m.answer.set + label;
+    pending.push_back({m.answer.set, tuned, *truth, simulations.size()});
+    simulations.push_back(std::move(*base));
+  };
+  add(&Practice::to_power, m.found->practice, ", base retuned to power");
+  add(&Practice::to_all, refitted, ", base refitted to everything");
+}
+
+void write(const fs::path& sets, const std::map<std::string, Practice>& all, const Long& how) {
+  const auto json = [](const std::optional<Concealment>& c) {
+    if (!c) return Json();
+    return Json{{"power_percent", c->power_percent}, {"shoulder_deg", c->shoulder_deg}, {"toe_deg", c->toe_deg}, {"chagas2015", c->chagas}};
+  };
   Json list = Json::object();
-  for (const auto& [set, c] : all)
-    list[set] = {{"power_percent", c.power_percent}, {"shoulder_deg", c.shoulder_deg}, {"toe_deg", c.toe_deg}, {"chagas2015", c.chagas}};
-  output::write_json(sets / kConcealmentFile, {{"schema_version", 1}, {"condition", condition}, {"seconds", seconds}, {"sets", list}});
+  for (const auto& [set, p] : all) list[set] = {{"to_power", json(p.to_power)}, {"to_all", json(p.to_all)}};
+  output::write_json(sets / kConcealmentFile,
+                     {{"schema_version", 2}, {"condition", how.at.name}, {"seconds", how.seconds}, {"sets", list}});
 }
 
 }  // namespace
 
 void conceal(const diagnose::Question& q, const fs::path& sets, const host::Registry& registry, const ConcealOptions& options) {
-  const std::size_t condition = q.study.with_role(calibrate::Role::fit).at(0);
-  std::map<std::string, Concealment> all = read_concealment(sets);
+  const Long how{q.study.conditions[q.study.with_role(calibrate::Role::fit).at(0)], options.seconds};
+  std::map<std::string, Practice> all = read_concealment(sets);
   std::vector<campaign::Simulation> simulations;
-  std::vector<std::string> names;
+  std::vector<Pending> pending;
   for (const Marked& m : read_sets(sets)) {
-    if (!m.found || !m.found->failure.empty() || all.count(m.answer.set) > 0) continue;
-    std::vector<campaign::Simulation> both = long_runs(q, m, condition, options.seconds);
-    all[m.answer.set] = {kUnknown, kUnknown, kUnknown, kUnknown};
-    if (both.empty()) continue;
-    std::move(both.begin(), both.end(), std::back_inserter(simulations));
-    names.push_back(m.answer.set);
+    if (m.found && m.found->failure.empty()) plan(q, m, how, simulations, pending, all[m.answer.set]);
   }
   const std::vector<campaign::Outcome> outcomes =
       simulations.empty() ? std::vector<campaign::Outcome>() : campaign::run(simulations, options.campaign);
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    const campaign::Outcome &truth = outcomes[2 * k], &base = outcomes[2 * k + 1];
+  for (const Pending& p : pending) {
+    const campaign::Outcome &truth = outcomes[p.truth], &base = outcomes[p.base];
     if (truth.state == campaign::State::failed || base.state == campaign::State::failed) continue;
-    all[names[k]] = compared(look_at(truth.folder, registry), look_at(base.folder, registry));
+    all[p.set].*p.tuned = compared(look_at(truth.folder, registry), look_at(base.folder, registry));
   }
-  write(sets, all, q.study.conditions[condition].name, options.seconds);
+  write(sets, all, how);
 }
 
 bool Unsuspicious::holds(const Concealment& c) const {
@@ -120,11 +162,12 @@ bool Unsuspicious::holds(const Concealment& c) const {
          c.chagas <= chagas;
 }
 
-std::map<std::string, Unsuspicious> unsuspicious(const std::vector<Marked>& sets) {
+std::map<std::string, Unsuspicious> unsuspicious(const std::vector<Marked>& sets, Tuned tuned) {
   std::map<std::string, std::vector<double>> empty;
   for (const Marked& m : sets) {
     std::vector<double>& own = empty[m.study];
-    if (m.answer.kind == Kind::none && m.concealment && std::isfinite(m.concealment->chagas)) own.push_back(m.concealment->chagas);
+    const std::optional<Concealment>& c = m.practice.*tuned;
+    if (m.answer.kind == Kind::none && c && std::isfinite(c->chagas)) own.push_back(c->chagas);
   }
   std::map<std::string, Unsuspicious> out;
   for (auto& [study, chagas] : empty) {
@@ -133,6 +176,16 @@ std::map<std::string, Unsuspicious> unsuspicious(const std::vector<Marked>& sets
     if (chagas.size() >= kEnoughEmpty) limits.chagas = base::interpolated_quantile(chagas, kQuantile);
   }
   return out;
+}
+
+const Concealment* Concealed::seen(const Marked& m) const {
+  const std::optional<Concealment>& c = m.practice.*tuned_;
+  return c && std::isfinite(c->power_percent) ? &*c : nullptr;
+}
+
+bool Concealed::operator()(const Marked& m) const {
+  const Concealment* c = seen(m);
+  return c != nullptr && limits_.at(m.study).holds(*c);
 }
 
 }  // namespace millscope::challenge

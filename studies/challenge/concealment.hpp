@@ -1,5 +1,6 @@
-// What the practice sees of a truth before any diagnosis: long runs of the truth and of the base that was retuned to its power, at the
-// condition where that was done. Power, shoulder, toe and Eq. 4.3 of Chagas 2015, of the beads as they were, without a camera.
+// What the practice sees of a truth before any diagnosis: long runs of the truth, of the base whose friction was retuned to its power, and
+// of the base that was refitted to all numbers of the recordings; all at the condition where power was retuned. Power, shoulder, toe and
+// Eq. 4.3 of Chagas 2015, of the beads as they were, without a camera.
 #pragma once
 
 #include <filesystem>
@@ -20,13 +21,13 @@ struct ConcealOptions {
   campaign::Options campaign;
 };
 
-/// Two runs for every set with a diagnosis, by its opened answer, into SETS/concealment.json; what stands there is kept. Where the
-/// diagnosis does not tell the retuned base, or a run fails, NaN.
+/// Three runs for every set with a diagnosis, by its opened answer, into SETS/concealment.json; what stands there is kept. Where the
+/// diagnosis does not tell a tuned base, or a run fails, NaN.
 void conceal(const diagnose::Question& question, const std::filesystem::path& sets, const host::Registry& registry,
              const ConcealOptions& options);
 
 /// By set; empty where nobody has looked.
-std::map<std::string, Concealment> read_concealment(const std::filesystem::path& sets);
+std::map<std::string, Practice> read_concealment(const std::filesystem::path& sets);
 
 /// Limits within which the practice takes base and truth for one, for the sets of one study.
 struct Unsuspicious {
@@ -34,7 +35,20 @@ struct Unsuspicious {
   double chagas = std::numeric_limits<double>::infinity();  ///< 90 % quantile of what sets without an effect have, of ten or more
   bool holds(const Concealment& c) const;
 };
-/// By study.
-std::map<std::string, Unsuspicious> unsuspicious(const std::vector<Marked>& sets);
+/// By study, for one way to tune.
+std::map<std::string, Unsuspicious> unsuspicious(const std::vector<Marked>& sets, Tuned tuned);
+
+/// Which sets the practice would take for the base that it tuned in one way.
+class Concealed {
+ public:
+  Concealed(const std::vector<Marked>& sets, Tuned tuned) : tuned_(tuned), limits_(unsuspicious(sets, tuned)) {}
+  /// The long runs of a set; nullptr: nobody has looked, or they tell nothing.
+  const Concealment* seen(const Marked& m) const;
+  bool operator()(const Marked& m) const;
+
+ private:
+  Tuned tuned_;
+  std::map<std::string, Unsuspicious> limits_;
+};
 
 }  // namespace millscope::challenge

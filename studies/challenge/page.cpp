@@ -228,18 +228,18 @@ Json line_json(const Line& l) {
   return {{"intercept", l.intercept}, {"slope", l.slope}, {"slope_low95", l.slope_low}, {"slope_high95", l.slope_high}};
 }
 
-Json concealment_json(const Marked& m, const std::map<std::string, Unsuspicious>& limits) {
-  if (!m.concealment || !std::isfinite(m.concealment->power_percent)) return {};
-  const Concealment& c = *m.concealment;
-  return {{"power_percent", c.power_percent},
-          {"shoulder_deg", c.shoulder_deg},
-          {"toe_deg", c.toe_deg},
-          {"chagas2015", c.chagas},
-          {"unsuspicious", limits.at(m.study).holds(c)}};
+Json concealment_json(const Marked& m, const Concealed& concealed) {
+  const Concealment* c = concealed.seen(m);
+  if (c == nullptr) return {};
+  return {{"power_percent", c->power_percent},
+          {"shoulder_deg", c->shoulder_deg},
+          {"toe_deg", c->toe_deg},
+          {"chagas2015", c->chagas},
+          {"unsuspicious", concealed(m)}};
 }
 
 Json sets_json(const Page& page) {
-  const std::map<std::string, Unsuspicious> limits = unsuspicious(page.sets);
+  const Concealed concealed(page.sets, &Practice::to_power), beyond_fit(page.sets, &Practice::to_all);
   Json out = Json::array();
   for (const Marked& m : page.sets) {
     out.push_back({{"set", m.answer.set},
@@ -247,7 +247,8 @@ Json sets_json(const Page& page) {
                    {"diagnosis", m.found ? Json(label_of(*m.found)) : Json()},
                    {"failure", m.found && !m.found->failure.empty() ? Json(m.found->failure) : Json()},
                    {"missed", m.found ? Json(m.missed()) : Json()},
-                   {"concealment", concealment_json(m, limits)}});
+                   {"concealment", concealment_json(m, concealed)},
+                   {"concealment_refitted", concealment_json(m, beyond_fit)}});
   }
   return out;
 }
@@ -259,6 +260,7 @@ Json power_json(const Score& s) {
                    {"lambda_to", b.high},
                    {"named", count_json(b.named)},
                    {"concealed", count_json(b.concealed)},
+                   {"concealed_refitted", count_json(b.beyond_fit)},
                    {"ideal", b.ideals > 0 ? Json(b.ideal) : Json()}});
   return out;
 }

@@ -195,12 +195,18 @@ std::optional<Found> read_found(const fs::path& set) {
   return f;
 }
 
-std::map<std::string, Concealment> read_concealment(const fs::path& sets) {
-  std::map<std::string, Concealment> out;
+std::map<std::string, Practice> read_concealment(const fs::path& sets) {
+  std::map<std::string, Practice> out;
   if (!fs::exists(sets / kConcealmentFile)) return out;
+  const auto read = [](const Json& c) -> std::optional<Concealment> {
+    if (c.is_null()) return std::nullopt;
+    return Concealment{number(c.at("power_percent")), number(c.at("shoulder_deg")), number(c.at("toe_deg")), number(c.at("chagas2015"))};
+  };
   const Json j = output::read_json(sets / kConcealmentFile);
-  for (const auto& [set, c] : j.at("sets").items())
-    out[set] = {number(c.at("power_percent")), number(c.at("shoulder_deg")), number(c.at("toe_deg")), number(c.at("chagas2015"))};
+  const bool both = j.at("schema_version").get<int>() > 1;  // the first version has the base that was retuned to power alone
+  for (const auto& [set, c] : j.at("sets").items()) {
+    out[set] = both ? Practice{read(c.at("to_power")), read(c.at("to_all"))} : Practice{read(c), {}};
+  }
   return out;
 }
 
@@ -238,12 +244,12 @@ std::vector<Marked> read_sets(const fs::path& sets) {
   std::vector<Marked> out;
   std::map<std::string, std::string> remarks = read_remarks(sets / kRemarksFile);
   const std::string study = study_hash(sets), program = program_of(sets);
-  const std::map<std::string, Concealment> concealment = read_concealment(sets);
+  const std::map<std::string, Practice> practice = read_concealment(sets);
   for (Answer& a : open_answers(sets)) {
     std::optional<Found> found = read_found(sets / a.set);
-    const auto long_runs = concealment.find(a.set);
+    const auto long_runs = practice.find(a.set);
     out.push_back({std::move(a), std::move(found), {}, study, {}, program});
-    if (long_runs != concealment.end()) out.back().concealment = long_runs->second;
+    if (long_runs != practice.end()) out.back().practice = long_runs->second;
     if (auto remark = remarks.extract(out.back().answer.set)) out.back().remark = std::move(remark.mapped());
   }
   if (!remarks.empty())

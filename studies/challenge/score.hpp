@@ -60,17 +60,23 @@ struct Found {
   double level_of(const Tested& tested) const;
 };
 
-/// Retuned base less truth, in long runs (concealment.hpp); NaN where it cannot be told.
+/// A tuned base less truth, in long runs (concealment.hpp); NaN where it cannot be told.
 struct Concealment {
   double power_percent = 0, shoulder_deg = 0, toe_deg = 0;
   double chagas = 0;  ///< Eq. 4.3 of Chagas 2015: |ΔP| in W and percent of the distributions, added as cited
 };
 
+/// Of the base whose friction was retuned to the power alone, and of the one that was refitted to all numbers; nothing: nobody has looked.
+struct Practice {
+  std::optional<Concealment> to_power = {}, to_all = {};
+};
+using Tuned = std::optional<Concealment> Practice::*;
+
 /// A set with its diagnosis; nothing: not diagnosed yet.
 struct Marked {
   Answer answer;
   std::optional<Found> found;
-  std::optional<Concealment> concealment = {};
+  Practice practice = {};
   std::string study = {};    ///< hash of the study that was put to the test
   std::string remark = {};   ///< of whoever looked into it
   std::string program = {};  ///< first digits of the commit that was put to the test; empty: not told
@@ -95,11 +101,12 @@ std::vector<Marked> read_sets(const std::filesystem::path& sets);
 std::vector<Marked> read_all_sets(const std::vector<std::filesystem::path>& folders);
 
 struct PowerBin {
-  double low, high;      ///< of lambda
-  Count named = {};      ///< alone or in a class of two
-  Count concealed = {};  ///< of these, the ones that practice would not suspect
-  double ideal = 0;      ///< mean of ideal_power …
-  int ideals = 0;        ///< … of so many sets
+  double low, high;       ///< of lambda
+  Count named = {};       ///< alone or in a class of two
+  Count concealed = {};   ///< of these, the ones that a base retuned to power would not let practice suspect …
+  Count beyond_fit = {};  ///< … and those that one refitted to everything would not
+  double ideal = 0;       ///< mean of ideal_power …
+  int ideals = 0;         ///< … of so many sets
 };
 
 /// What a diagnosis may say, and how often it was so: all of it; what is hidden among more, or not all of it; not so.

@@ -61,33 +61,26 @@ void every_set(const Page& page, std::string& out) {
   out += "\n";
 }
 
-/// What practice sees of every set before any diagnosis.
-void concealment(const Page& page, std::string& out) {
-  if (std::none_of(page.sets.begin(), page.sets.end(), [](const Marked& m) { return m.concealment.has_value(); })) return;
-  append(out,
-         "## Concealed\n\nLong runs of the truth and of the base whose friction was retuned to its power, at the speed where that was "
-         "done: base less truth. A set with physics that the base lacks is *concealed* where power agrees within {:g} %, shoulder and toe "
-         "within {:g}°, and Eq. 4.3 of Chagas 2015 is below the 90 % quantile of the same mill's sets without an effect (where they are "
-         "ten or more).\n\n"
-         "| set | hidden | power | shoulder | toe | Eq. 4.3 | concealed | diagnosis |\n|---|---|---|---|---|---|---|---|\n",
-         Unsuspicious().power_percent, Unsuspicious().degrees);
-  const std::map<std::string, Unsuspicious> limits = unsuspicious(page.sets);
+/// Every set in which the base lacks something, beside a base that was tuned in one way.
+void concealment(const Page& page, Tuned tuned, std::string_view how, std::string& out) {
+  const Concealed concealed(page.sets, tuned);
+  if (std::none_of(page.sets.begin(), page.sets.end(), [&](const Marked& m) { return m.found && concealed.seen(m); })) return;
+  append(out, "**{}**\n\n| set | hidden | power | shoulder | toe | Eq. 4.3 | concealed | diagnosis |\n|---|---|---|---|---|---|---|---|\n",
+         how);
   Count found, empty;
   int unknown = 0;
   for (const Marked& m : page.sets) {
     if (!m.found) continue;
-    const bool lacks = m.answer.kind != Kind::none && m.answer.kind != Kind::decoy;
-    if (!m.concealment || !std::isfinite(m.concealment->power_percent)) {
+    const Concealment* c = concealed.seen(m);
+    if (c == nullptr) {
       unknown += m.answer.kind == Kind::effect ? 1 : 0;
       continue;
     }
-    const Concealment& c = *m.concealment;
-    if (m.answer.kind == Kind::none) empty.add(limits.at(m.study).holds(c));
-    if (!lacks) continue;
-    const bool hidden = limits.at(m.study).holds(c);
-    append(out, "| {} | {} | {:+.2f} % | {:+.2f}° | {:+.2f}° | {:.2f} | {} | {} |\n", m.answer.set, label_of(m.answer), c.power_percent,
-           c.shoulder_deg, c.toe_deg, c.chagas, hidden ? "yes" : "no", label_of(*m.found));
-    if (hidden && m.answer.kind == Kind::effect) found.add(!m.missed());
+    if (m.answer.kind == Kind::none) empty.add(concealed(m));
+    if (m.answer.kind == Kind::none || m.answer.kind == Kind::decoy) continue;
+    append(out, "| {} | {} | {:+.2f} % | {:+.2f}° | {:+.2f}° | {:.2f} | {} | {} |\n", m.answer.set, label_of(m.answer), c->power_percent,
+           c->shoulder_deg, c->toe_deg, c->chagas, concealed(m) ? "yes" : "no", label_of(*m.found));
+    if (concealed(m) && m.answer.kind == Kind::effect) found.add(!m.missed());
   }
   append(out,
          "\nOf the concealed sets with one effect it is listed, alone or in a class of two, in {}. The same limits hold in {} of the sets "
@@ -96,17 +89,34 @@ void concealment(const Page& page, std::string& out) {
          unknown == 0 ? "" : fmt::format(" Of {} more with one effect it is not known whether they are concealed.", unknown));
 }
 
+/// What practice sees of every set before any diagnosis.
+void concealment(const Page& page, std::string& out) {
+  std::string tables;
+  concealment(page, &Practice::to_power, "The base whose friction was retuned to the power alone, less the truth:", tables);
+  concealment(page, &Practice::to_all, "The base that was refitted to all numbers of all fitted conditions, less the truth:", tables);
+  if (tables.empty()) return;
+  append(
+      out,
+      "## Concealed\n\nLong runs of the truth and of a base that was tuned to its recordings, at the speed where power was retuned. A set "
+      "with "
+      "physics that the base lacks is *concealed* where power agrees within {:g} %, shoulder and toe within {:g}°, and Eq. 4.3 of Chagas "
+      "2015 is below the 90 % quantile of the same mill's sets without an effect (where they are ten or more).\n\n{}",
+      Unsuspicious().power_percent, Unsuspicious().degrees, tables);
+}
+
 void power(const Score& s, std::string& out) {
   out +=
       "## Power\n\nλ: squared length, in noise units, of the effect's part that no retuning imitates, by the diagnosis' own "
       "surrogate, at the hidden strength. Sets with one effect. *Ideal*: a test of one number with normal noise of known "
       "size, at the candidate's share of the level (Bonferroni): Φ(√λ − z), mean of the bin's sets.\n\n"
-      "| λ | listed, alone or in a class of two | of the concealed | ideal |\n|---|---|---|---|\n";
+      "| λ | listed, alone or in a class of two | of those [concealed](#concealed) by friction retuned to power | by refitting to "
+      "everything | "
+      "ideal |\n|---|---|---|---|---|\n";
+  const auto hits = [](const Count& c) { return c.of == 0 ? "" : fmt::format("{} of {}", c.hits, c.of); };
   for (const PowerBin& b : s.power)
-    append(out, "| {} | {} | {} | {} |\n",
+    append(out, "| {} | {} | {} | {} | {} |\n",
            std::isfinite(b.high) ? fmt::format("{:g} … {:g}", b.low, b.high) : fmt::format("{:g} and more", b.low), count_text(b.named),
-           b.concealed.of == 0 ? "" : fmt::format("{} of {}", b.concealed.hits, b.concealed.of),
-           b.ideals == 0 ? "" : fmt::format("{:.0f} %", 100 * b.ideal));
+           hits(b.concealed), hits(b.beyond_fit), b.ideals == 0 ? "" : fmt::format("{:.0f} %", 100 * b.ideal));
   out += "\n";
 }
 

@@ -105,7 +105,8 @@ TEST_CASE("long runs say what the practice would have seen of each set, once") {
   made.challenge = read_challenge(made.folder / "c.yaml");
   made.make_sets();
   const std::string diagnosis =
-      R"({"schema_version": 2, "verdict": "no_mismatch", "named": [], "hypotheses": [], "contact_parameters": {}, "held_out":
+      R"({"schema_version": 2, "verdict": "no_mismatch", "named": [], "hypotheses": [], "contact_parameters":
+{"retuned": {"bead_friction": {"value": 0.3, "low90": 0.2, "high90": 0.4}, "filling": {"value": 0.4, "low90": 0.39, "high90": 0.41}}}, "held_out":
 [{"condition": "held", "models": [{"model": "retuned to power", "parameters": {"bead_friction": 0.12, "filling": 0.395}}]}]})";
   for (const Answer& a : open_answers(made.sets)) {
     fs::create_directories(made.sets / a.set / "diagnosis");
@@ -118,11 +119,14 @@ TEST_CASE("long runs say what the practice would have seen of each set, once") {
   conceal(q, made.sets, made.registry, options);
   const std::vector<Marked> marked = read_sets(made.sets);
   for (const Marked& m : marked) {
-    REQUIRE(m.concealment);
-    CHECK(std::fabs(m.concealment->power_percent) > 0);
-    CHECK(std::fabs(m.concealment->power_percent) < 60);
-    CHECK(std::isfinite(m.concealment->toe_deg));
-    CHECK(m.concealment->chagas > 0.05);
+    for (const std::optional<Concealment>& c : {m.practice.to_power, m.practice.to_all}) {
+      REQUIRE(c);
+      CHECK(std::fabs(c->power_percent) > 0);
+      CHECK(std::fabs(c->power_percent) < 60);
+      CHECK(std::isfinite(c->toe_deg));
+      CHECK(c->chagas > 0.05);
+    }
+    CHECK(m.practice.to_power->power_percent != m.practice.to_all->power_percent);
   }
   const std::string before = base::text_of(made.sets / "concealment.json");
   fs::remove_all(made.folder / "cache");
@@ -131,10 +135,23 @@ TEST_CASE("long runs say what the practice would have seen of each set, once") {
   CHECK_FALSE(fs::exists(made.folder / "cache"));
 }
 
+TEST_CASE("long runs of before tell of the base that was retuned to power") {
+  const testing::Scratch folder;
+  std::ofstream(folder / kConcealmentFile) << R"({"schema_version": 1, "condition": "fast", "seconds": 40, "sets": {"set_001":
+{"power_percent": 0.5, "shoulder_deg": -1, "toe_deg": 2, "chagas2015": 0.3}, "set_002":
+{"power_percent": null, "shoulder_deg": null, "toe_deg": null, "chagas2015": null}}})";
+  const std::map<std::string, Practice> found = read_concealment(folder.path);
+  REQUIRE(found.at("set_001").to_power);
+  CHECK(found.at("set_001").to_power->toe_deg == 2);
+  CHECK_FALSE(found.at("set_001").to_all);
+  CHECK(std::isnan(found.at("set_002").to_power->power_percent));
+}
+
 TEST_CASE("concealed is what power, angles and distributions leave unsuspicious") {
   std::vector<Marked> sets;
-  for (int i = 1; i <= 11; ++i) sets.push_back({{"e", challenge::Kind::none, "", {}, {}, {}}, {}, Concealment{0, 0, 0, 0.1 * i}, ""});
-  const Unsuspicious limits = unsuspicious(sets).at("");
+  for (int i = 1; i <= 11; ++i) sets.push_back({{"e", challenge::Kind::none, "", {}, {}, {}}, {}, {Concealment{0, 0, 0, 0.1 * i}, {}}, ""});
+  const Unsuspicious limits = unsuspicious(sets, &Practice::to_power).at("");
+  CHECK(std::isinf(unsuspicious(sets, &Practice::to_all).at("").chagas));
   CHECK(limits.chagas == Approx(1.0));
   CHECK(limits.holds({0.9, -1.4, 1.4, 0.9}));
   CHECK_FALSE(limits.holds({-1.1, 0, 0, 0.9}));
@@ -143,7 +160,7 @@ TEST_CASE("concealed is what power, angles and distributions leave unsuspicious"
   CHECK_FALSE(limits.holds({0, 0, 0, 1.1}));
   CHECK_FALSE(limits.holds({0, 0, std::nan(""), 0.9}));
   sets.resize(9);
-  CHECK(std::isinf(unsuspicious(sets).at("").chagas));
+  CHECK(std::isinf(unsuspicious(sets, &Practice::to_power).at("").chagas));
 }
 
 TEST_CASE("sets that could not be read back are not sealed") {

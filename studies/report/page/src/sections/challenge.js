@@ -24,10 +24,10 @@ function ideal(bins) {
   return [{ name: "ideal test of one number", values: bins.map((bin) => (isNumber(bin.ideal) ? { value: 100 * bin.ideal, low: 100 * bin.ideal, high: 100 * bin.ideal, text: percent(bin.ideal) } : null)) }];
 }
 
-/// Whether practice would have seen that something is missing.
-function concealed(row) {
-  if (!row.concealment || row.truth === "none" || row.truth.startsWith("decoy")) return "";
-  return row.concealment.unsuspicious ? "yes" : "no";
+/// Whether practice, with a base tuned in one way, would have missed that something is missing.
+function concealed(row, seen) {
+  if (!seen || row.truth === "none" || row.truth.startsWith("decoy")) return "";
+  return seen.unsuspicious ? "yes" : "no";
 }
 
 function power(score, key) {
@@ -83,7 +83,8 @@ export function challenge(section, key) {
         { label: "against", value: (row) => row.against }, { label: "surely better", number: true, value: (row) => share(row.surely) }, { label: "90 % interval", number: true, value: (row) => bounds(row.surely) },
         { label: "median gain in misfit", number: true, value: (row) => number(row.median_improvement, 3) }] })) : null,
       score.every_set?.length ? block(`${key}-sets`, "Every set", element("div", { class: "tall" }, table({ caption: "What was hidden and what was said", rows: score.every_set, columns: [
-        { label: "set", value: (row) => row.set }, { label: "hidden", value: (row) => words(row.truth) }, { label: "concealed", value: concealed },
+        { label: "set", value: (row) => row.set }, { label: "hidden", value: (row) => words(row.truth) }, { label: "concealed: friction retuned to power", value: (row) => concealed(row, row.concealment) },
+        { label: "concealed: refitted to everything", value: (row) => concealed(row, row.concealment_refitted) },
         { label: "diagnosis", wide: true, value: (row) => (row.failure ? element("span", { class: "fail" }, `failed: ${row.failure}`) : words(row.diagnosis ?? "not yet diagnosed")) }] }))) : null,
       score.manifest_hash ? block(`${key}-seal`, "Seal", paragraph("Hash of the manifest of sealed answers: ", element("code", null, score.manifest_hash))) : null],
   };
