@@ -343,8 +343,8 @@ class Batch:
         new.rmdir()
 
     def conceal(self):
-        if not (self.public / "concealment.json").exists():
-            self.call("challenge", "conceal", self.challenge, self.public, "--cache", self.cache, "--quiet")
+        """What stands there is kept, so that only what is missing costs anything."""
+        self.call("challenge", "conceal", self.challenge, self.public, "--cache", self.cache, "--quiet")
 
     def opened(self):
         return (self.public / "answers").exists()

@@ -39,7 +39,8 @@ def rows_of(batch):
         if one["truth"] == "none":
             empty.append(misfits_of(diagnosis))
         elif not one["truth"].startswith(("decoy:", "outside:")):
-            concealed = (one.get("concealment") or {}).get("unsuspicious", False)  # without long runs not known: then nothing is marked
+            seen = [one["practice"][tuned] or {} for tuned in ("to_power", "to_all")]  # empty without long runs: then nothing is marked
+            concealed = any(each.get("unsuspicious", False) for each in seen)
             listed = {"named": "", "ambiguous": "listed"}.get(diagnosis["verdict"], "missed")
             if listed != "missed" and one["missed"]:
                 listed = "in part" if set(one["truth"].split(" + ")) & set(diagnosis["named"]) else "wrong"

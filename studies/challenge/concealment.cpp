@@ -126,6 +126,19 @@ void plan(const diagnose::Question& q, const Marked& m, const Long& how, std::ve
   add(&Practice::to_all, refitted, ", base refitted to everything");
 }
 
+/// What stands there is kept, so it has to be of the same runs.
+void refuse_others(const fs::path& sets, const Long& how) {
+  const fs::path file = sets / kConcealmentFile;
+  if (!fs::exists(file)) return;
+  const Json j = output::read_json(file);
+  const std::string condition = j.value("condition", "");
+  const double seconds = j.value("seconds", 0.0);
+  if (condition == how.at.name && seconds == how.seconds) return;
+  throw base::UserError(
+      fmt::format("{}: has long runs of {:g} s at '{}', these would be of {:g} s at '{}'; give --seconds {:g}, or take the file away",
+                  file.string(), seconds, condition, how.seconds, how.at.name, seconds));
+}
+
 void write(const fs::path& sets, const std::map<std::string, Practice>& all, const Long& how) {
   const auto json = [](const std::optional<Concealment>& c) {
     if (!c) return Json();
@@ -141,6 +154,7 @@ void write(const fs::path& sets, const std::map<std::string, Practice>& all, con
 
 void conceal(const diagnose::Question& q, const fs::path& sets, const host::Registry& registry, const ConcealOptions& options) {
   const Long how{q.study.conditions[q.study.with_role(calibrate::Role::fit).at(0)], options.seconds};
+  refuse_others(sets, how);
   std::map<std::string, Practice> all = read_concealment(sets);
   std::vector<campaign::Simulation> simulations;
   std::vector<Pending> pending;
@@ -149,10 +163,14 @@ void conceal(const diagnose::Question& q, const fs::path& sets, const host::Regi
   }
   const std::vector<campaign::Outcome> outcomes =
       simulations.empty() ? std::vector<campaign::Outcome>() : campaign::run(simulations, options.campaign);
+  std::map<std::size_t, Look> looks;  // two bases share a truth
+  const auto look = [&](std::size_t k) -> const Look& {
+    const auto found = looks.find(k);
+    return found != looks.end() ? found->second : looks.emplace(k, look_at(outcomes[k].folder, registry)).first->second;
+  };
+  const auto failed = [&](std::size_t k) { return outcomes[k].state == campaign::State::failed; };
   for (const Pending& p : pending) {
-    const campaign::Outcome &truth = outcomes[p.truth], &base = outcomes[p.base];
-    if (truth.state == campaign::State::failed || base.state == campaign::State::failed) continue;
-    all[p.set].*p.tuned = compared(look_at(truth.folder, registry), look_at(base.folder, registry));
+    if (!failed(p.truth) && !failed(p.base)) all[p.set].*p.tuned = compared(look(p.truth), look(p.base));
   }
   write(sets, all, how);
 }

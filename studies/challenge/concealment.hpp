@@ -1,4 +1,4 @@
-// What the practice sees of a truth before any diagnosis: long runs of the truth, of the base whose friction was retuned to its power, and
+// What the practice sees of a truth: long runs of it, of the base whose friction was retuned to its power, and
 // of the base that was refitted to all numbers of the recordings; all at the condition where power was retuned. Power, shoulder, toe and
 // Eq. 4.3 of Chagas 2015, of the beads as they were, without a camera.
 #pragma once

@@ -228,7 +228,7 @@ Json line_json(const Line& l) {
   return {{"intercept", l.intercept}, {"slope", l.slope}, {"slope_low95", l.slope_low}, {"slope_high95", l.slope_high}};
 }
 
-Json concealment_json(const Marked& m, const Concealed& concealed) {
+Json practice_json(const Marked& m, const Concealed& concealed) {
   const Concealment* c = concealed.seen(m);
   if (c == nullptr) return {};
   return {{"power_percent", c->power_percent},
@@ -239,7 +239,7 @@ Json concealment_json(const Marked& m, const Concealed& concealed) {
 }
 
 Json sets_json(const Page& page) {
-  const Concealed concealed(page.sets, &Practice::to_power), beyond_fit(page.sets, &Practice::to_all);
+  const Concealed to_power(page.sets, &Practice::to_power), to_all(page.sets, &Practice::to_all);
   Json out = Json::array();
   for (const Marked& m : page.sets) {
     out.push_back({{"set", m.answer.set},
@@ -247,8 +247,7 @@ Json sets_json(const Page& page) {
                    {"diagnosis", m.found ? Json(label_of(*m.found)) : Json()},
                    {"failure", m.found && !m.found->failure.empty() ? Json(m.found->failure) : Json()},
                    {"missed", m.found ? Json(m.missed()) : Json()},
-                   {"concealment", concealment_json(m, concealed)},
-                   {"concealment_refitted", concealment_json(m, beyond_fit)}});
+                   {"practice", {{"to_power", practice_json(m, to_power)}, {"to_all", practice_json(m, to_all)}}}});
   }
   return out;
 }
@@ -259,8 +258,7 @@ Json power_json(const Score& s) {
     out.push_back({{"lambda_from", b.low},
                    {"lambda_to", b.high},
                    {"named", count_json(b.named)},
-                   {"concealed", count_json(b.concealed)},
-                   {"concealed_refitted", count_json(b.beyond_fit)},
+                   {"concealed", {{"to_power", count_json(b.concealed_to_power)}, {"to_all", count_json(b.concealed_to_all)}}},
                    {"ideal", b.ideals > 0 ? Json(b.ideal) : Json()}});
   return out;
 }

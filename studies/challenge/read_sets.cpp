@@ -203,7 +203,13 @@ std::map<std::string, Practice> read_concealment(const fs::path& sets) {
     return Concealment{number(c.at("power_percent")), number(c.at("shoulder_deg")), number(c.at("toe_deg")), number(c.at("chagas2015"))};
   };
   const Json j = output::read_json(sets / kConcealmentFile);
-  const bool both = j.at("schema_version").get<int>() > 1;  // the first version has the base that was retuned to power alone
+  const int version = j.value("schema_version", 0);  // the first has the base that was retuned to power alone
+  if (version != 1 && version != 2)
+    throw base::UserError(
+        fmt::format("{}: schema_version {} is not known here, 1 and 2 are; take the file away, and 'millscope challenge "
+                    "conceal' makes it anew",
+                    (sets / kConcealmentFile).string(), version));
+  const bool both = version == 2;
   for (const auto& [set, c] : j.at("sets").items()) {
     out[set] = both ? Practice{read(c.at("to_power")), read(c.at("to_all"))} : Practice{read(c), {}};
   }

@@ -80,15 +80,15 @@ void score_decoy(const Found& f, Score& s) {
 }
 
 /// Of sets with one effect: beside another one λ is another.
-void add_power(const Marked& m, const Concealed& concealed, const Concealed& beyond_fit, Score& s) {
+void add_power(const Marked& m, const Concealed& to_power, const Concealed& to_all, Score& s) {
   if (m.answer.kind != Kind::effect) return;
   const TrueEffect& e = m.answer.effects.front();
   const std::optional<double> lambda = m.lambda(e);
   if (!lambda) return;
   PowerBin& bin = *std::find_if(s.power.begin(), s.power.end(), [&](const PowerBin& b) { return *lambda >= b.low && *lambda < b.high; });
   bin.named.add(is_right(m));
-  if (concealed(m)) bin.concealed.add(is_right(m));
-  if (beyond_fit(m)) bin.beyond_fit.add(is_right(m));
+  if (to_power(m)) bin.concealed_to_power.add(is_right(m));
+  if (to_all(m)) bin.concealed_to_all.add(is_right(m));
   const double ideal = ideal_power(*lambda, m.found->level_of(*m.found->find(e.hypothesis)));
   if (std::isfinite(ideal)) bin.ideal += (ideal - bin.ideal) / ++bin.ideals;
 }
@@ -329,7 +329,7 @@ Score score(const std::vector<Marked>& sets) {
   Score s;
   s.coverage = {{kStrengthRow, {}}};
   s.power = {{0, 3}, {3, 10}, {10, 30}, {30, 100}, {100, kInfinity}};
-  const Concealed concealed(sets, &Practice::to_power), beyond_fit(sets, &Practice::to_all);
+  const Concealed to_power(sets, &Practice::to_power), to_all(sets, &Practice::to_all);
   double class_sum = 0;
   int classes = 0;
   for (const Marked& m : sets) {
@@ -347,7 +347,7 @@ Score score(const std::vector<Marked>& sets) {
       classes += size > 0 ? 1 : 0;
     }
     add_held_out(m, s);
-    add_power(m, concealed, beyond_fit, s);
+    add_power(m, to_power, to_all, s);
     add_estimate(m, s);
     add_theta(m, s);
     add_recovery(m, s);

@@ -101,12 +101,12 @@ std::vector<Marked> read_sets(const std::filesystem::path& sets);
 std::vector<Marked> read_all_sets(const std::vector<std::filesystem::path>& folders);
 
 struct PowerBin {
-  double low, high;       ///< of lambda
-  Count named = {};       ///< alone or in a class of two
-  Count concealed = {};   ///< of these, the ones that a base retuned to power would not let practice suspect …
-  Count beyond_fit = {};  ///< … and those that one refitted to everything would not
-  double ideal = 0;       ///< mean of ideal_power …
-  int ideals = 0;         ///< … of so many sets
+  double low, high;  ///< of lambda
+  Count named = {};  ///< alone or in a class of two
+  /// Of these, the ones that practice would not suspect, by the base that was retuned to power, and by the one refitted to everything.
+  Count concealed_to_power = {}, concealed_to_all = {};
+  double ideal = 0;  ///< mean of ideal_power …
+  int ideals = 0;    ///< … of so many sets
 };
 
 /// What a diagnosis may say, and how often it was so: all of it; what is hidden among more, or not all of it; not so.

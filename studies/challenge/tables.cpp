@@ -89,7 +89,7 @@ void concealment(const Page& page, Tuned tuned, std::string_view how, std::strin
          unknown == 0 ? "" : fmt::format(" Of {} more with one effect it is not known whether they are concealed.", unknown));
 }
 
-/// What practice sees of every set before any diagnosis.
+/// What practice sees of every set.
 void concealment(const Page& page, std::string& out) {
   std::string tables;
   concealment(page, &Practice::to_power, "The base whose friction was retuned to the power alone, less the truth:", tables);
@@ -116,7 +116,7 @@ void power(const Score& s, std::string& out) {
   for (const PowerBin& b : s.power)
     append(out, "| {} | {} | {} | {} | {} |\n",
            std::isfinite(b.high) ? fmt::format("{:g} … {:g}", b.low, b.high) : fmt::format("{:g} and more", b.low), count_text(b.named),
-           hits(b.concealed), hits(b.beyond_fit), b.ideals == 0 ? "" : fmt::format("{:.0f} %", 100 * b.ideal));
+           hits(b.concealed_to_power), hits(b.concealed_to_all), b.ideals == 0 ? "" : fmt::format("{:.0f} %", 100 * b.ideal));
   out += "\n";
 }
 

@@ -129,6 +129,15 @@ TEST_CASE("long runs say what the practice would have seen of each set, once") {
     CHECK(m.practice.to_power->power_percent != m.practice.to_all->power_percent);
   }
   const std::string before = base::text_of(made.sets / "concealment.json");
+  nlohmann::json old = nlohmann::json::parse(before);
+  old["schema_version"] = 1;
+  for (auto& [set, seen] : old["sets"].items()) seen = nlohmann::json(seen["to_power"]);
+  std::ofstream(made.sets / "concealment.json") << old;
+  conceal(q, made.sets, made.registry, options);
+  CHECK(base::text_of(made.sets / "concealment.json") == before);
+  ConcealOptions longer = options;
+  longer.seconds = 1;
+  CHECK_THROWS_WITH(conceal(q, made.sets, made.registry, longer), Catch::Contains("0.5 s at 'fast'") && Catch::Contains("--seconds 0.5"));
   fs::remove_all(made.folder / "cache");
   conceal(q, made.sets, made.registry, options);
   CHECK(base::text_of(made.sets / "concealment.json") == before);

@@ -83,8 +83,8 @@ export function challenge(section, key) {
         { label: "against", value: (row) => row.against }, { label: "surely better", number: true, value: (row) => share(row.surely) }, { label: "90 % interval", number: true, value: (row) => bounds(row.surely) },
         { label: "median gain in misfit", number: true, value: (row) => number(row.median_improvement, 3) }] })) : null,
       score.every_set?.length ? block(`${key}-sets`, "Every set", element("div", { class: "tall" }, table({ caption: "What was hidden and what was said", rows: score.every_set, columns: [
-        { label: "set", value: (row) => row.set }, { label: "hidden", value: (row) => words(row.truth) }, { label: "concealed: friction retuned to power", value: (row) => concealed(row, row.concealment) },
-        { label: "concealed: refitted to everything", value: (row) => concealed(row, row.concealment_refitted) },
+        { label: "set", value: (row) => row.set }, { label: "hidden", value: (row) => words(row.truth) }, { label: "concealed: friction retuned to power", value: (row) => concealed(row, row.practice?.to_power) },
+        { label: "concealed: refitted to everything", value: (row) => concealed(row, row.practice?.to_all) },
         { label: "diagnosis", wide: true, value: (row) => (row.failure ? element("span", { class: "fail" }, `failed: ${row.failure}`) : words(row.diagnosis ?? "not yet diagnosed")) }] }))) : null,
       score.manifest_hash ? block(`${key}-seal`, "Seal", paragraph("Hash of the manifest of sealed answers: ", element("code", null, score.manifest_hash))) : null],
   };
