@@ -54,27 +54,26 @@ Concealment compared(const Look& truth, const Look& base) {
           calibrate::chagas2015(truth.seen, base.seen, {}).value()};
 }
 
-std::vector<std::string> for_long(std::vector<std::string> settings, double from, double seconds) {
+/// The condition of the long runs, from when on and how long they are looked at.
+struct Long {
+  const calibrate::Condition& at;
+  double from, seconds;
+};
+
+std::vector<std::string> for_long(std::vector<std::string> settings, const Long& how) {
   for (const std::string& more :
-       {fmt::format("time.end_s={}", from + seconds), fmt::format("output.frames={{every_s: {}}}", kLongFrameStep),
+       {fmt::format("time.end_s={}", how.from + how.seconds), fmt::format("output.frames={{every_s: {}}}", kLongFrameStep),
         std::string("output.tracks=~"), std::string("output.vtk=~")})
     settings.push_back(more);
   return settings;
 }
-
-/// The condition of the long runs and how long they are looked at.
-struct Long {
-  const calibrate::Condition& at;
-  double seconds;
-};
 
 /// The truth as it was recorded, but longer.
 campaign::Simulation truth_of(const diagnose::Question& q, const Marked& m, const Long& how) {
   campaign::Simulation truth;
   truth.case_file = q.study.base;
   truth.label = m.answer.set + ", truth";
-  truth.settings = for_long(m.answer.made.at(how.at.name).at("settings").get<std::vector<std::string>>(),
-                            config::read_case(q.study.base.string(), how.at.settings).time.analyze_from, how.seconds);
+  truth.settings = for_long(m.answer.made.at(how.at.name).at("settings").get<std::vector<std::string>>(), how);
   return truth;
 }
 
@@ -91,8 +90,7 @@ std::optional<campaign::Simulation> base_of(const diagnose::Question& q, const s
   base.case_file = q.study.base;
   base.settings = how.at.settings;
   for (std::string& setting : q.settings(theta, {})) base.settings.push_back(std::move(setting));
-  const double from = config::read_case(q.study.base.string(), base.settings).time.analyze_from;
-  base.settings = for_long(std::move(base.settings), from, how.seconds);
+  base.settings = for_long(std::move(base.settings), how);
   return base;
 }
 
@@ -102,10 +100,13 @@ struct Pending {
   Tuned tuned;
   std::size_t truth, base;
 };
+struct Plan {
+  std::vector<campaign::Simulation> simulations;
+  std::vector<Pending> pending;
+};
 
-/// Plans what a set lacks. What no diagnosis tells is noted as that.
-void plan(const diagnose::Question& q, const Marked& m, const Long& how, std::vector<campaign::Simulation>& simulations,
-          std::vector<Pending>& pending, Practice& known) {
+/// Plans what is not known of a set. What its diagnosis does not tell is noted as that.
+void add_runs(const diagnose::Question& q, const Marked& m, const Long& how, Practice& known, Plan& plan) {
   std::map<std::string, double> refitted;
   for (const auto& [name, interval] : m.found->retuned) refitted[name] = interval.value;
   std::optional<std::size_t> truth;
@@ -115,12 +116,12 @@ void plan(const diagnose::Question& q, const Marked& m, const Long& how, std::ve
     std::optional<campaign::Simulation> base = base_of(q, parameters, how);
     if (!base) return;
     if (!truth) {
-      truth = simulations.size();
-      simulations.push_back(truth_of(q, m, how));
+      truth = plan.simulations.size();
+      plan.simulations.push_back(truth_of(q, m, how));
     }
     base->label = m.answer.set + label;
-    pending.push_back({m.answer.set, tuned, *truth, simulations.size()});
-    simulations.push_back(std::move(*base));
+    plan.pending.push_back({m.answer.set, tuned, *truth, plan.simulations.size()});
+    plan.simulations.push_back(std::move(*base));
   };
   add(&Practice::to_power, m.found->practice, ", base retuned to power");
   add(&Practice::to_all, refitted, ", base refitted to everything");
@@ -153,23 +154,23 @@ void write(const fs::path& sets, const std::map<std::string, Practice>& all, con
 }  // namespace
 
 void conceal(const diagnose::Question& q, const fs::path& sets, const host::Registry& registry, const ConcealOptions& options) {
-  const Long how{q.study.conditions[q.study.with_role(calibrate::Role::fit).at(0)], options.seconds};
+  const calibrate::Condition& at = q.study.conditions[q.study.with_role(calibrate::Role::fit).at(0)];
+  const Long how{at, config::read_case(q.study.base.string(), at.settings).time.analyze_from, options.seconds};
   refuse_others(sets, how);
   std::map<std::string, Practice> all = read_concealment(sets);
-  std::vector<campaign::Simulation> simulations;
-  std::vector<Pending> pending;
+  Plan plan;
   for (const Marked& m : read_sets(sets)) {
-    if (m.found && m.found->failure.empty()) plan(q, m, how, simulations, pending, all[m.answer.set]);
+    if (m.found && m.found->failure.empty()) add_runs(q, m, how, all[m.answer.set], plan);
   }
   const std::vector<campaign::Outcome> outcomes =
-      simulations.empty() ? std::vector<campaign::Outcome>() : campaign::run(simulations, options.campaign);
+      plan.simulations.empty() ? std::vector<campaign::Outcome>() : campaign::run(plan.simulations, options.campaign);
   std::map<std::size_t, Look> looks;  // two bases share a truth
   const auto look = [&](std::size_t k) -> const Look& {
     const auto found = looks.find(k);
     return found != looks.end() ? found->second : looks.emplace(k, look_at(outcomes[k].folder, registry)).first->second;
   };
   const auto failed = [&](std::size_t k) { return outcomes[k].state == campaign::State::failed; };
-  for (const Pending& p : pending) {
+  for (const Pending& p : plan.pending) {
     if (!failed(p.truth) && !failed(p.base)) all[p.set].*p.tuned = compared(look(p.truth), look(p.base));
   }
   write(sets, all, how);

@@ -98,8 +98,8 @@ void concealment(const Page& page, std::string& out) {
   append(
       out,
       "## Concealed\n\nLong runs of the truth and of a base that was tuned to its recordings, at the speed where power was retuned. A set "
-      "with "
-      "physics that the base lacks is *concealed* where power agrees within {:g} %, shoulder and toe within {:g}°, and Eq. 4.3 of Chagas "
+      "with physics that the base lacks is *concealed* where power agrees within {:g} %, shoulder and toe within {:g}°, and Eq. 4.3 of "
+      "Chagas "
       "2015 is below the 90 % quantile of the same mill's sets without an effect (where they are ten or more).\n\n{}",
       Unsuspicious().power_percent, Unsuspicious().degrees, tables);
 }
@@ -110,8 +110,7 @@ void power(const Score& s, std::string& out) {
       "surrogate, at the hidden strength. Sets with one effect. *Ideal*: a test of one number with normal noise of known "
       "size, at the candidate's share of the level (Bonferroni): Φ(√λ − z), mean of the bin's sets.\n\n"
       "| λ | listed, alone or in a class of two | of those [concealed](#concealed) by friction retuned to power | by refitting to "
-      "everything | "
-      "ideal |\n|---|---|---|---|---|\n";
+      "everything | ideal |\n|---|---|---|---|---|\n";
   const auto hits = [](const Count& c) { return c.of == 0 ? "" : fmt::format("{} of {}", c.hits, c.of); };
   for (const PowerBin& b : s.power)
     append(out, "| {} | {} | {} | {} | {} |\n",
