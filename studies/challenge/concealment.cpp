@@ -184,13 +184,13 @@ bool Unsuspicious::holds(const Concealment& c) const {
 std::map<std::string, Unsuspicious> unsuspicious(const std::vector<Marked>& sets, Tuned tuned) {
   std::map<std::string, std::vector<double>> empty;
   for (const Marked& m : sets) {
-    std::vector<double>& own = empty[m.study];
+    std::vector<double>& own = empty[m.peers()];
     const std::optional<Concealment>& c = m.practice.*tuned;
     if (m.answer.kind == Kind::none && c && std::isfinite(c->chagas)) own.push_back(c->chagas);
   }
   std::map<std::string, Unsuspicious> out;
-  for (auto& [study, chagas] : empty) {
-    Unsuspicious& limits = out[study];
+  for (auto& [peers, chagas] : empty) {
+    Unsuspicious& limits = out[peers];
     std::sort(chagas.begin(), chagas.end());
     if (chagas.size() >= kEnoughEmpty) limits.chagas = base::interpolated_quantile(chagas, kQuantile);
   }
@@ -204,7 +204,7 @@ const Concealment* Concealed::seen(const Marked& m) const {
 
 bool Concealed::operator()(const Marked& m) const {
   const Concealment* c = seen(m);
-  return c != nullptr && limits_.at(m.study).holds(*c);
+  return c != nullptr && limits_.at(m.peers()).holds(*c);
 }
 
 }  // namespace millscope::challenge

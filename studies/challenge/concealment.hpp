@@ -29,13 +29,14 @@ void conceal(const diagnose::Question& question, const std::filesystem::path& se
 /// By set; empty where nobody has looked.
 std::map<std::string, Practice> read_concealment(const std::filesystem::path& sets);
 
-/// Limits within which the practice takes base and truth for one, for the sets of one study.
+/// Limits within which the practice takes base and truth for one, for sets that were recorded alike: shorter recordings leave a base
+/// farther off.
 struct Unsuspicious {
   double power_percent = 1, degrees = 1.5;
   double chagas = std::numeric_limits<double>::infinity();  ///< 90 % quantile of what sets without an effect have, of ten or more
   bool holds(const Concealment& c) const;
 };
-/// By study, for one way to tune.
+/// By Marked::peers(), for one way to tune.
 std::map<std::string, Unsuspicious> unsuspicious(const std::vector<Marked>& sets, Tuned tuned);
 
 /// Which sets the practice would take for the base that it tuned in one way.

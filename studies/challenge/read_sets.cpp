@@ -19,8 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kEngine = "run.engine=";  // the setting
-
 /// A number that was not finite is null in the file.
 double number(const Json& j) { return j.is_number() ? j.get<double>() : std::numeric_limits<double>::quiet_NaN(); }
 
@@ -109,13 +107,24 @@ Found found_from(const Json& j) {
 
 }  // namespace
 
-std::string Marked::engine() const {
-  if (answer.made.empty()) return "";
+std::string Marked::setting(std::string_view key) const {
+  std::string value;  // the last one counts
+  if (answer.made.empty()) return value;
   for (const auto& setting : answer.made.begin().value().value("settings", nlohmann::ordered_json::array())) {
     const std::string text = setting;
-    if (text.starts_with(kEngine)) return text.substr(kEngine.size());
+    if (text.starts_with(key) && text.substr(key.size(), 1) == "=") value = text.substr(key.size() + 1);
   }
-  return "millscope";
+  return value;
+}
+
+std::string Marked::engine() const {
+  if (answer.made.empty()) return "";
+  const std::string engine = setting("run.engine");
+  return engine.empty() ? "millscope" : engine;
+}
+
+std::string Marked::peers() const {
+  return fmt::format("{}, {}, {}, {}", study, engine(), setting("time.end_s"), setting("output.tracks"));
 }
 
 std::string Marked::folder() const {

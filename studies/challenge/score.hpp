@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -81,7 +82,10 @@ struct Marked {
   std::string remark = {};   ///< of whoever looked into it
   std::string program = {};  ///< first digits of the commit that was put to the test; empty: not told
 
+  /// Of the truth that was recorded, at its first condition; "": it has none.
+  std::string setting(std::string_view key) const;
   std::string engine() const;  ///< that played the mills
+  std::string peers() const;   ///< equal for sets of one study and engine with recordings of equal length and as many tracers
   std::string folder() const;  ///< of FOLDER/set_001; else ""
   /// λ at an effect's strength, by the diagnosis' surrogate; nothing where it is not known.
   std::optional<double> lambda(const TrueEffect& effect) const;

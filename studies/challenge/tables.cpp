@@ -99,8 +99,8 @@ void concealment(const Page& page, std::string& out) {
       out,
       "## Concealed\n\nLong runs of the truth and of a base that was tuned to its recordings, at the speed where power was retuned. A set "
       "with physics that the base lacks is *concealed* where power agrees within {:g} %, shoulder and toe within {:g}°, and Eq. 4.3 of "
-      "Chagas "
-      "2015 is below the 90 % quantile of the same mill's sets without an effect (where they are ten or more).\n\n{}",
+      "Chagas 2015 is below the 90 % quantile of sets without an effect that were recorded alike: of the same mill, played by the same "
+      "engine, as many tracers for as long (where they are ten or more).\n\n{}",
       Unsuspicious().power_percent, Unsuspicious().degrees, tables);
 }
 

@@ -159,8 +159,9 @@ TEST_CASE("long runs of before tell of the base that was retuned to power") {
 TEST_CASE("concealed is what power, angles and distributions leave unsuspicious") {
   std::vector<Marked> sets;
   for (int i = 1; i <= 11; ++i) sets.push_back({{"e", challenge::Kind::none, "", {}, {}, {}}, {}, {Concealment{0, 0, 0, 0.1 * i}, {}}, ""});
-  const Unsuspicious limits = unsuspicious(sets, &Practice::to_power).at("");
-  CHECK(std::isinf(unsuspicious(sets, &Practice::to_all).at("").chagas));
+  const std::string peers = sets.front().peers();
+  const Unsuspicious limits = unsuspicious(sets, &Practice::to_power).at(peers);
+  CHECK(std::isinf(unsuspicious(sets, &Practice::to_all).at(peers).chagas));
   CHECK(limits.chagas == Approx(1.0));
   CHECK(limits.holds({0.9, -1.4, 1.4, 0.9}));
   CHECK_FALSE(limits.holds({-1.1, 0, 0, 0.9}));
@@ -169,7 +170,27 @@ TEST_CASE("concealed is what power, angles and distributions leave unsuspicious"
   CHECK_FALSE(limits.holds({0, 0, 0, 1.1}));
   CHECK_FALSE(limits.holds({0, 0, std::nan(""), 0.9}));
   sets.resize(9);
-  CHECK(std::isinf(unsuspicious(sets, &Practice::to_power).at("").chagas));
+  CHECK(std::isinf(unsuspicious(sets, &Practice::to_power).at(peers).chagas));
+}
+
+TEST_CASE("only sets that were recorded alike tell what practice would not suspect") {
+  const auto recorded = [](const std::string& end, const std::string& engine, double chagas) {
+    const nlohmann::ordered_json settings = {"time.end_s=4", "run.engine=" + engine, "time.end_s=" + end, "output.tracks={beads: 60}"};
+    return Marked{{"e", challenge::Kind::none, "", {}, {}, {{"fast", {{"settings", settings}}}}}, {}, {Concealment{0, 0, 0, chagas}, {}}};
+  };
+  std::vector<Marked> sets;
+  for (int i = 1; i <= 10; ++i) {
+    sets.push_back(recorded("11", "millscope", 1));
+    sets.push_back(recorded("61", "millscope", 0.5));
+    sets.push_back(recorded("11", "liggghts", 2));
+  }
+  CHECK(sets[0].setting("time.end_s") == "11");
+  CHECK(sets[2].engine() == "liggghts");
+  const auto limits = unsuspicious(sets, &Practice::to_power);
+  REQUIRE(limits.size() == 3);
+  CHECK(limits.at(sets[0].peers()).chagas == Approx(1));
+  CHECK(limits.at(sets[1].peers()).chagas == Approx(0.5));
+  CHECK(limits.at(sets[2].peers()).chagas == Approx(2));
 }
 
 TEST_CASE("sets that could not be read back are not sealed") {
