@@ -42,10 +42,12 @@ Tree& child(NodeData& parent, const std::string& segment, const Location& where)
   return parent.entries.back().value;
 }
 
-/// A path that does not exist but nearly does is a slip of the pen. The last segment may be new: the reader checks it.
+/// A path that does not exist but nearly does is a slip of the pen. The last segment may be new: the reader checks it. So may one that is
+/// given a kind, for that is a new plugin under a name of its own: friction_by_speed beside restitution_by_speed.
 void refuse_near_miss(const NodeData& root, const std::vector<std::string>& segments, const Location& where) {
+  const std::size_t fresh = segments.back() == "kind" ? 2 : 1;
   const NodeData* node = &root;
-  for (std::size_t i = 0; i + 1 < segments.size() && node->type == Node::Type::map; ++i) {
+  for (std::size_t i = 0; i + fresh < segments.size() && node->type == Node::Type::map; ++i) {
     const NodeEntry* found = const_cast<NodeData*>(node)->entry(segments[i]);
     if (found == nullptr) {
       std::vector<std::string> keys;

@@ -102,7 +102,18 @@ TEST_CASE("overrides") {
   CHECK(with("run.threads=2").at("run").at("threads").text() == "2");
   CHECK(with("time.x=[1, 2]").at("time").at("x").items().size() == 2);
   CHECK(with("time.end_s=~").at("time").keys().empty());
+  CHECK(with("kind=box").at("kind").text() == "box");
   CHECK(with("time=off").at("time").text() == "off");
+}
+
+TEST_CASE("an override puts a plugin beside one with a name much like its own") {
+  const std::string text = "contact: {pair_parameters: {friction_by_speed: {kind: friction_by_speed}}}\n";
+  const std::string path = "contact.pair_parameters.restitution_by_speed.";
+  const Node root = parse_document(text, "a.yaml", {path + "kind=restitution_by_speed", path + "form=plastic"});
+  const Node uses = root.at("contact").at("pair_parameters");
+  CHECK(uses.keys() == std::vector<std::string>{"friction_by_speed", "restitution_by_speed"});
+  CHECK(uses.at("restitution_by_speed").at("form").text() == "plastic");
+  CHECK(refusal_of(text, {path + "form=plastic"}).ends_with("did you mean 'friction_by_speed'?"));
 }
 
 TEST_CASE("overrides that cannot be meant") {

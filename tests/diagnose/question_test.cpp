@@ -142,6 +142,30 @@ TEST_CASE("settings carry four digits, what is tied goes along, effects come las
   CHECK(s[5] == "pairs.glass~liner.rolling_friction=0.1");
 }
 
+TEST_CASE("two hypotheses that no case may have at once are not tried together") {
+  const Scratch folder;
+  const Question q = question_of(folder,
+                                 "hypotheses:\n"
+                                 "  short: {sentence: S., set: {time.end_s: 4}}\n"
+                                 "  late: {sentence: L., set: {time.analyze_from_s: 4.5}}\n"
+                                 "  rolling_resistance: {}\n");
+  CHECK(candidate(q, "short").excludes == std::vector<std::string>{"late"});
+  CHECK(candidate(q, "late").excludes.empty());
+  REQUIRE_FALSE(q.left_out.empty());
+  CHECK_THAT(q.left_out.back(), StartsWith("short and late at once: ") && Contains("analyze_from_s"));
+}
+
+TEST_CASE("friction and restitution may both hang on speed") {
+  const Scratch folder;
+  const Question q = question_of(folder,
+                                 "hypotheses:\n"
+                                 "  speed_dependent_friction: {}\n"
+                                 "  speed_dependent_restitution: {set: {contact.pair_parameters.restitution_by_speed.form: plastic,\n"
+                                 "    pairs.glass~glass.reference_restitution: 0.6, pairs.glass~liner.reference_restitution: 0.6}}\n");
+  REQUIRE(q.candidates.size() == 2);
+  for (const Candidate& c : q.candidates) CHECK(c.excludes.empty());
+}
+
 TEST_CASE("a hypothesis that lacks a value of the base takes it from 'set'") {
   CHECK_THAT(refused("hypotheses:\n  speed_dependent_restitution: {}\n"),
              StartsWith("study.yaml:10: 'hypotheses.speed_dependent_restitution' does not apply: needs pairs.glass~glass.reference_"));

@@ -137,6 +137,26 @@ TEST_CASE("an effect that no candidate has is outside the library") {
   CHECK(std::fabs(d.naming.mismatch.front().z) > 3);
 }
 
+TEST_CASE("where the base is rejected and a candidate comes near, nobody says that it is not in the library") {
+  std::vector<Physics> physics = usual();
+  physics.push_back({"stiffness_factor", 0, 1, 4, {91, 92, 93}});
+  const Scratch folder;
+  const Question q = question_of(folder, kSections);
+  MadeUpMill mill(q, physics, with("stiffness_factor=1"));
+  Diagnosis d = found(q, mill);
+  REQUIRE(d.naming.base_p < 0.05);
+  d.naming.best.reset();
+  for (Judged& j : d.naming.judged) j.p_family = 0.5;
+  conclude(q, 0.05, 3, d);
+  CHECK(d.verdict == Verdict::outside_library);
+  CHECK_THAT(d.sentence, Contains("something is missing that is not in the library."));
+  d.naming.judged[1].p_family = 0.07;
+  conclude(q, 0.05, 3, d);
+  CHECK(d.verdict == Verdict::outside_library);
+  CHECK_THAT(d.sentence, Contains(d.problem.alternatives[1].name + " comes nearest (family-wise p = 0.07)"));
+  CHECK_FALSE(Contains("missing that is not in the library").match(d.sentence));
+}
+
 TEST_CASE("what shows in the held-out condition alone is said, and how it could be named") {
   const Scratch folder;
   const Question q = question_of(folder, kSections);

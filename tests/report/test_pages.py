@@ -105,6 +105,8 @@ class StaticPages(Pages):
              "The simulation leaves out two things together: rolling resistance and air drag (p = 0.01 for the second beside the first)."),
             ({"verdict": "outside_library", "named": []},
              "Something is left out that is not among the candidates: rolling resistance helps most, but does not suffice (p < 0.001 for the retuned simulation)."),
+            ({"verdict": "outside_library", "named": [], "hypotheses": [], "sentence": "Something is missing. air_drag comes nearest."},
+             "Something is missing. air drag comes nearest."),
             ({"verdict": "no_mismatch", "named": [], "base": {"p_value": 0.4}}, "Nothing is left out that these recordings could show: once retuned, the simulation describes them (p = 0.4)."),
             ({"verdict": "undetectable", "named": []}, "These recordings cannot tell: no candidate could be seen in them, at any strength."),
         ]:

@@ -15,6 +15,7 @@ namespace millscope::diagnose {
 namespace {
 
 constexpr double kLongest = 1e4;  // times the recording, that are thought of
+constexpr double kNear = 0.1;     // p of a candidate that is worth a look though it is not significant
 
 std::string name_of(const Diagnosis& diagnosis, Index alternative) { return diagnosis.problem.alternatives[alternative].name; }
 
@@ -240,6 +241,23 @@ void tell_held_out(const Question& question, double level, Diagnosis& diagnosis)
         fmt::format("Give {} the role fit and hold another condition out: only what is fitted can be named.", fmt::join(differ, " and "));
 }
 
+/// The alternative with the smallest p.
+Index nearest(const Diagnosis& diagnosis) {
+  const std::vector<naming::Judged>& judged = diagnosis.naming.judged;
+  const auto smaller = [](const naming::Judged& a, const naming::Judged& b) { return a.p_family < b.p_family; };
+  return std::min_element(judged.begin(), judged.end(), smaller) - judged.begin();
+}
+
+/// What may be missing where the base is rejected and no candidate is significant.
+std::string what_may_be_missing(const Diagnosis& diagnosis) {
+  if (diagnosis.naming.judged.empty()) return " that is not in the library";
+  const Index j = nearest(diagnosis);
+  const double p = diagnosis.naming.judged[j].p_family;
+  return p > kNear ? " that is not in the library"
+                   : fmt::format(". {} comes nearest (family-wise p = {:.2g}): it may be that, or what is not in the library",
+                                 name_of(diagnosis, j), p);
+}
+
 void nothing_named(const Question& question, double level, double noise_units, Diagnosis& diagnosis) {
   // A nuisance that would be seen says nothing of physics.
   bool blind = true;
@@ -249,10 +267,9 @@ void nothing_named(const Question& question, double level, double noise_units, D
     blind = blind && (diagnosis.naming.judged[j].undetectable || (physics && !diagnosis.problem.alternatives[j].candidate));
   if (diagnosis.naming.base_p <= level) {
     diagnosis.verdict = Verdict::outside_library;
-    diagnosis.sentence = fmt::format(
-        "The base does not describe the recordings (p = {:.2g}) and no candidate helps significantly: something is missing that is not in "
-        "the library.",
-        diagnosis.naming.base_p);
+    diagnosis.sentence =
+        fmt::format("The base does not describe the recordings (p = {:.2g}), and no candidate helps significantly: something is missing{}.",
+                    diagnosis.naming.base_p, what_may_be_missing(diagnosis));
     diagnosis.next_experiment = to_extend(question, diagnosis, level);
     return;
   }
@@ -264,9 +281,7 @@ void nothing_named(const Question& question, double level, double noise_units, D
         diagnosis.naming.base_p);
     diagnosis.next_experiment = to_see(diagnosis, noise_units);
   } else {
-    const double least = std::min_element(diagnosis.naming.judged.begin(), diagnosis.naming.judged.end(),
-                                          [](const naming::Judged& a, const naming::Judged& b) { return a.p_family < b.p_family; })
-                             ->p_family;
+    const double least = diagnosis.naming.judged[nearest(diagnosis)].p_family;
     diagnosis.sentence = fmt::format(
         "The recordings look like the base with its parameters retuned (p = {:.2g}); no candidate improves on it (smallest family-wise p = "
         "{:.2g}).",

@@ -32,7 +32,7 @@ function verdictSentence(found, best) {
   switch (found.verdict) {
     case "named": return namedSentence(named, found.contact_parameters?.unmasked);
     case "ambiguous": return ambiguousSentence(found, best);
-    case "outside_library": return `Something is left out that is not among the candidates${best ? `: ${words(best.name)} helps most, but does not suffice` : ""} (${base} for the retuned simulation).`;
+    case "outside_library": return best ? `Something is left out that is not among the candidates: ${words(best.name)} helps most, but does not suffice (${base} for the retuned simulation).` : readable(found.sentence);
     case "no_mismatch": return `Nothing is left out that these recordings could show: once retuned, the simulation describes them (${base}).`;
     case "undetectable": return "These recordings cannot tell: no candidate could be seen in them, at any strength.";
     default: return readable(found.sentence);
