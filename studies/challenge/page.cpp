@@ -41,6 +41,8 @@ void add_counts(const Score& s, std::string& out) {
   line("one effect: the best candidate is the truth (top-1)", s.best_right);
   line("one effect: the truth is listed, alone or in a class of two", s.in_class_of_two);
   line("one effect: the truth is listed", s.in_class);
+  line(fmt::format("one effect too faint to be seen (λ below {:g}): no other physics is listed (right)", kUnseen).c_str(),
+       s.unseen_nothing_else);
   line("one effect: said to lie outside the library (wrong abstention)", s.abstained_on_effect);
   line("two effects: both named, together", s.two_both);
   line("two effects: at least one listed", s.two_one);
@@ -341,6 +343,7 @@ Json score_json(const Page& page) {
           {"in_class", count_json(s.in_class)},
           {"in_class_of_two", count_json(s.in_class_of_two)},
           {"mean_class_size", s.mean_class},
+          {"unseen_nothing_else", count_json(s.unseen_nothing_else)},
           {"abstained_on_effect", count_json(s.abstained_on_effect)},
           {"two_both", count_json(s.two_both)},
           {"two_both_in_class", count_json(s.two_class)},

@@ -55,6 +55,8 @@ std::size_t score_effect(const Marked& m, Score& s) {
   s.best_right.add(best_is(f, truth));
   s.in_class.add(named);
   s.in_class_of_two.add(is_right(m));
+  const std::optional<double> lambda = m.lambda(m.answer.effects.front());
+  if (lambda && *lambda < kUnseen) s.unseen_nothing_else.add(named || !f.names_physics());
   if (f.failure.empty()) s.abstained_on_effect.add(f.verdict == "outside_library");
   return f.named.size();
 }

@@ -93,6 +93,7 @@ struct Marked {
   bool missed() const;
 };
 
+inline constexpr double kUnseen = 9;  ///< λ below which a diagnosis calls a candidate undetectable: three noise units
 inline constexpr const char* kRemarksFile = "remarks.txt";  ///< lines of "set_001: why"
 inline constexpr const char* kFrozenFile = "frozen.json";   ///< of published sets: the commit that was put to the test
 
@@ -166,6 +167,7 @@ struct Score {
   Count in_class;                             ///< the truth is among those named
   Count in_class_of_two;
   double mean_class = std::numeric_limits<double>::quiet_NaN();  ///< of the sets with one effect that name something
+  Count unseen_nothing_else;                                     ///< too faint to be seen (kUnseen): no other physics is named
   Count abstained_on_effect;                                     ///< outside_library, though the truth is in the list
   Count two_both, two_class, two_one;                            ///< two effects: named together; both among those named; at least one
   Count outside_abstained, outside_named, outside_missed;

@@ -189,6 +189,19 @@ TEST_CASE("hits, misses and abstentions are counted") {
   check(s.outside_missed, 0, 1);
 }
 
+TEST_CASE("an effect too faint to be seen asks that nothing else be named") {
+  const auto faint = [](double lambda, const std::string& verdict, std::vector<std::string> named) {
+    Found f = found(verdict, std::move(named));
+    f.hypotheses = {{"rolling", "not needed", square_law(lambda), open(0.1)}, {"bridge", "best", square_law(50), open(0.1)}};
+    return f;
+  };
+  const Score s = score({{answer("s1", Kind::effect, {rolling(1)}), faint(8, "no_mismatch", {})},
+                         {answer("s2", Kind::effect, {rolling(1)}), faint(8, "ambiguous", {"bridge"})},
+                         {answer("s3", Kind::effect, {rolling(1)}), faint(8, "ambiguous", {"bridge", "rolling"})},
+                         {answer("s4", Kind::effect, {rolling(1)}), faint(10, "ambiguous", {"bridge"})}});
+  check(s.unseen_nothing_else, 2, 3);
+}
+
 TEST_CASE("a decoy goes wrong where physics is named, and not where what was believed is") {
   Found filling = found("named", {"filling"});
   filling.hypotheses = {{"filling", "best", {}, {}, false}};
