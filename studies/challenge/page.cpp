@@ -269,8 +269,10 @@ Json strengths_json(const Score& s) {
   Json lines = Json::object(), estimates = Json::array();
   for (const auto& [hypothesis, l] : s.lines) lines[hypothesis] = line_json(l);
   for (const Estimated& d : s.estimates)
-    estimates.push_back({{"set", d.set}, {"hypothesis", d.hypothesis}, {"truth", d.truth}, {"estimate", d.estimate}, {"named", d.found}});
+    estimates.push_back(
+        {{"set", d.set}, {"hypothesis", d.hypothesis}, {"truth", d.truth}, {"estimate", d.estimate}, {"named", d.found}, {"seen", d.seen}});
   Json out = line_json(s.line);
+  out["seen"] = line_json(s.seen_line);
   out["by_hypothesis"] = lines;
   out["estimates"] = estimates;
   out["at_zero"] = s.at_zero;

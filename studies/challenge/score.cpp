@@ -141,7 +141,8 @@ void add_estimate(const Marked& m, Score& s) {
   const TrueEffect& e = m.answer.effects.front();
   const Tested* tested = m.found->find(e.hypothesis);
   if (tested == nullptr || !tested->strength) return;
-  s.estimates.push_back({m.answer.set, e.hypothesis, e.strength, strength_of(e, tested->strength->value), m.found->names(e.hypothesis)});
+  s.estimates.push_back({m.answer.set, e.hypothesis, e.strength, strength_of(e, tested->strength->value), m.found->names(e.hypothesis),
+                         m.lambda(e).value_or(0) >= kUnseen});
   if (tested->strength->known()) covered(s, kStrengthRow).add(tested->strength->holds(e.value));
 }
 
@@ -177,9 +178,13 @@ void add_recovery(const Marked& m, Score& s) {
 
 /// Of all hypotheses, and of each.
 void add_lines(Score& s) {
-  std::vector<std::pair<double, double>> all;
+  std::vector<std::pair<double, double>> all, seen;
   std::map<std::string, std::vector<std::pair<double, double>>> each;
   for (const Estimated& e : s.estimates) all.emplace_back(e.truth, e.estimate), each[e.hypothesis].push_back(all.back());
+  for (const Estimated& e : s.estimates) {
+    if (e.seen) seen.emplace_back(e.truth, e.estimate);
+  }
+  s.seen_line = line_through(seen);
   s.line = line_through(all);
   for (const auto& [hypothesis, points] : each) s.lines.emplace_back(hypothesis, line_through(points));
 }

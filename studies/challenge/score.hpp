@@ -131,6 +131,7 @@ struct Estimated {
   std::string set, hypothesis;
   double truth = 0, estimate = 0;  ///< strengths
   bool found = false;              ///< the hypothesis is among those named
+  bool seen = false;               ///< λ at the hidden strength is known, and no less than kUnseen
 };
 
 inline constexpr const char* kStrengthRow = "the hidden strength";
@@ -178,7 +179,7 @@ struct Score {
   int not_held_out = 0;            ///< the same, but without simulations of a held-out condition
   std::vector<PowerBin> power;
   std::vector<Estimated> estimates;
-  Line line;
+  Line line, seen_line;                             ///< through all, and through those that are seen
   std::vector<std::pair<std::string, Line>> lines;  ///< by hypothesis
   std::vector<double> at_zero;                      ///< estimated strengths of hypotheses in sets that hide nothing
   std::vector<Recovery> recovery;

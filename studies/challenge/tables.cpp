@@ -130,14 +130,15 @@ void strengths(const Score& s, std::string& out) {
   if (std::isfinite(s.line.slope)) {
     out +=
         "estimate = intercept + slope × hidden strength, least squares, sets that name nothing included (each set below). The strengths of "
-        "different "
-        "candidates have different scales, so that the line through all is a check and no law. A hidden strength is known "
-        "exactly; "
-        "the interval is that of the sets drawn anew, so that errors may differ. An estimate of a one-sided strength cannot be below 0, "
-        "nor "
-        "beyond the reach of the simulations, which lifts faint ones and holds strong ones back.\n\n"
+        "different candidates have different scales, so that the line through all is a check and no law. A hidden strength is known "
+        "exactly; the interval is that of the sets drawn anew, so that errors may differ. An estimate of a one-sided strength cannot be "
+        "below 0, nor beyond the reach of the simulations, which lifts faint ones and holds strong ones back. Of what is too faint to be "
+        "seen recordings tell no strength, so the others stand for themselves, too.\n\n"
         "| | sets | intercept | slope | 95 % of the slope |\n|---|---|---|---|---|\n";
     line("all", s.estimates.size(), s.line, out);
+    line(fmt::format("those with λ of {:g} and more", kUnseen),
+         static_cast<std::size_t>(std::count_if(s.estimates.begin(), s.estimates.end(), [](const Estimated& e) { return e.seen; })),
+         s.seen_line, out);
     for (const auto& [hypothesis, l] : s.lines)
       line(hypothesis,
            static_cast<std::size_t>(std::count_if(s.estimates.begin(), s.estimates.end(),

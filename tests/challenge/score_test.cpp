@@ -202,6 +202,20 @@ TEST_CASE("an effect too faint to be seen asks that nothing else be named") {
   check(s.unseen_nothing_else, 2, 3);
 }
 
+TEST_CASE("the line through what can be seen leaves out what cannot") {
+  std::vector<Marked> sets;
+  for (int k = 1; k <= 6; ++k) {
+    const double strength = 0.15 * k;
+    const bool faint = k == 6;
+    Found f = found("named", {"rolling"});
+    f.hypotheses = {{"rolling", "best", square_law(faint ? 5 : 1000), open(faint ? 0 : 0.2 * strength)}};
+    sets.push_back({answer("s", Kind::effect, {rolling(strength)}), f});
+  }
+  const Score s = score(sets);
+  CHECK(s.seen_line.slope == Approx(1));
+  CHECK(s.line.slope < 0.6);
+}
+
 TEST_CASE("a decoy goes wrong where physics is named, and not where what was believed is") {
   Found filling = found("named", {"filling"});
   filling.hypotheses = {{"filling", "best", {}, {}, false}};
@@ -226,6 +240,7 @@ TEST_CASE("strengths, parameters, power and gains") {
   REQUIRE(s.estimates.size() == 3);  // 0.5 → 0.55, 1 → 0.85, 0.4 → 0.1
   CHECK_THAT(s.line.slope, WithinAbs(0.645 / 0.62, 1e-9));
   CHECK_THAT(s.line.intercept, WithinAbs((1.5 - 1.9 * 0.645 / 0.62) / 3, 1e-9));
+  CHECK((s.estimates[0].seen && s.estimates[1].seen && !s.estimates[2].seen));  // λ 20, 80, 1.6
   REQUIRE(s.at_zero.size() == 1);
   CHECK_THAT(s.at_zero[0], WithinAbs(0.1, 1e-12));
   check(s.power[0].named, 0, 1);  // λ 1.6
