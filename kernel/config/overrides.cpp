@@ -42,10 +42,11 @@ Tree& child(NodeData& parent, const std::string& segment, const Location& where)
   return parent.entries.back().value;
 }
 
-/// A path that does not exist but nearly does is a slip of the pen. The last segment may be new: the reader checks it. So may one that is
-/// given a kind, for that is a new plugin under a name of its own: friction_by_speed beside restitution_by_speed.
-void refuse_near_miss(const NodeData& root, const std::vector<std::string>& segments, const Location& where) {
-  const std::size_t fresh = segments.back() == "kind" ? 2 : 1;
+/// A path that does not exist but nearly does is a slip of the pen. The last segment may be new: the reader checks it. So may the one
+/// before in NAME.kind=NAME, which puts a plugin beside others: restitution_by_speed beside friction_by_speed.
+void refuse_near_miss(const NodeData& root, const std::vector<std::string>& segments, const std::string& value, const Location& where) {
+  const std::size_t last = segments.size() - 1;
+  const std::size_t fresh = last > 0 && segments[last] == "kind" && segments[last - 1] == value ? 2 : 1;
   const NodeData* node = &root;
   for (std::size_t i = 0; i + fresh < segments.size() && node->type == Node::Type::map; ++i) {
     const NodeEntry* found = const_cast<NodeData*>(node)->entry(segments[i]);
@@ -67,7 +68,7 @@ void apply_override(NodeData& root, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) throw UserError(where, "is no override; write path.to.key=value");
   const std::vector<std::string> segments = split_path(text.substr(0, equals), where);
-  refuse_near_miss(root, segments, where);
+  refuse_near_miss(root, segments, text.substr(equals + 1), where);
   Tree value = parse_value(text.substr(equals + 1), where);
   NodeData* parent = &root;
   for (std::size_t i = 0; i + 1 < segments.size(); ++i) parent = child(*parent, segments[i], where).get();

@@ -207,4 +207,9 @@ bool Concealed::operator()(const Marked& m) const {
   return c != nullptr && limits_.at(m.peers()).holds(*c);
 }
 
+const char* Concealed::word_for(const Marked& m) const {
+  if (!(*this)(m)) return "no";
+  return std::isfinite(limits_.at(m.peers()).chagas) ? "yes" : "yes, without Eq. 4.3";
+}
+
 }  // namespace millscope::challenge

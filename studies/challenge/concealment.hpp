@@ -46,6 +46,8 @@ class Concealed {
   /// The long runs of a set; nullptr: nobody has looked, or they tell nothing.
   const Concealment* seen(const Marked& m) const;
   bool operator()(const Marked& m) const;
+  /// "yes", "no", or "yes, without Eq. 4.3" where too few sets without an effect tell its limit.
+  const char* word_for(const Marked& m) const;
 
  private:
   Tuned tuned_;

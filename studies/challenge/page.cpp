@@ -18,8 +18,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kSure = 0.95;               // of every one-sided bound
-constexpr double kFaint = 10, kStrong = 30;  // λ
+constexpr double kSure = 0.95;  // of every one-sided bound
+constexpr double kStrong = 30;  // λ
 
 template <class... Values>
 void add(std::string& out, fmt::format_string<Values...> text, Values&&... values) {
@@ -41,8 +41,7 @@ void add_counts(const Score& s, std::string& out) {
   line("one effect: the best candidate is the truth (top-1)", s.best_right);
   line("one effect: the truth is listed, alone or in a class of two", s.in_class_of_two);
   line("one effect: the truth is listed", s.in_class);
-  line(fmt::format("one effect too faint to be seen (λ below {:g}): no other physics is listed (right)", kUnseen).c_str(),
-       s.unseen_nothing_else);
+  line(fmt::format("one effect, faint (λ below {:g}): no physics is listed but the truth", kFaint).c_str(), s.faint_nothing_else);
   line("one effect: said to lie outside the library (wrong abstention)", s.abstained_on_effect);
   line("two effects: both named, together", s.two_both);
   line("two effects: at least one listed", s.two_one);
@@ -269,10 +268,14 @@ Json strengths_json(const Score& s) {
   Json lines = Json::object(), estimates = Json::array();
   for (const auto& [hypothesis, l] : s.lines) lines[hypothesis] = line_json(l);
   for (const Estimated& d : s.estimates)
-    estimates.push_back(
-        {{"set", d.set}, {"hypothesis", d.hypothesis}, {"truth", d.truth}, {"estimate", d.estimate}, {"named", d.found}, {"seen", d.seen}});
+    estimates.push_back({{"set", d.set},
+                         {"hypothesis", d.hypothesis},
+                         {"truth", d.truth},
+                         {"estimate", d.estimate},
+                         {"named", d.found},
+                         {"faint", d.faint}});
   Json out = line_json(s.line);
-  out["seen"] = line_json(s.seen_line);
+  out["without_faint"] = line_json(s.line_of_clear);
   out["by_hypothesis"] = lines;
   out["estimates"] = estimates;
   out["at_zero"] = s.at_zero;
@@ -345,7 +348,7 @@ Json score_json(const Page& page) {
           {"in_class", count_json(s.in_class)},
           {"in_class_of_two", count_json(s.in_class_of_two)},
           {"mean_class_size", s.mean_class},
-          {"unseen_nothing_else", count_json(s.unseen_nothing_else)},
+          {"faint_nothing_else", count_json(s.faint_nothing_else)},
           {"abstained_on_effect", count_json(s.abstained_on_effect)},
           {"two_both", count_json(s.two_both)},
           {"two_both_in_class", count_json(s.two_class)},

@@ -173,11 +173,13 @@ double Found::level_of(const Tested& tested) const {
   return level / static_cast<double>(std::max<std::ptrdiff_t>(family, 1)) / (tested.two_sided() ? 2 : 1);
 }
 
+bool Found::is_physics(const std::string& name) const {
+  const Tested* tested = find(name);
+  return tested == nullptr || tested->physics;
+}
+
 bool Found::names_physics() const {
-  return std::any_of(named.begin(), named.end(), [&](const std::string& name) {
-    const Tested* tested = find(name);
-    return tested == nullptr || tested->physics;
-  });
+  return std::any_of(named.begin(), named.end(), [&](const std::string& name) { return is_physics(name); });
 }
 
 std::optional<Found> read_found(const fs::path& set) {

@@ -56,7 +56,10 @@ std::size_t score_effect(const Marked& m, Score& s) {
   s.in_class.add(named);
   s.in_class_of_two.add(is_right(m));
   const std::optional<double> lambda = m.lambda(m.answer.effects.front());
-  if (lambda && *lambda < kUnseen) s.unseen_nothing_else.add(named || !f.names_physics());
+  if (lambda && *lambda < kFaint) {
+    const auto other = [&](const std::string& name) { return name != truth && f.is_physics(name); };
+    s.faint_nothing_else.add(std::none_of(f.named.begin(), f.named.end(), other));
+  }
   if (f.failure.empty()) s.abstained_on_effect.add(f.verdict == "outside_library");
   return f.named.size();
 }
@@ -142,7 +145,7 @@ void add_estimate(const Marked& m, Score& s) {
   const Tested* tested = m.found->find(e.hypothesis);
   if (tested == nullptr || !tested->strength) return;
   s.estimates.push_back({m.answer.set, e.hypothesis, e.strength, strength_of(e, tested->strength->value), m.found->names(e.hypothesis),
-                         m.lambda(e).value_or(0) >= kUnseen});
+                         m.lambda(e).value_or(0) < kFaint});
   if (tested->strength->known()) covered(s, kStrengthRow).add(tested->strength->holds(e.value));
 }
 
@@ -178,14 +181,13 @@ void add_recovery(const Marked& m, Score& s) {
 
 /// Of all hypotheses, and of each.
 void add_lines(Score& s) {
-  std::vector<std::pair<double, double>> all, seen;
+  std::vector<std::pair<double, double>> all, clear;
   std::map<std::string, std::vector<std::pair<double, double>>> each;
-  for (const Estimated& e : s.estimates) all.emplace_back(e.truth, e.estimate), each[e.hypothesis].push_back(all.back());
   for (const Estimated& e : s.estimates) {
-    if (e.seen) seen.emplace_back(e.truth, e.estimate);
+    all.emplace_back(e.truth, e.estimate), each[e.hypothesis].push_back(all.back());
+    if (!e.faint) clear.push_back(all.back());
   }
-  s.seen_line = line_through(seen);
-  s.line = line_through(all);
+  s.line = line_through(all), s.line_of_clear = line_through(clear);
   for (const auto& [hypothesis, points] : each) s.lines.emplace_back(hypothesis, line_through(points));
 }
 

@@ -55,6 +55,8 @@ struct Found {
   const Tested* best() const;
   bool names(const std::string& name) const;
   bool names_physics() const;
+  /// Whether a name is that of physics, and of no belief.
+  bool is_physics(const std::string& name) const;
   /// The smallest of all hypotheses; NaN: none was tested.
   double smallest_p() const;
   /// What one hypothesis has of the level (Bonferroni); half of it at each end where its strength may have either sign.
@@ -93,7 +95,7 @@ struct Marked {
   bool missed() const;
 };
 
-inline constexpr double kUnseen = 9;  ///< λ below which a diagnosis calls a candidate undetectable: three noise units
+inline constexpr double kFaint = 10;  ///< λ below which an ideal test finds an effect in about half of the sets, or fewer
 inline constexpr const char* kRemarksFile = "remarks.txt";  ///< lines of "set_001: why"
 inline constexpr const char* kFrozenFile = "frozen.json";   ///< of published sets: the commit that was put to the test
 
@@ -131,7 +133,7 @@ struct Estimated {
   std::string set, hypothesis;
   double truth = 0, estimate = 0;  ///< strengths
   bool found = false;              ///< the hypothesis is among those named
-  bool seen = false;               ///< λ at the hidden strength is known, and no less than kUnseen
+  bool faint = false;              ///< λ at the hidden strength is below kFaint
 };
 
 inline constexpr const char* kStrengthRow = "the hidden strength";
@@ -168,7 +170,7 @@ struct Score {
   Count in_class;                             ///< the truth is among those named
   Count in_class_of_two;
   double mean_class = std::numeric_limits<double>::quiet_NaN();  ///< of the sets with one effect that name something
-  Count unseen_nothing_else;                                     ///< too faint to be seen (kUnseen): no other physics is named
+  Count faint_nothing_else;                                      ///< faint (kFaint): no physics is named but the truth
   Count abstained_on_effect;                                     ///< outside_library, though the truth is in the list
   Count two_both, two_class, two_one;                            ///< two effects: named together; both among those named; at least one
   Count outside_abstained, outside_named, outside_missed;
@@ -179,7 +181,7 @@ struct Score {
   int not_held_out = 0;            ///< the same, but without simulations of a held-out condition
   std::vector<PowerBin> power;
   std::vector<Estimated> estimates;
-  Line line, seen_line;                             ///< through all, and through those that are seen
+  Line line, line_of_clear;                         ///< through all, and without those that are faint
   std::vector<std::pair<std::string, Line>> lines;  ///< by hypothesis
   std::vector<double> at_zero;                      ///< estimated strengths of hypotheses in sets that hide nothing
   std::vector<Recovery> recovery;

@@ -88,6 +88,7 @@ double telling_lambda(double level) {
 
 Line line_through(const std::vector<std::pair<double, double>>& points) {
   Line line;
+  line.points = points.size();
   if (points.size() < kFewForALine) return line;
   const auto through = least_squares(points);
   if (!through) return line;

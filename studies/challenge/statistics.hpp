@@ -36,6 +36,7 @@ double telling_lambda(double level);
 
 /// y = intercept + slope · x, least squares.
 struct Line {
+  std::size_t points = 0;
   double slope = std::numeric_limits<double>::quiet_NaN(), intercept = std::numeric_limits<double>::quiet_NaN();
   double slope_low = std::numeric_limits<double>::quiet_NaN(), slope_high = std::numeric_limits<double>::quiet_NaN();  ///< 95 %
 };

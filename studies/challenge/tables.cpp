@@ -79,7 +79,7 @@ void concealment(const Page& page, Tuned tuned, std::string_view how, std::strin
     if (m.answer.kind == Kind::none) empty.add(concealed(m));
     if (m.answer.kind == Kind::none || m.answer.kind == Kind::decoy) continue;
     append(out, "| {} | {} | {:+.2f} % | {:+.2f}° | {:+.2f}° | {:.2f} | {} | {} |\n", m.answer.set, label_of(m.answer), c->power_percent,
-           c->shoulder_deg, c->toe_deg, c->chagas, concealed(m) ? "yes" : "no", label_of(*m.found));
+           c->shoulder_deg, c->toe_deg, c->chagas, concealed.word_for(m), label_of(*m.found));
     if (concealed(m) && m.answer.kind == Kind::effect) found.add(!m.missed());
   }
   append(out,
@@ -100,7 +100,7 @@ void concealment(const Page& page, std::string& out) {
       "## Concealed\n\nLong runs of the truth and of a base that was tuned to its recordings, at the speed where power was retuned. A set "
       "with physics that the base lacks is *concealed* where power agrees within {:g} %, shoulder and toe within {:g}°, and Eq. 4.3 of "
       "Chagas 2015 is below the 90 % quantile of sets without an effect that were recorded alike: of the same mill, played by the same "
-      "engine, as many tracers for as long (where they are ten or more).\n\n{}",
+      "engine, as many tracers for as long. Where these are fewer than ten, Eq. 4.3 is not asked for.\n\n{}",
       Unsuspicious().power_percent, Unsuspicious().degrees, tables);
 }
 
@@ -119,9 +119,9 @@ void power(const Score& s, std::string& out) {
   out += "\n";
 }
 
-void line(const std::string& of, std::size_t sets, const Line& l, std::string& out) {
+void line(const std::string& of, const Line& l, std::string& out) {
   if (!std::isfinite(l.slope)) return;
-  append(out, "| {} | {} | {:.2f} | {:.2f} | {} |\n", of, sets, l.intercept, l.slope,
+  append(out, "| {} | {} | {:.2f} | {:.2f} | {} |\n", of, l.points, l.intercept, l.slope,
          std::isfinite(l.slope_low) ? fmt::format("{:.2f} … {:.2f}", l.slope_low, l.slope_high) : "too few sets");
 }
 
@@ -132,18 +132,13 @@ void strengths(const Score& s, std::string& out) {
         "estimate = intercept + slope × hidden strength, least squares, sets that name nothing included (each set below). The strengths of "
         "different candidates have different scales, so that the line through all is a check and no law. A hidden strength is known "
         "exactly; the interval is that of the sets drawn anew, so that errors may differ. An estimate of a one-sided strength cannot be "
-        "below 0, nor beyond the reach of the simulations, which lifts faint ones and holds strong ones back. Of what is too faint to be "
-        "seen recordings tell no strength, so the others stand for themselves, too.\n\n"
+        "below 0, nor beyond the reach of the simulations, which lifts faint ones and holds strong ones back. Recordings tell little of "
+        "the "
+        "strength of what is faint, so the others stand for themselves, too.\n\n"
         "| | sets | intercept | slope | 95 % of the slope |\n|---|---|---|---|---|\n";
-    line("all", s.estimates.size(), s.line, out);
-    line(fmt::format("those with λ of {:g} and more", kUnseen),
-         static_cast<std::size_t>(std::count_if(s.estimates.begin(), s.estimates.end(), [](const Estimated& e) { return e.seen; })),
-         s.seen_line, out);
-    for (const auto& [hypothesis, l] : s.lines)
-      line(hypothesis,
-           static_cast<std::size_t>(std::count_if(s.estimates.begin(), s.estimates.end(),
-                                                  [&, &h = hypothesis](const Estimated& e) { return e.hypothesis == h; })),
-           l, out);
+    line("all", s.line, out);
+    line(fmt::format("those with λ of {:g} and more", kFaint), s.line_of_clear, out);
+    for (const auto& [hypothesis, l] : s.lines) line(hypothesis, l, out);
     out += "\n";
   }
   if (!s.at_zero.empty()) {

@@ -189,20 +189,23 @@ TEST_CASE("hits, misses and abstentions are counted") {
   check(s.outside_missed, 0, 1);
 }
 
-TEST_CASE("an effect too faint to be seen asks that nothing else be named") {
-  const auto faint = [](double lambda, const std::string& verdict, std::vector<std::string> named) {
-    Found f = found(verdict, std::move(named));
-    f.hypotheses = {{"rolling", "not needed", square_law(lambda), open(0.1)}, {"bridge", "best", square_law(50), open(0.1)}};
-    return f;
+TEST_CASE("a faint effect asks that no physics be named but itself") {
+  const auto diagnosed = [](double lambda, std::vector<std::string> named) {
+    Found f = found("ambiguous", std::move(named));
+    f.hypotheses = {{"rolling", "not needed", square_law(lambda), open(0.1)},
+                    {"bridge", "best", square_law(50), open(0.1)},
+                    {"filling", "best", {}, open(0.3), false}};
+    return Marked{answer("s", Kind::effect, {rolling(1)}), f};
   };
-  const Score s = score({{answer("s1", Kind::effect, {rolling(1)}), faint(8, "no_mismatch", {})},
-                         {answer("s2", Kind::effect, {rolling(1)}), faint(8, "ambiguous", {"bridge"})},
-                         {answer("s3", Kind::effect, {rolling(1)}), faint(8, "ambiguous", {"bridge", "rolling"})},
-                         {answer("s4", Kind::effect, {rolling(1)}), faint(10, "ambiguous", {"bridge"})}});
-  check(s.unseen_nothing_else, 2, 3);
+  check(score({diagnosed(9, {})}).faint_nothing_else, 1, 1);
+  check(score({diagnosed(9, {"rolling"})}).faint_nothing_else, 1, 1);
+  check(score({diagnosed(9, {"filling", "rolling"})}).faint_nothing_else, 1, 1);
+  check(score({diagnosed(9, {"bridge"})}).faint_nothing_else, 0, 1);
+  check(score({diagnosed(9, {"bridge", "rolling"})}).faint_nothing_else, 0, 1);
+  check(score({diagnosed(11, {"bridge"})}).faint_nothing_else, 0, 0);
 }
 
-TEST_CASE("the line through what can be seen leaves out what cannot") {
+TEST_CASE("a line leaves out what is faint, beside that through all") {
   std::vector<Marked> sets;
   for (int k = 1; k <= 6; ++k) {
     const double strength = 0.15 * k;
@@ -212,7 +215,9 @@ TEST_CASE("the line through what can be seen leaves out what cannot") {
     sets.push_back({answer("s", Kind::effect, {rolling(strength)}), f});
   }
   const Score s = score(sets);
-  CHECK(s.seen_line.slope == Approx(1));
+  CHECK(s.line_of_clear.points == 5);
+  CHECK(s.line_of_clear.slope == Approx(1));
+  CHECK(s.line.points == 6);
   CHECK(s.line.slope < 0.6);
 }
 
@@ -240,7 +245,7 @@ TEST_CASE("strengths, parameters, power and gains") {
   REQUIRE(s.estimates.size() == 3);  // 0.5 → 0.55, 1 → 0.85, 0.4 → 0.1
   CHECK_THAT(s.line.slope, WithinAbs(0.645 / 0.62, 1e-9));
   CHECK_THAT(s.line.intercept, WithinAbs((1.5 - 1.9 * 0.645 / 0.62) / 3, 1e-9));
-  CHECK((s.estimates[0].seen && s.estimates[1].seen && !s.estimates[2].seen));  // λ 20, 80, 1.6
+  CHECK((!s.estimates[0].faint && !s.estimates[1].faint && s.estimates[2].faint));  // λ 20, 80, 1.6
   REQUIRE(s.at_zero.size() == 1);
   CHECK_THAT(s.at_zero[0], WithinAbs(0.1, 1e-12));
   check(s.power[0].named, 0, 1);  // λ 1.6
@@ -362,11 +367,15 @@ TEST_CASE("the page says what was missed") {
   const std::string text = page_text({sets, s, "millscope challenge score sets", {{"sets", "cafe"}}});
   for (const char* part : {"physics is named or listed in 1 of 3", "missing in 2 of 3", "`cafe`", "    millscope challenge score sets",
                            "| s9 | rolling | 0.70 |  |  |  | failed: no camera |", "| s6 | bridge | 0.40 | 0.10 | 2 |  | no_mismatch |",
-                           "| s10 | none |  |  |  |  | not diagnosed yet |", "1 of 4 (25 %"}) {
+                           "| s10 | none |  |  |  |  | not diagnosed yet |", "1 of 4 (25 %",
+                           "faint (λ below 10): no physics is listed but the truth | 1 of 1"}) {
     CAPTURE(part);
     CHECK(text.find(part) != std::string::npos);
   }
-  CHECK(score_json({sets, s, "", {{"sets", "cafe"}}}).at("top_1").at("hits") == 1);
+  const auto json = score_json({sets, s, "", {{"sets", "cafe"}}});
+  CHECK(json.at("top_1").at("hits") == 1);
+  CHECK(json.at("faint_nothing_else").at("of") == 1);
+  CHECK(json.at("strengths").at("estimates").at(2).at("faint") == true);
 }
 
 TEST_CASE("a score of nothing is said to be one") {

@@ -113,6 +113,8 @@ TEST_CASE("an override puts a plugin beside one with a name much like its own") 
   const Node uses = root.at("contact").at("pair_parameters");
   CHECK(uses.keys() == std::vector<std::string>{"friction_by_speed", "restitution_by_speed"});
   CHECK(uses.at("restitution_by_speed").at("form").text() == "plastic");
+  CHECK(
+      refusal_of(text, {"contact.pair_parameters.friction_by_sped.kind=friction_by_speed"}).ends_with("did you mean 'friction_by_speed'?"));
   CHECK(refusal_of(text, {path + "form=plastic"}).ends_with("did you mean 'friction_by_speed'?"));
 }
 

@@ -2,16 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "kernel/base/error.hpp"
 #include "kernel/config/writer.hpp"
 
 namespace millscope::diagnose {
 namespace {
 
+constexpr double kLeastShare = 0.125;  // of a step, or of a strength, that is tried
+
 /// The farthest of `from` + 1, ½, ¼ and ⅛ `step` at which the case can be run; `from` where none can.
 template <class Settings>
 double farthest(const calibrate::Study& study, const host::Registry& registry, double from, double step, const Settings& settings_at) {
-  for (const double share : {1.0, 0.5, 0.25, 0.125}) {
+  for (const double share : {1.0, 0.5, 0.25, kLeastShare}) {
     const double value = from + share * step;
     try {
       resolved(study, settings_at(value), registry);
@@ -20,6 +24,23 @@ double farthest(const calibrate::Study& study, const host::Registry& registry, d
     }
   }
   return from;
+}
+
+/// Why no case may have both; "" where some may. In the order in which the bank sets them.
+std::string why_not_both(const Question& question, const Candidate& one, const Candidate& other, const host::Registry& registry) {
+  const bool swapped = other.name < one.name;
+  std::string why;
+  for (const double strength : {1.0, kLeastShare}) {
+    std::vector<std::string> both = settings_of(swapped ? other : one, strength);
+    for (std::string& setting : settings_of(swapped ? one : other, strength)) both.push_back(std::move(setting));
+    try {
+      resolved(question.study, both, registry);
+      return "";
+    } catch (const base::UserError& e) {
+      why = e.what();
+    }
+  }
+  return why;
 }
 
 }  // namespace
@@ -57,6 +78,23 @@ void find_farthest(const host::Registry& registry, Question& question) {
     const auto settings = [&](double strength) { return settings_of(c, strength); };
     c.farthest.high = farthest(question.study, registry, c.range.high, c.range.high, settings);
     if (c.range.low < 0) c.farthest.low = farthest(question.study, registry, c.range.low, c.range.low, settings);
+  }
+}
+
+void exclude_impossible(const host::Registry& registry, Question& question) {
+  for (std::size_t i = 0; i < question.candidates.size(); ++i) {
+    for (std::size_t k = i + 1; k < question.candidates.size(); ++k) {
+      Candidate& one = question.candidates[i];
+      const Candidate& other = question.candidates[k];
+      const auto excludes = [](const Candidate& a, const Candidate& b) {
+        return std::find(a.excludes.begin(), a.excludes.end(), b.name) != a.excludes.end();
+      };
+      if (excludes(one, other) || excludes(other, one)) continue;
+      const std::string why = why_not_both(question, one, other, registry);
+      if (why.empty()) continue;
+      one.excludes.push_back(other.name);
+      question.left_out.push_back(fmt::format("{} and {} at once: {}", one.name, other.name, why));
+    }
   }
 }
 

@@ -14,4 +14,7 @@ std::string resolved(const calibrate::Study& study, const std::vector<std::strin
 /// Fills Question::farthest and Candidate::prior and ::farthest: how far the bank may reach where a fit stands at an end.
 void find_farthest(const host::Registry& registry, Question& question);
 
+/// Candidates that no case may have at once, strong or faint, exclude one another, rather than that all their simulations fail.
+void exclude_impossible(const host::Registry& registry, Question& question);
+
 }  // namespace millscope::diagnose

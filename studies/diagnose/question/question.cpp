@@ -232,27 +232,6 @@ void take_all(const Library& library, const host::Registry& registry, Question& 
   }
 }
 
-/// Candidates that no case may have at once are not tried together, rather than that all their simulations fail.
-void exclude_impossible(const host::Registry& registry, Question& question) {
-  for (std::size_t i = 0; i < question.candidates.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      Candidate &one = question.candidates[k], &other = question.candidates[i];
-      const auto excludes = [](const Candidate& a, const Candidate& b) {
-        return std::find(a.excludes.begin(), a.excludes.end(), b.name) != a.excludes.end();
-      };
-      if (excludes(one, other) || excludes(other, one)) continue;
-      std::vector<std::string> both = settings_of(one, 1);
-      for (std::string& setting : settings_of(other, 1)) both.push_back(std::move(setting));
-      try {
-        resolved(question.study, both, registry);
-      } catch (const base::UserError& e) {
-        one.excludes.push_back(other.name);
-        question.left_out.push_back(fmt::format("{} and {} at once: {}", one.name, other.name, e.what()));
-      }
-    }
-  }
-}
-
 }  // namespace
 
 double value_in(const config::Case& c, const std::string& path, const base::Location& where) {

@@ -15,7 +15,7 @@ namespace millscope::diagnose {
 namespace {
 
 constexpr double kLongest = 1e4;  // times the recording, that are thought of
-constexpr double kNear = 0.1;     // p of a candidate that is worth a look though it is not significant
+constexpr double kNear = 5;       // times the level: p of a candidate that a recording a few times as long would decide on
 
 std::string name_of(const Diagnosis& diagnosis, Index alternative) { return diagnosis.problem.alternatives[alternative].name; }
 
@@ -248,14 +248,27 @@ Index nearest(const Diagnosis& diagnosis) {
   return std::min_element(judged.begin(), judged.end(), smaller) - judged.begin();
 }
 
-/// What may be missing where the base is rejected and no candidate is significant.
-std::string what_may_be_missing(const Diagnosis& diagnosis) {
-  if (diagnosis.naming.judged.empty()) return " that is not in the library";
+/// Where the base is rejected and no alternative is significant: the one that comes near; nothing: none does.
+std::optional<Index> near_one(const Diagnosis& diagnosis, double level) {
+  if (diagnosis.naming.judged.empty()) return {};
   const Index j = nearest(diagnosis);
-  const double p = diagnosis.naming.judged[j].p_family;
-  return p > kNear ? " that is not in the library"
-                   : fmt::format(". {} comes nearest (family-wise p = {:.2g}): it may be that, or what is not in the library",
-                                 name_of(diagnosis, j), p);
+  return diagnosis.naming.judged[j].p_family <= kNear * level ? std::optional(j) : std::nullopt;
+}
+
+void something_missing(const Question& question, double level, Diagnosis& diagnosis) {
+  diagnosis.verdict = Verdict::outside_library;
+  const std::string begin =
+      fmt::format("The base does not describe the recordings (p = {:.2g}), and no candidate helps significantly", diagnosis.naming.base_p);
+  diagnosis.next_experiment = to_extend(question, diagnosis, level);
+  const std::optional<Index> near = near_one(diagnosis, level);
+  if (!near) {
+    diagnosis.sentence = begin + ": something is missing that is not in the library.";
+    return;
+  }
+  const std::string name = name_of(diagnosis, *near);
+  diagnosis.sentence = begin + fmt::format(". {} comes nearest (family-wise p = {:.2g}): it may be that, or what is not in the library.",
+                                           name, diagnosis.naming.judged[*near].p_family);
+  diagnosis.next_experiment = fmt::format("Record for longer: then {} shows, or drops out. {}", name, diagnosis.next_experiment);
 }
 
 void nothing_named(const Question& question, double level, double noise_units, Diagnosis& diagnosis) {
@@ -265,14 +278,7 @@ void nothing_named(const Question& question, double level, double noise_units, D
                                    [](const naming::Alternative& r) { return r.candidate.has_value(); });
   for (std::size_t j = 0; j < diagnosis.naming.judged.size(); ++j)
     blind = blind && (diagnosis.naming.judged[j].undetectable || (physics && !diagnosis.problem.alternatives[j].candidate));
-  if (diagnosis.naming.base_p <= level) {
-    diagnosis.verdict = Verdict::outside_library;
-    diagnosis.sentence =
-        fmt::format("The base does not describe the recordings (p = {:.2g}), and no candidate helps significantly: something is missing{}.",
-                    diagnosis.naming.base_p, what_may_be_missing(diagnosis));
-    diagnosis.next_experiment = to_extend(question, diagnosis, level);
-    return;
-  }
+  if (diagnosis.naming.base_p <= level) return something_missing(question, level, diagnosis);
   diagnosis.verdict = blind ? Verdict::undetectable : Verdict::no_mismatch;
   if (blind) {
     diagnosis.sentence = fmt::format(

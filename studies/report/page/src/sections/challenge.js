@@ -6,7 +6,7 @@ import { lines } from "../plots/lines.js";
 
 const COUNTS = [["false_alarms", "nothing hidden: something is said to be missing (false alarm)"], ["false_names", "nothing hidden: a name is given"], ["false_physics", "nothing hidden: physics is named or listed"],
   ["named_alone", "one effect: named alone, and rightly"], ["top_1", "one effect: the best candidate is the truth"], ["in_class", "one effect: the truth is among those named"],
-  ["in_class_of_two", "one effect: named, alone or in a class of two"], ["unseen_nothing_else", "one effect too faint to be seen: no other physics is named (right)"], ["abstained_on_effect", "one effect: said to lie outside the library (wrong)"],
+  ["in_class_of_two", "one effect: named, alone or in a class of two"], ["faint_nothing_else", "one effect, faint: no physics is named but the truth"], ["abstained_on_effect", "one effect: said to lie outside the library (wrong)"],
   ["two_both", "two effects: both named, together"], ["two_both_in_class", "two effects: both among those named"], ["two_at_least_one", "two effects: at least one named"], ["outside_abstained", "physics outside the list: said to lie outside (right)"],
   ["outside_named", "physics outside the list: something of the list named (wrong)"], ["outside_missed", "physics outside the list: not noticed"],
   ["decoys_named", "decoy (another camera, or what is believed is wrong): physics is named (wrong)"], ["decoys_outside", "decoy: said to lie outside the library (wrong)"]];
@@ -40,7 +40,7 @@ function power(score, key) {
 }
 
 function strengths(score, key) {
-  const { estimates: all = [], slope, intercept, at_zero: zero = [] } = score.strengths ?? {};
+  const { estimates: all = [], slope, intercept, without_faint: clear = {}, at_zero: zero = [] } = score.strengths ?? {};
   if (all.length === 0) return null;
   const of = (named) => all.filter((one) => one.named === named).map((one) => [100 * one.truth, 100 * one.estimate]);
   const most = Math.max(100, ...all.map((one) => 100 * Math.max(one.truth, one.estimate)));
@@ -51,7 +51,7 @@ function strengths(score, key) {
   return block(`${key}-strengths`, "Strengths", figure("Hidden against estimated strength, 100 % the far end of the prior range, whether the effect was named or not.",
     lines(`${key}-strengths`, { label: `${all.length} hidden strengths and their estimates`, series, hover: "item", x: { name: "hidden strength", unit: "%", min: Math.floor(least / 10) * 10, max: Math.ceil(most / 10) * 10 },
       y: { name: "estimated strength", unit: "%" }, height: 340 })),
-  isNumber(slope) ? paragraph(`Least squares: estimate = ${number(100 * intercept, 3)} % + ${number(slope, 3)} × hidden.`) : null,
+  isNumber(slope) ? paragraph(`Least squares: estimate = ${number(100 * intercept, 3)} % + ${number(slope, 3)} × hidden${isNumber(clear.slope) ? `; without faint effects ${number(100 * clear.intercept, 3)} % + ${number(clear.slope, 3)} × hidden` : ""}.`) : null,
   zero.length ? note(`Where nothing was hidden, the mean estimated strength is ${percent(zero.reduce((sum, value) => sum + value, 0) / zero.length)} of the range (${zero.length} estimates).`) : null);
 }
 
