@@ -68,8 +68,9 @@ void apply_override(NodeData& root, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) throw UserError(where, "is no override; write path.to.key=value");
   const std::vector<std::string> segments = split_path(text.substr(0, equals), where);
-  refuse_near_miss(root, segments, text.substr(equals + 1), where);
-  Tree value = parse_value(text.substr(equals + 1), where);
+  const std::string written = text.substr(equals + 1);
+  refuse_near_miss(root, segments, written, where);
+  Tree value = parse_value(written, where);
   NodeData* parent = &root;
   for (std::size_t i = 0; i + 1 < segments.size(); ++i) parent = child(*parent, segments[i], where).get();
   if (value->null && parent->type == Node::Type::map) {

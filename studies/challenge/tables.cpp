@@ -133,8 +133,7 @@ void strengths(const Score& s, std::string& out) {
         "different candidates have different scales, so that the line through all is a check and no law. A hidden strength is known "
         "exactly; the interval is that of the sets drawn anew, so that errors may differ. An estimate of a one-sided strength cannot be "
         "below 0, nor beyond the reach of the simulations, which lifts faint ones and holds strong ones back. Recordings tell little of "
-        "the "
-        "strength of what is faint, so the others stand for themselves, too.\n\n"
+        "the strength of what is faint, so the others stand for themselves, too.\n\n"
         "| | sets | intercept | slope | 95 % of the slope |\n|---|---|---|---|---|\n";
     line("all", s.line, out);
     line(fmt::format("those with λ of {:g} and more", kFaint), s.line_of_clear, out);

@@ -276,10 +276,7 @@ class Namer {
 }  // namespace
 
 bool together(const Alternative& one, const Alternative& other) {
-  const auto has = [](const std::vector<std::string>& list, const std::string& name) {
-    return std::find(list.begin(), list.end(), name) != list.end();
-  };
-  return one.name != other.name && !has(one.excludes, other.name) && !has(other.excludes, one.name) && !(one.freed && other.freed);
+  return one.name != other.name && !exclude_each_other(one, other) && !(one.freed && other.freed);
 }
 
 std::vector<StrengthRange> ranges_of(const Problem& problem) {

@@ -9,6 +9,7 @@
 // what makes a model wrong in a recording is not all in the bank (docs/challenge.md has the coverage).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -33,6 +34,15 @@ struct Alternative {
   std::vector<std::string> excludes = {};
   bool screened_out = false;  ///< its first runs showed that it cannot matter: it is not tested
 };
+
+/// Whether one of two, each with a name and what it excludes, rules the other out.
+template <class Named>
+bool exclude_each_other(const Named& one, const Named& other) {
+  const auto excludes = [](const Named& a, const Named& b) {
+    return std::find(a.excludes.begin(), a.excludes.end(), b.name) != a.excludes.end();
+  };
+  return excludes(one, other) || excludes(other, one);
+}
 
 /// Whether two may be there at once.
 bool together(const Alternative& one, const Alternative& other);
@@ -82,14 +92,13 @@ struct Judged {
   double lambda_found = 0;  ///< at the fitted strength
   std::vector<std::pair<double, double>> lambda_curve;  ///< (strength, λ), strengths rising; of candidates
   bool undetectable = false;
-  int runs = 0;  ///< of the bank with this candidate
-  double lambda_beside =
-      kNotWorkedOut;          ///< the same beside the best candidate, which is refitted as well; of others that may be there too
-  bool tested = true;         ///< else it has no runs, or its first ones showed that it cannot matter; its p are 1
-  base::Interval90 strength;  ///< its interval is worked out when some candidate is significant
-  std::vector<base::Interval90> theta;  ///< natural units; the same
-  double goodness_p = kNotWorkedOut;    ///< whether the data look like a draw of this model; the same
-  double against_best_p = 1;            ///< under this candidate: how often the best would be better by so much
+  int runs = 0;                          ///< of the bank with this candidate
+  double lambda_beside = kNotWorkedOut;  ///< the same beside the best candidate, which is refitted as well; of others that may be there too
+  bool tested = true;                    ///< else it has no runs, or its first ones showed that it cannot matter; its p are 1
+  base::Interval90 strength;             ///< its interval is worked out when some candidate is significant
+  std::vector<base::Interval90> theta;   ///< natural units; the same
+  double goodness_p = kNotWorkedOut;     ///< whether the data look like a draw of this model; the same
+  double against_best_p = 1;             ///< under this candidate: how often the best would be better by so much
 };
 
 /// One observable beside what the retuned base makes of it.

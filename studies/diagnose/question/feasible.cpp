@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "kernel/base/error.hpp"
 #include "kernel/config/writer.hpp"
+#include "studies/diagnose/naming/naming.hpp"
 
 namespace millscope::diagnose {
 namespace {
@@ -86,10 +85,7 @@ void exclude_impossible(const host::Registry& registry, Question& question) {
     for (std::size_t k = i + 1; k < question.candidates.size(); ++k) {
       Candidate& one = question.candidates[i];
       const Candidate& other = question.candidates[k];
-      const auto excludes = [](const Candidate& a, const Candidate& b) {
-        return std::find(a.excludes.begin(), a.excludes.end(), b.name) != a.excludes.end();
-      };
-      if (excludes(one, other) || excludes(other, one)) continue;
+      if (naming::exclude_each_other(one, other)) continue;
       const std::string why = why_not_both(question, one, other, registry);
       if (why.empty()) continue;
       one.excludes.push_back(other.name);
