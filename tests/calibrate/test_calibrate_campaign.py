@@ -11,7 +11,7 @@ import unittest
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1]), str(pathlib.Path(__file__).resolve().parents[1] / "campaign")]
 import slurm_machine  # noqa: E402
-from patience import PATIENCE  # noqa: E402
+from patience import PATIENCE, files_below  # noqa: E402
 
 COMMAND = os.environ["MILLSCOPE"]
 CONFIGS = pathlib.Path(__file__).resolve().parents[2] / "configs"
@@ -52,7 +52,7 @@ class Campaign(unittest.TestCase):
         return json.loads((cls.folder / name / "calibration.json").read_text())
 
     def finished(self, name):
-        return len(list((self.folder / (name + "-cache")).rglob("run/summary.json")))
+        return len(files_below(self.folder / (name + "-cache"), "run/summary.json"))
 
     def test_it_is_a_calibration(self):
         self.assertIn(self.expected["simulations"], (5, 6))  # it may stop before the budget ends where nothing is left to gain

@@ -13,7 +13,7 @@ import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from patience import PATIENCE  # noqa: E402
+from patience import PATIENCE, files_below  # noqa: E402, F401: for the tests that import this
 
 SOURCE = pathlib.Path(os.environ.get("MILLSCOPE_SOURCE_DIR", pathlib.Path(__file__).resolve().parents[2]))
 COMMAND = os.environ.get("MILLSCOPE", str(SOURCE / "build/release/bin/millscope"))

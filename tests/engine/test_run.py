@@ -8,7 +8,7 @@ import subprocess
 import time
 import unittest
 
-from support import COMMAND, PATIENCE, CliTest, Hdf5, tree_of
+from support import COMMAND, PATIENCE, CliTest, Hdf5, files_below, tree_of
 
 SHORT = ["--set", "fill.settle_s=0.01", "--set", "time={end_s: 0.15, analyze_from_s: 0.05}", "--set", "output.frames={every_s: 0.02, from_s: 0.05}"]
 
@@ -124,12 +124,8 @@ class Real(CliTest):
 
     def test_a_killed_run_goes_on(self):
         words = ["--set", "fill.settle_s=0.01", "--set", "time={end_s: 0.6, analyze_from_s: 0.1}", "--set", "output.frames={every_s: 0.05, from_s: 0.1}"]
-        run = subprocess.Popen([COMMAND, "run", "case.yaml", "-o", "out", "-q", "--engine", "liggghts", *words], cwd=self.folder)
-        post, started = self.folder / "out/engine/post", time.monotonic()
-        while len(list(post.glob("restart.*"))) < 2 and time.monotonic() - started < PATIENCE:
-            time.sleep(0.01)
-        run.kill()
-        run.wait()
+        post = self.folder / "out/engine/post"
+        self.killed(["run", "case.yaml", "-o", "out", "-q", "--engine", "liggghts", *words], lambda: len(files_below(post, "restart.*")) > 1)
         self.assertFalse((self.folder / "out/summary.json").exists())
         self.assert_one_line(self.millscope("resume", "out", "--set", "time.end_s=9"), "leave --set out")
         self.assert_one_line(self.millscope("resume", "out", "--threads", "2"), "--threads is for runs of millscope")
@@ -149,7 +145,7 @@ class Real(CliTest):
     def test_a_campaigns_task_goes_on(self):
         self.write("tasks.yaml", "schema_version: 1\ncase: case.yaml\nsimulations:\n  one: {set: [run.engine=liggghts, fill.settle_s=0.01, "
                                  "time.end_s=0.6, time.analyze_from_s=0.1, output.frames=~]}\n")
-        runs = lambda pattern: list((self.folder / "out").rglob(pattern))  # noqa: E731
+        runs = lambda pattern: files_below(self.folder / "out", pattern)  # noqa: E731
         self.killed(["campaign", "tasks.yaml", "-o", "out", "-q"], lambda: len(runs("restart.*")) > 1)
         self.succeed("campaign", "tasks.yaml", "-o", "out", "-q")
         self.assertEqual(len(runs("series.*.txt")), 1)
@@ -159,17 +155,19 @@ class Real(CliTest):
         """A run whose millscope and engine are killed as soon as `ready` holds."""
         run = subprocess.Popen([COMMAND, *words], cwd=self.folder)
         started = time.monotonic()
-        while not ready() and run.poll() is None and time.monotonic() - started < PATIENCE:
-            time.sleep(0.005)
-        run.kill()
-        run.wait()
+        try:
+            while not ready() and run.poll() is None and time.monotonic() - started < PATIENCE:
+                time.sleep(0.005)
+        finally:
+            run.kill()
+            run.wait()
         time.sleep(0.5)  # the engine hears of it
 
     def test_killed_while_settling_and_again_after_the_resume(self):
         words = ["--set", "fill.settle_s=0.3", "--set", "time={end_s: 0.3, analyze_from_s: 0.1}", "--set", "output.frames=~"]
         post = self.folder / "out/engine/post"
-        self.killed(["run", "case.yaml", "-o", "out", "-q", "--engine", "liggghts", *words], lambda: len(list(post.glob("restart.*"))) > 1)
-        self.killed(["resume", "out", "-q"], lambda: any(f.stat().st_size > 500 for f in post.glob("series.*.txt")))
+        self.killed(["run", "case.yaml", "-o", "out", "-q", "--engine", "liggghts", *words], lambda: len(files_below(post, "restart.*")) > 1)
+        self.killed(["resume", "out", "-q"], lambda: any(f.stat().st_size > 500 for f in files_below(post, "series.*.txt")))
         self.succeed("resume", "out", "-q")
         with Hdf5(self.folder / "out/tracks.h5") as f:
             t = f.read(f.names()[0] + "/t")
