@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <system_error>
 
 #include "kernel/output/directory.hpp"
 #include "studies/report/one_section.hpp"
@@ -56,7 +57,8 @@ void find_places(const fs::path& folder, int depth, std::vector<Place>& places) 
   }
   // Below a score are the sets that it counts, below a wear study its stages.
   if ((any && (fs::exists(folder / "score.json") || fs::exists(folder / "wear.json"))) || depth == kDeepest) return;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fs::directory_options::skip_permission_denied)) {
+  std::error_code gone;  // a campaign that goes on may have taken this folder away since it was listed
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fs::directory_options::skip_permission_denied, gone)) {
     const std::string name = entry.path().filename();
     if (!entry.is_directory() || entry.is_symlink() || name == "cache" || name.starts_with('.')) continue;
     // What another engine was given is no run of its own.
