@@ -57,8 +57,11 @@ void find_places(const fs::path& folder, int depth, std::vector<Place>& places) 
   }
   // Below a score are the sets that it counts, below a wear study its stages.
   if ((any && (fs::exists(folder / "score.json") || fs::exists(folder / "wear.json"))) || depth == kDeepest) return;
-  std::error_code gone;  // a campaign that goes on may have taken this folder away since it was listed
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fs::directory_options::skip_permission_denied, gone)) {
+  std::error_code error;
+  const fs::directory_iterator entries(folder, fs::directory_options::skip_permission_denied, error);
+  if (error == std::errc::no_such_file_or_directory) return;  // a campaign that goes on took it away since it was listed
+  if (error) throw fs::filesystem_error("cannot list what a report is made of", folder, error);
+  for (const fs::directory_entry& entry : entries) {
     const std::string name = entry.path().filename();
     if (!entry.is_directory() || entry.is_symlink() || name == "cache" || name.starts_with('.')) continue;
     // What another engine was given is no run of its own.
