@@ -126,14 +126,20 @@ struct ScoredGroup {
   Score score;
 };
 
-/// By who played which mill and which program diagnosed it; none where all is one.
+/// By who played which mill and which program diagnosed it, and after these all of each engine; none where all is one.
 std::vector<ScoredGroup> scored_groups(const Page& page) {
+  std::vector<Group> groups = groups_of(page.sets);
+  if (groups.size() < 2) return {};
+  std::map<std::string, std::vector<Marked>> engines;
+  for (const Marked& m : page.sets) engines[m.engine()].push_back(m);
+  if (engines.size() > 1) {
+    for (auto& [engine, sets] : engines) groups.push_back({engine, "", "all of this engine", std::move(sets)});
+  }
   std::vector<ScoredGroup> out;
-  for (Group& g : groups_of(page.sets)) {
+  for (Group& g : groups) {
     Score s = score(g.sets);
     out.push_back({std::move(g), std::move(s)});
   }
-  if (out.size() < 2) out.clear();
   return out;
 }
 
@@ -144,7 +150,7 @@ std::string brief(const Count& c) { return c.of == 0 ? std::string() : fmt::form
 Count covered_by_intervals(const Score& s) {
   Count all;
   for (const Coverage& c : s.coverage) {
-    if (c.varies) all += c.inside;
+    if (!c.truth) all += c.inside;
   }
   return all;
 }
@@ -152,7 +158,7 @@ Count covered_by_intervals(const Score& s) {
 /// The same of each group: how many beads are recorded at once hangs on the challenge.
 void add_calibration_of_groups(const std::vector<ScoredGroup>& groups, std::string& out) {
   const auto p_values = [](const std::vector<double>& p) {
-    return p.empty() ? std::string(" | ") : fmt::format("{:.2f} | {:.2g}", median_of(p), high_p(p));
+    return p.empty() ? std::string(" |  | ") : fmt::format("{:.2f} | {:.2g} | {:.2g}", median_of(p), low_p(p), high_p(p));
   };
   std::string rows;
   for (const auto& [g, s] : groups) {
@@ -163,9 +169,9 @@ void add_calibration_of_groups(const std::vector<ScoredGroup>& groups, std::stri
   }
   if (rows.empty()) return;
   out +=
-      "| played by | diagnosed by commit | sets of | nothing hidden | p of the base: half above | so high by chance | smallest p of a "
-      "hypothesis: half above | so high by chance | misfit, median | 90 % intervals that hold |\n"
-      "|---|---|---|---|---|---|---|---|---|---|\n" +
+      "| played by | diagnosed by commit | sets of | nothing hidden | p of the base: half above | so low by chance | so high | smallest p "
+      "of a hypothesis: half above | so low by chance | so high | misfit, median | 90 % intervals that hold |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|\n" +
       rows + "\n";
 }
 
@@ -282,6 +288,17 @@ Json strengths_json(const Score& s) {
   return out;
 }
 
+Json coverage_json(const Score& s) {
+  Json out = Json::array();
+  for (const Coverage& c : s.coverage)
+    out.push_back({{"of", c.of},
+                   {"engine", c.engine},
+                   {"truth", c.truth ? Json(*c.truth) : Json()},
+                   {"inside", count_json(c.inside)},
+                   {"p_holm", c.p}});
+  return out;
+}
+
 }  // namespace
 
 std::string count_text(const Count& c) {
@@ -317,12 +334,7 @@ std::string page_text(const Page& page) {
 
 Json score_json(const Page& page) {
   const Score& s = page.score;
-  Json strength = count_json({}), theta = Json::object(), recovery = Json::array(), gains = Json::array();
-  for (const Coverage& c : s.coverage) {
-    Json& row = c.of == kStrengthRow ? strength : theta[c.of];
-    row = count_json(c.inside);
-    row["p_holm"] = c.p;  // null where the truth is one in all sets
-  }
+  Json recovery = Json::array(), gains = Json::array();
   for (const Recovery& r : s.recovery)
     recovery.push_back({{"parameter", r.parameter}, {"sets", r.sets}, {"error_retuned", r.retuned}, {"error_unmasked", r.unmasked}});
   for (const GainCount& g : s.gains)
@@ -333,7 +345,7 @@ Json score_json(const Page& page) {
     power_errors.push_back({{"model", e.model},
                             {"one_effect", {{"mean", e.effect}, {"sets", e.effects}}},
                             {"empty", {{"mean", e.empty}, {"sets", e.empties}}}});
-  return {{"schema_version", 2},
+  return {{"schema_version", 3},
           {"command", page.command},
           {"manifest_hash", page.manifests.at(0).second},
           {"sets", s.sets},
@@ -358,8 +370,7 @@ Json score_json(const Page& page) {
           {"outside_missed", count_json(s.outside_missed)},
           {"decoys_named", count_json(s.decoys_named)},
           {"decoys_outside", count_json(s.decoys_outside)},
-          {"strength_coverage", strength},
-          {"parameter_coverage", theta},
+          {"coverage", coverage_json(s)},
           {"power", power_json(s)},
           {"strengths", strengths_json(s)},
           {"recovery", recovery},

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 
 #include "kernel/base/statistics.hpp"
 #include "studies/challenge/concealment.hpp"
@@ -99,34 +100,38 @@ void add_power(const Marked& m, const Concealed& to_power, const Concealed& to_a
 }
 
 /// The row of a quantity; made where there is none yet.
-Count& covered(Score& s, const std::string& of) {
-  const auto row = std::find_if(s.coverage.begin(), s.coverage.end(), [&](const Coverage& c) { return c.of == of; });
-  return row != s.coverage.end() ? row->inside : s.coverage.emplace_back(Coverage{of, {}}).inside;
+Count& covered(Score& s, const std::string& of, const std::string& engine, std::optional<double> truth = {}) {
+  const auto row = std::find_if(s.coverage.begin(), s.coverage.end(),
+                                [&](const Coverage& c) { return c.of == of && c.engine == engine && c.truth == truth; });
+  return row != s.coverage.end() ? row->inside : s.coverage.emplace_back(Coverage{of, engine, truth}).inside;
 }
 
-/// Whether a parameter's truth is drawn for each set. What a challenge gives all of its sets takes few values, each of which is one trial.
-bool varies(const std::vector<Marked>& sets, const std::string& parameter) {
+/// The parameters whose truth is drawn for each set. What a challenge gives all of its sets takes few values.
+std::set<std::string> drawn_parameters(const std::vector<Marked>& sets) {
   constexpr std::size_t kMany = 10;
-  std::set<double> values;
-  std::size_t of = 0;
+  std::map<std::string, std::vector<double>> truths;
   for (const Marked& m : sets) {
-    for (const auto& [name, value] : m.answer.theta) {
-      if (name == parameter) values.insert(value), ++of;
-    }
+    for (const auto& [name, value] : m.answer.theta) truths[name].push_back(value);
   }
-  return values.size() > std::max<std::size_t>(1, std::min(kMany, of / 2));
+  std::set<std::string> drawn;
+  for (const auto& [name, all] : truths) {
+    const std::size_t values = std::set<double>(all.begin(), all.end()).size();
+    if (values > std::max<std::size_t>(1, std::min(kMany, all.size() / 2))) drawn.insert(name);
+  }
+  return drawn;
 }
 
-void judge_coverage(const std::vector<Marked>& sets, Score& s) {
+void judge_coverage(Score& s) {
+  std::sort(s.coverage.begin(), s.coverage.end(),
+            [](const Coverage& a, const Coverage& b) { return std::tie(a.of, a.engine, a.truth) < std::tie(b.of, b.engine, b.truth); });
   std::vector<double> p;
-  for (Coverage& c : s.coverage) {
-    c.varies = c.of == kStrengthRow || varies(sets, c.of);
-    if (c.varies) p.push_back(binomial_p(c.inside, kCovered));
+  for (const Coverage& c : s.coverage) {
+    if (!c.truth) p.push_back(binomial_p(c.inside, kCovered));
   }
   p = base::holm(p);
   auto next = p.begin();
   for (Coverage& c : s.coverage) {
-    if (c.varies) c.p = *next++;
+    if (!c.truth) c.p = *next++;
   }
 }
 
@@ -146,7 +151,7 @@ void add_estimate(const Marked& m, Score& s) {
   if (tested == nullptr || !tested->strength) return;
   s.estimates.push_back({m.answer.set, e.hypothesis, e.strength, strength_of(e, tested->strength->value), m.found->names(e.hypothesis),
                          m.lambda(e).value_or(0) < kFaint});
-  if (tested->strength->known()) covered(s, kStrengthRow).add(tested->strength->holds(e.value));
+  if (tested->strength->known()) covered(s, kStrengthRow, m.engine()).add(tested->strength->holds(e.value));
 }
 
 /// The model that is right for the set: the base where nothing is hidden, the best candidate where that is the truth.
@@ -156,13 +161,13 @@ const std::map<std::string, base::Interval90>* right_parameters(const Marked& m)
   return nullptr;
 }
 
-void add_theta(const Marked& m, Score& s) {
+void add_theta(const Marked& m, const std::set<std::string>& drawn, Score& s) {
   const auto* parameters = right_parameters(m);
   if (parameters == nullptr) return;
   for (const auto& [name, truth] : m.answer.theta) {
     const auto interval = parameters->find(name);
     if (interval == parameters->end() || !interval->second.known()) continue;
-    covered(s, name).add(interval->second.holds(truth));
+    covered(s, name, m.engine(), drawn.count(name) > 0 ? std::nullopt : std::optional(truth)).add(interval->second.holds(truth));
   }
 }
 
@@ -336,9 +341,9 @@ std::string label_of(const Found& f) {
 
 Score score(const std::vector<Marked>& sets) {
   Score s;
-  s.coverage = {{kStrengthRow, {}}};
   s.power = {{0, 3}, {3, 10}, {10, 30}, {30, 100}, {100, kInfinity}};
   const Concealed to_power(sets, &Practice::to_power), to_all(sets, &Practice::to_all);
+  const std::set<std::string> drawn = drawn_parameters(sets);
   double class_sum = 0;
   int classes = 0;
   for (const Marked& m : sets) {
@@ -358,12 +363,12 @@ Score score(const std::vector<Marked>& sets) {
     add_held_out(m, s);
     add_power(m, to_power, to_all, s);
     add_estimate(m, s);
-    add_theta(m, s);
+    add_theta(m, drawn, s);
     add_recovery(m, s);
   }
   if (classes > 0) s.mean_class = class_sum / classes;
   add_lines(s);
-  judge_coverage(sets, s);
+  judge_coverage(s);
   add_at_zero(sets, s);
   add_gains(sets, s);
   add_confusion(sets, s);

@@ -138,12 +138,12 @@ struct Estimated {
 
 inline constexpr const char* kStrengthRow = "the hidden strength";
 
-/// The 90 % intervals of one quantity.
+/// The 90 % intervals of one quantity, in the sets that one engine played.
 struct Coverage {
-  std::string of;
-  Count inside;
-  bool varies = true;                                   ///< the truth is drawn for each set; else all sets with one truth are one trial
-  double p = std::numeric_limits<double>::quiet_NaN();  ///< that 90 % gives such a count, for all that vary together (Holm)
+  std::string of, engine;
+  std::optional<double> truth = {};  ///< of all these sets, and so one trial; nothing: drawn for each set
+  Count inside = {};
+  double p = std::numeric_limits<double>::quiet_NaN();  ///< that 90 % gives such a count, for all that are drawn together (Holm)
 };
 
 struct GainCount {
@@ -176,7 +176,7 @@ struct Score {
   Count outside_abstained, outside_named, outside_missed;
   Count decoys_named, decoys_outside;  ///< decoys in which physics is named, or said to lie outside: wrong
 
-  std::vector<Coverage> coverage;  ///< of strengths, then by parameter
+  std::vector<Coverage> coverage;  ///< of strengths and parameters, in order of their names
   Count improves;                  ///< one effect whose candidate is best: held out, surely better than every rival
   int not_held_out = 0;            ///< the same, but without simulations of a held-out condition
   std::vector<PowerBin> power;

@@ -155,9 +155,10 @@ void coverage(const Score& s, std::string& out) {
   out +=
       "## Coverage of the 90 % intervals\n\np: that intervals which hold the truth in 90 % give such a count, by the exact binomial test, "
       "for "
-      "all rows together (Holm 1979).\n\n| of | truth inside | p |\n|---|---|---|\n";
+      "all rows together (Holm 1979).\n\n| of | played by | truth inside | p |\n|---|---|---|---|\n";
   for (const Coverage& c : s.coverage)
-    append(out, "| {} | {} | {} |\n", c.of, count_text(c.inside), c.varies ? fmt::format("{:.2g}", c.p) : "few truths: as few trials");
+    append(out, "| {} | {} | {} | {} |\n", c.truth ? fmt::format("{}, {:g} in all", c.of, *c.truth) : c.of, c.engine, count_text(c.inside),
+           c.truth ? "one truth: one trial" : fmt::format("{:.2g}", c.p));
   out +=
       "\nParameters: of the base where nothing is hidden, of the corrected model where its physics is the hidden one. A strength has an "
       "interval "

@@ -55,14 +55,17 @@ Json from_file(const char* kind, const char* file, const fs::path& folder) {
   return section;
 }
 
-constexpr const char* kStrength = "'share' and 'dose' are called 'strength'";
+/// The version of a file whose keys changed their name or meaning, and what is new in it.
+struct Version {
+  int number;
+  const char* change;
+};
 
-/// Of files whose keys changed their name or meaning; `change`: what is new in version 2.
-Json from_second_version(const char* kind, const char* file, const fs::path& folder, const char* change) {
+Json from_version(const Version& version, const char* kind, const char* file, const fs::path& folder) {
   Json section = from_file(kind, file, folder);
-  if (section[kind].value("schema_version", Json()) != 2)
-    throw base::UserError(fmt::format("{}: is of another schema_version than 2, in which {}; run the command that wrote it again",
-                                      (folder / file).string(), change));
+  if (section[kind].value("schema_version", Json()) != version.number)
+    throw base::UserError(fmt::format("{}: is of another schema_version than {}, in which {}; run the command that wrote it again",
+                                      (folder / file).string(), version.number, version.change));
   return section;
 }
 
@@ -114,13 +117,15 @@ Json calibration_section(const fs::path& folder) {
 }
 
 Json validation_section(const fs::path& folder) {
-  return from_second_version("validation", "validation.json", folder, "all numbers of a condition are judged at once, too");
+  return from_version({2, "all numbers of a condition are judged at once, too"}, "validation", "validation.json", folder);
 }
 
-Json diagnosis_section(const fs::path& folder) { return from_second_version("diagnosis", "diagnosis.json", folder, kStrength); }
+Json diagnosis_section(const fs::path& folder) {
+  return from_version({2, "'share' and 'dose' are called 'strength'"}, "diagnosis", "diagnosis.json", folder);
+}
 
 Json challenge_section(const fs::path& folder) {
-  Json section = from_second_version("challenge", "score.json", folder, kStrength);
+  Json section = from_version({3, "intervals are counted for each engine"}, "challenge", "score.json", folder);
   section["score"] = section["challenge"];
   section.erase("challenge");
   return section;

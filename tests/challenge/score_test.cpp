@@ -233,12 +233,12 @@ TEST_CASE("a decoy goes wrong where physics is named, and not where what was bel
 
 TEST_CASE("strengths, parameters, power and gains") {
   const Score s = score(ten_sets());
-  REQUIRE(s.coverage.size() == 2);
-  check(s.coverage[0].inside, 1, 1);
-  CHECK(s.coverage[0].p == Approx(1));
-  CHECK_FALSE(s.coverage[1].varies);  // 0.3 in all sets
-  CHECK(std::isnan(s.coverage[1].p));
-  check(s.coverage[1].inside, 1, 4);  // one of them has its whole interval at an end of the range
+  REQUIRE(s.coverage.size() == 2);  // in order of their names: friction, strength
+  CHECK(s.coverage[0].truth == 0.3);
+  CHECK(std::isnan(s.coverage[0].p));
+  check(s.coverage[0].inside, 1, 4);  // one of them has its whole interval at an end of the range
+  check(s.coverage[1].inside, 1, 1);
+  CHECK(s.coverage[1].p == Approx(1));
   REQUIRE(s.recovery.size() == 1);
   CHECK_THAT(s.recovery[0].retuned, WithinAbs(0.1, 1e-12));
   CHECK_THAT(s.recovery[0].unmasked, WithinAbs(0.02, 1e-12));
@@ -288,9 +288,11 @@ TEST_CASE("a parameter that a challenge gives all of its sets is one trial, also
   const Score s = score(sets);
   for (const Coverage& c : s.coverage) {
     INFO(c.of);
-    CHECK(c.varies == (c.of != "stiffness"));
+    CHECK(c.truth.has_value() == (c.of == "stiffness"));
   }
-  CHECK(page_text({sets, s, "", {{"sets", "cafe"}}}).find("few truths: as few trials") != std::string::npos);
+  const std::string text = page_text({sets, s, "", {{"sets", "cafe"}}});
+  CHECK(text.find("| stiffness, 0.02 in all |  | 2 of 2") != std::string::npos);  // each truth is a trial of its own
+  CHECK(text.find("| one truth: one trial |") != std::string::npos);
 }
 
 TEST_CASE("sets of two mills, engines and programs are counted apart") {

@@ -73,10 +73,10 @@ class Report(unittest.TestCase):
         (self.folder / "broken" / "diagnosis.json").write_text("{")
         self.assertIn("diagnosis.json: is damaged", self.refused("broken", "-o", "x.html"))
         (self.folder / "broken" / "diagnosis.json").unlink()
-        for name, change in (("diagnosis.json", "'strength'"), ("score.json", "'strength'"), ("validation.json", "at once")):
-            (self.folder / "broken" / name).write_text('{"schema_version": 1}')
+        for name, version, change in (("diagnosis.json", 2, "'strength'"), ("score.json", 3, "each engine"), ("validation.json", 2, "at once")):
+            (self.folder / "broken" / name).write_text('{"schema_version": %d}' % (version - 1))
             said = self.refused("broken", "-o", "x.html")
-            self.assertIn(name + ": is of another schema_version than 2", said)
+            self.assertIn(name + ": is of another schema_version than %d" % version, said)
             self.assertIn(change, said)
             (self.folder / "broken" / name).unlink()
         self.assertFalse((self.folder / "x.html").exists())

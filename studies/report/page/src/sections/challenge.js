@@ -66,12 +66,13 @@ export function challenge(section, key) {
   const { score } = section;
   const alarms = score.false_alarms ?? {};
   const todo = score.sets - score.diagnosed;
-  const coverage = [["strength", score.strength_coverage], ...Object.entries(score.parameter_coverage ?? {}).map(([name, count]) => [words(name), count])];
+  const covered = (row) => `${words(row.of)}${isNumber(row.truth) ? `, ${number(row.truth, 3)} in all` : ""}${row.engine ? `, played by ${row.engine}` : ""}`;
+  const coverage = (score.coverage ?? []).map((row) => [covered(row), row.inside]);
   return {
     kind: "Challenge", sentence: alarms.of > 0 ? `False alarms: ${share(alarms)}; with 95 % confidence the rate is below ${percent(alarms.high95)}.` : "No set with nothing hidden was diagnosed: false alarms are not known.",
     headline: [["False alarms", share(alarms), alarms.of > 0 ? `below ${percent(alarms.high95)} with 95 % confidence` : null], ["Best candidate is the truth", share(score.top_1), bounds(score.top_1)],
       ["Truth among those named", share(score.in_class), isNumber(score.mean_class_size) ? `${number(score.mean_class_size, 3)} named in the mean` : null],
-      ["Strength in its 90 % interval", share(score.strength_coverage), null], ["Sets", number(score.sets), `${number(score.diagnosed)} diagnosed${todo ? `, ${todo} to be diagnosed` : ""}${score.failed ? `, ${score.failed} failed` : ""}`]],
+      ["Sets", number(score.sets), `${number(score.diagnosed)} diagnosed${todo ? `, ${todo} to be diagnosed` : ""}${score.failed ? `, ${score.failed} failed` : ""}`]],
     blocks: [
       block(`${key}-counts`, "What was counted", countTable("Counts with 90 % intervals (Clopper & Pearson 1934)", COUNTS.filter(([name]) => score[name]).map(([name, text]) => [text, score[name]]))),
       power(score, key), strengths(score, key), confusion(score, key),
