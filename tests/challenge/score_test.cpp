@@ -318,8 +318,10 @@ TEST_CASE("sets of two mills, engines and programs are counted apart") {
   CHECK(text.find("|  | c3dc7bf |  |  |  |  | 1 of 1 | 0 of 1 |  |  |  |") != std::string::npos);  // λ 80, in a class of two
   CHECK(text.find("|  |  |  |  |  | 1 of 1 |  | 1 of 1 |  |  |  |") != std::string::npos);         // λ 20, named
   CHECK(text.find("|  |  |  | 0 of 1 | 0 of 1 |  |  | 0 of 2 | 0 of 1 | 1 of 1 | 1 of 2 |") != std::string::npos);
-  CHECK(text.find(fmt::format("| liggghts |  |  | 1 | 0.96 | {:.2g} | 0.70 | {:.2g} | 0.60 |  |", high_p({0.96}), high_p({0.7}))) !=
-        std::string::npos);
+  const auto told = [](double p) { return fmt::format("{:.2f} | {:.2g} | {:.2g}", p, low_p({p}), high_p({p})); };
+  CHECK(text.find(fmt::format("| liggghts |  |  | 1 | {} | {} | 0.60 |  |", told(0.96), told(0.7))) != std::string::npos);
+  CHECK(text.find("| liggghts |  | all of this engine | 1 of 1 |") != std::string::npos);
+  CHECK(text.find("| millscope |  | all of this engine | 0 of 1 |") != std::string::npos);
 }
 
 TEST_CASE("what a diagnosis says is right, right in part, or wrong") {
