@@ -160,7 +160,8 @@ void conceal(const diagnose::Question& q, const fs::path& sets, const host::Regi
   std::map<std::string, Practice> all = read_concealment(sets);
   Plan plan;
   for (const Marked& m : read_sets(sets)) {
-    if (m.found && m.found->failure.empty()) add_runs(q, m, how, all[m.answer.set], plan);
+    const bool asked = m.answer.kind != Kind::decoy;  // a decoy has nothing to conceal
+    if (asked && m.found && m.found->failure.empty()) add_runs(q, m, how, all[m.answer.set], plan);
   }
   const std::vector<campaign::Outcome> outcomes =
       plan.simulations.empty() ? std::vector<campaign::Outcome>() : campaign::run(plan.simulations, options.campaign);

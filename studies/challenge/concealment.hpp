@@ -21,8 +21,8 @@ struct ConcealOptions {
   campaign::Options campaign;
 };
 
-/// Three runs for every set with a diagnosis, by its opened answer, into SETS/concealment.json; what stands there is kept. Where the
-/// diagnosis does not tell a tuned base, or a run fails, NaN.
+/// Three runs for every set with a diagnosis that is no decoy, by its opened answer, into SETS/concealment.json; what stands there is kept.
+/// Where the diagnosis does not tell a tuned base, or a run fails, NaN.
 void conceal(const diagnose::Question& question, const std::filesystem::path& sets, const host::Registry& registry,
              const ConcealOptions& options);
 

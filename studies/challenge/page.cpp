@@ -43,7 +43,7 @@ void add_counts(const Score& s, std::string& out) {
   line("one effect: the truth is listed", s.in_class);
   line(fmt::format("one effect, faint (λ below {:g}): no physics is listed but the truth", kFaint).c_str(), s.faint_nothing_else);
   line("one effect: said to lie outside the library (wrong abstention)", s.abstained_on_effect);
-  line("two effects: both named, together", s.two_both);
+  line("two effects: both listed, as two at once", s.two_both);
   line("two effects: at least one listed", s.two_one);
   line("physics outside the list: said to lie outside (right abstention)", s.outside_abstained);
   line("physics outside the list: something of the list named (wrong)", s.outside_named);
@@ -211,7 +211,7 @@ void add_groups(const std::vector<ScoredGroup>& groups, std::string& out) {
       "Each group of sets for itself, in the order of their folders. *Listed*: one effect, alone or in a class of two, by [its "
       "λ](#power).\n\n"
       "| played by | diagnosed by commit | sets of | nothing hidden: physics listed | listed, λ below 10 | λ 10 … 30 | λ ≥ 30 "
-      "| one effect: `named`, and right | two: both named, together | outside: said so | decoy: right |\n"
+      "| one effect: `named`, and right | two: both listed together | outside: said so | decoy: right |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|\n";
   constexpr double kAny = std::numeric_limits<double>::infinity();
   for (const auto& [g, s] : groups) {
