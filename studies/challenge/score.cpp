@@ -41,7 +41,7 @@ bool names_all(const Marked& m) {
   return std::all_of(m.answer.effects.begin(), m.answer.effects.end(), [&](const auto& e) { return m.found->names(e.hypothesis); });
 }
 
-/// One effect: named alone, or in a class of two of which one is true; two effects: named together.
+/// One effect: named alone, or in a class of two of which one is true; two effects: listed together.
 bool is_right(const Marked& m) {
   const bool two = m.answer.kind == Kind::two;
   return names_all(m) && m.found->together == two && m.found->named.size() <= 2;

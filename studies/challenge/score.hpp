@@ -172,7 +172,7 @@ struct Score {
   double mean_class = std::numeric_limits<double>::quiet_NaN();  ///< of the sets with one effect that name something
   Count faint_nothing_else;                                      ///< faint (kFaint): no physics is named but the truth
   Count abstained_on_effect;                                     ///< outside_library, though the truth is in the list
-  Count two_both, two_class, two_one;                            ///< two effects: named together; both among those named; at least one
+  Count two_both, two_class, two_one;                            ///< two effects: listed together; both among those named; at least one
   Count outside_abstained, outside_named, outside_missed;
   Count decoys_named, decoys_outside;  ///< decoys in which physics is named, or said to lie outside: wrong
 

@@ -208,7 +208,7 @@ std::string misses_text(const Page& page) {
   if (std::none_of(page.sets.begin(), page.sets.end(), missed)) return out;
   out +=
       "## Misses\n\nAll sets whose diagnosis is not what is hidden: something missing where nothing is, one effect that is not listed "
-      "alone or in a class of two, two that are not named together, what lies outside not said to, a decoy taken for physics or said to "
+      "alone or in a class of two, two that are not listed together, what lies outside not said to, a decoy taken for physics or said to "
       "lie "
       "outside, and those that failed. The remarks are of whoever looked into them, after opening.\n\n"
       "| set | hidden | λ | diagnosis | remark |\n|---|---|---|---|---|\n";

@@ -7,7 +7,7 @@ import { lines } from "../plots/lines.js";
 const COUNTS = [["false_alarms", "nothing hidden: something is said to be missing (false alarm)"], ["false_names", "nothing hidden: a name is given"], ["false_physics", "nothing hidden: physics is named or listed"],
   ["named_alone", "one effect: named alone, and rightly"], ["top_1", "one effect: the best candidate is the truth"], ["in_class", "one effect: the truth is among those named"],
   ["in_class_of_two", "one effect: named, alone or in a class of two"], ["faint_nothing_else", "one effect, faint: no physics is named but the truth"], ["abstained_on_effect", "one effect: said to lie outside the library (wrong)"],
-  ["two_both", "two effects: both named, together"], ["two_both_in_class", "two effects: both among those named"], ["two_at_least_one", "two effects: at least one named"], ["outside_abstained", "physics outside the list: said to lie outside (right)"],
+  ["two_both", "two effects: both listed, as two at once"], ["two_both_in_class", "two effects: both among those named"], ["two_at_least_one", "two effects: at least one named"], ["outside_abstained", "physics outside the list: said to lie outside (right)"],
   ["outside_named", "physics outside the list: something of the list named (wrong)"], ["outside_missed", "physics outside the list: not noticed"],
   ["decoys_named", "decoy (another camera, or what is believed is wrong): physics is named (wrong)"], ["decoys_outside", "decoy: said to lie outside the library (wrong)"]];
 
