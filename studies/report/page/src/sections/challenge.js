@@ -5,11 +5,11 @@ import { intervals } from "../plots/intervals.js";
 import { lines } from "../plots/lines.js";
 
 const COUNTS = [["false_alarms", "nothing hidden: something is said to be missing (false alarm)"], ["false_names", "nothing hidden: a name is given"], ["false_physics", "nothing hidden: physics is named or listed"],
-  ["named_alone", "one effect: named alone, and rightly"], ["top_1", "one effect: the best candidate is the truth"], ["in_class", "one effect: the truth is among those named"],
-  ["in_class_of_two", "one effect: named, alone or in a class of two"], ["faint_nothing_else", "one effect, faint: no physics is named but the truth"], ["abstained_on_effect", "one effect: said to lie outside the library (wrong)"],
-  ["two_both", "two effects: both listed, as two at once"], ["two_both_in_class", "two effects: both among those named"], ["two_at_least_one", "two effects: at least one named"], ["outside_abstained", "physics outside the list: said to lie outside (right)"],
+  ["named_alone", "one effect: named alone, and rightly"], ["top_1", "one effect: the best candidate is the truth"], ["in_class", "one effect: the truth is listed"],
+  ["in_class_of_two", "one effect: listed, alone or in a class of two"], ["faint_nothing_else", "one effect, faint: no physics is listed but the truth"], ["abstained_on_effect", "one effect: said to lie outside the library (wrong)"],
+  ["two_both", "two effects: both listed, as two at once"], ["two_both_in_class", "two effects: both listed"], ["two_at_least_one", "two effects: at least one listed"], ["outside_abstained", "physics outside the list: said to lie outside (right)"],
   ["outside_named", "physics outside the list: something of the list named (wrong)"], ["outside_missed", "physics outside the list: not noticed"],
-  ["decoys_named", "decoy (another camera, or what is believed is wrong): physics is named (wrong)"], ["decoys_outside", "decoy: said to lie outside the library (wrong)"]];
+  ["decoys_named", "decoy (another camera, or what is believed is wrong): physics is listed (wrong)"], ["decoys_outside", "decoy: said to lie outside the library (wrong)"]];
 
 const share = (count) => (count?.of > 0 ? `${count.hits} of ${count.of}` : "none tried");
 const bounds = (count) => (count?.of > 0 ? `${number(100 * count.low95, 2)} … ${percent(count.high95, 2)}` : "–");
@@ -71,7 +71,7 @@ export function challenge(section, key) {
   return {
     kind: "Challenge", sentence: alarms.of > 0 ? `False alarms: ${share(alarms)}; with 95 % confidence the rate is below ${percent(alarms.high95)}.` : "No set with nothing hidden was diagnosed: false alarms are not known.",
     headline: [["False alarms", share(alarms), alarms.of > 0 ? `below ${percent(alarms.high95)} with 95 % confidence` : null], ["Best candidate is the truth", share(score.top_1), bounds(score.top_1)],
-      ["Truth among those named", share(score.in_class), isNumber(score.mean_class_size) ? `${number(score.mean_class_size, 3)} named in the mean` : null],
+      ["Truth listed", share(score.in_class), isNumber(score.mean_class_size) ? `${number(score.mean_class_size, 3)} listed in the mean` : null],
       ["Sets", number(score.sets), `${number(score.diagnosed)} diagnosed${todo ? `, ${todo} to be diagnosed` : ""}${score.failed ? `, ${score.failed} failed` : ""}`]],
     blocks: [
       block(`${key}-counts`, "What was counted", countTable("Counts with 90 % intervals (Clopper & Pearson 1934)", COUNTS.filter(([name]) => score[name]).map(([name, text]) => [text, score[name]]))),
