@@ -147,6 +147,15 @@ def main():
     parser.add_argument("--millscope", type=Path, default=ROOT / "build/release/bin/millscope")
     parser.add_argument("--work", type=Path, default=ROOT / "build/proof_concealed")
     options = parser.parse_args()
+    try:
+        draw(options)
+    except FileNotFoundError as missing:
+        sys.exit("proof_concealed: %s is missing; give a set below docs/proof whose answers are open, and a build by --millscope" % missing.filename)
+    except subprocess.CalledProcessError as failed:
+        sys.exit("proof_concealed: '%s' failed, see above" % " ".join(failed.cmd[:3]))
+
+
+def draw(options):
     one = Set(options.set)
     work = options.work / options.set.parent.name / options.set.name
     work.mkdir(parents=True, exist_ok=True)
