@@ -126,14 +126,17 @@ struct ScoredGroup {
   Score score;
 };
 
-/// By who played which mill and which program diagnosed it, and after these all of each engine; none where all is one.
+/// By who played which mill and which program diagnosed it, and after these all of an engine with several; none where all is one.
 std::vector<ScoredGroup> scored_groups(const Page& page) {
   std::vector<Group> groups = groups_of(page.sets);
   if (groups.size() < 2) return {};
-  std::map<std::string, std::vector<Marked>> engines;
-  for (const Marked& m : page.sets) engines[m.engine()].push_back(m);
-  if (engines.size() > 1) {
-    for (auto& [engine, sets] : engines) groups.push_back({engine, "", "all of this engine", std::move(sets)});
+  std::map<std::string, std::vector<Group>> engines;
+  for (const Group& g : groups) engines[g.engine].push_back(g);
+  for (const auto& [engine, own] : engines) {
+    if (engines.size() < 2 || own.size() < 2) continue;
+    Group all{engine, "", "all of this engine", {}};
+    for (const Group& g : own) all.sets.insert(all.sets.end(), g.sets.begin(), g.sets.end());
+    groups.push_back(std::move(all));
   }
   std::vector<ScoredGroup> out;
   for (Group& g : groups) {

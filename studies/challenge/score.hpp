@@ -132,7 +132,7 @@ struct PowerError {
 struct Estimated {
   std::string set, hypothesis;
   double truth = 0, estimate = 0;  ///< strengths
-  bool found = false;              ///< the hypothesis is among those named
+  bool found = false;              ///< the hypothesis is listed
   bool faint = false;              ///< λ at the hidden strength is below kFaint
 };
 
@@ -167,12 +167,12 @@ struct Score {
   std::vector<double> empty_p, empty_base_p;  ///< of the sets with nothing hidden: smallest_p, base_p
   Count named_alone;                          ///< one effect: the verdict is `named` and right
   Count best_right;                           ///< the best candidate is the truth
-  Count in_class;                             ///< the truth is among those named
+  Count in_class;                             ///< the truth is listed
   Count in_class_of_two;
   double mean_class = std::numeric_limits<double>::quiet_NaN();  ///< of the sets with one effect that name something
   Count faint_nothing_else;                                      ///< faint (kFaint): no physics is named but the truth
   Count abstained_on_effect;                                     ///< outside_library, though the truth is in the list
-  Count two_both, two_class, two_one;                            ///< two effects: listed together; both among those named; at least one
+  Count two_both, two_class, two_one;                            ///< two effects: listed together; both listed; at least one
   Count outside_abstained, outside_named, outside_missed;
   Count decoys_named, decoys_outside;  ///< decoys in which physics is named, or said to lie outside: wrong
 

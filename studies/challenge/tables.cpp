@@ -157,7 +157,7 @@ void coverage(const Score& s, std::string& out) {
       "for "
       "all rows together (Holm 1979).\n\n| of | played by | truth inside | p |\n|---|---|---|---|\n";
   for (const Coverage& c : s.coverage)
-    append(out, "| {} | {} | {} | {} |\n", c.truth ? fmt::format("{}, {:g} in all", c.of, *c.truth) : c.of, c.engine, count_text(c.inside),
+    append(out, "| {} | {} | {} | {} |\n", c.truth ? fmt::format("{}, truth {:g}", c.of, *c.truth) : c.of, c.engine, count_text(c.inside),
            c.truth ? "one truth: one trial" : fmt::format("{:.2g}", c.p));
   out +=
       "\nParameters: of the base where nothing is hidden, of the corrected model where its physics is the hidden one. A strength has an "

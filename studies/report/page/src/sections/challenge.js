@@ -4,7 +4,7 @@ import { isNumber, number, percent, words } from "../numbers.js";
 import { intervals } from "../plots/intervals.js";
 import { lines } from "../plots/lines.js";
 
-const COUNTS = [["false_alarms", "nothing hidden: something is said to be missing (false alarm)"], ["false_names", "nothing hidden: a name is given"], ["false_physics", "nothing hidden: physics is named or listed"],
+const COUNTS = [["false_alarms", "nothing hidden: something is said to be missing (false alarm)"], ["false_names", "nothing hidden: physics or a belief is listed"], ["false_physics", "nothing hidden: physics is named or listed"],
   ["named_alone", "one effect: named alone, and rightly"], ["top_1", "one effect: the best candidate is the truth"], ["in_class", "one effect: the truth is listed"],
   ["in_class_of_two", "one effect: listed, alone or in a class of two"], ["faint_nothing_else", "one effect, faint: no physics is listed but the truth"], ["abstained_on_effect", "one effect: said to lie outside the library (wrong)"],
   ["two_both", "two effects: both listed, as two at once"], ["two_both_in_class", "two effects: both listed"], ["two_at_least_one", "two effects: at least one listed"], ["outside_abstained", "physics outside the list: said to lie outside (right)"],
@@ -34,9 +34,9 @@ function power(score, key) {
   const bins = (score.power ?? []).filter((bin) => bin.named?.of > 0);
   if (bins.length === 0) return null;
   const rows = bins.map((bin) => (isNumber(bin.lambda_to) ? `λ ${number(bin.lambda_from)} to ${number(bin.lambda_to)}` : `λ above ${number(bin.lambda_from)}`));
-  return block(`${key}-power`, "Power", figure("How often a hidden effect is named, alone or in a class of two, against its size λ (square of what friction cannot imitate, in noise units).",
-    intervals(`${key}-power`, { label: rows.map((row, index) => `${row}: ${share(bins[index].named)}`).join(", "), rows, groups: [{ name: "named", values: bins.map((bin) => point(bin.named)) }].concat(ideal(bins)),
-      x: { name: "named", ...SHARE } })));
+  return block(`${key}-power`, "Power", figure("How often a hidden effect is listed, alone or in a class of two, against its size λ (square of what friction cannot imitate, in noise units).",
+    intervals(`${key}-power`, { label: rows.map((row, index) => `${row}: ${share(bins[index].named)}`).join(", "), rows, groups: [{ name: "listed", values: bins.map((bin) => point(bin.named)) }].concat(ideal(bins)),
+      x: { name: "listed", ...SHARE } })));
 }
 
 function strengths(score, key) {
@@ -45,10 +45,10 @@ function strengths(score, key) {
   const of = (named) => all.filter((one) => one.named === named).map((one) => [100 * one.truth, 100 * one.estimate]);
   const most = Math.max(100, ...all.map((one) => 100 * Math.max(one.truth, one.estimate)));
   const least = Math.min(0, ...all.map((one) => 100 * Math.min(one.truth, one.estimate)));
-  const series = [{ name: "named", dots: true, points: of(true) }, { name: "not named", dots: true, outline: true, points: of(false) },
+  const series = [{ name: "listed", dots: true, points: of(true) }, { name: "not listed", dots: true, outline: true, points: of(false) },
     { name: "hidden = estimated", points: [[least, least], [most, most]], dashed: true, colour: "#7f7f7f", width: 1.2 }].filter((one) => one.points.length);
   if (isNumber(slope) && isNumber(intercept)) series.push({ name: "least squares", points: [least, most].map((x) => [x, 100 * intercept + slope * x]), width: 1.4, colour: "#009e73" });
-  return block(`${key}-strengths`, "Strengths", figure("Hidden against estimated strength, 100 % the far end of the prior range, whether the effect was named or not.",
+  return block(`${key}-strengths`, "Strengths", figure("Hidden against estimated strength, 100 % the far end of the prior range, whether the effect was listed or not.",
     lines(`${key}-strengths`, { label: `${all.length} hidden strengths and their estimates`, series, hover: "item", x: { name: "hidden strength", unit: "%", min: Math.floor(least / 10) * 10, max: Math.ceil(most / 10) * 10 },
       y: { name: "estimated strength", unit: "%" }, height: 340 })),
   isNumber(slope) ? paragraph(`Least squares: estimate = ${number(100 * intercept, 3)} % + ${number(slope, 3)} × hidden${isNumber(clear.slope) ? `; without faint effects ${number(100 * clear.intercept, 3)} % + ${number(clear.slope, 3)} × hidden` : ""}.`) : null,
@@ -66,7 +66,7 @@ export function challenge(section, key) {
   const { score } = section;
   const alarms = score.false_alarms ?? {};
   const todo = score.sets - score.diagnosed;
-  const covered = (row) => `${words(row.of)}${isNumber(row.truth) ? `, ${number(row.truth, 3)} in all` : ""}${row.engine ? `, played by ${row.engine}` : ""}`;
+  const covered = (row) => `${words(row.of)}${isNumber(row.truth) ? `, truth ${number(row.truth, 3)}` : ""}${row.engine ? `, played by ${row.engine}` : ""}`;
   const coverage = (score.coverage ?? []).map((row) => [covered(row), row.inside]);
   return {
     kind: "Challenge", sentence: alarms.of > 0 ? `False alarms: ${share(alarms)}; with 95 % confidence the rate is below ${percent(alarms.high95)}.` : "No set with nothing hidden was diagnosed: false alarms are not known.",
