@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """One concealed set of the proof, at the speed that was held out: tools/proof_concealed.py docs/proof/BATCH/set_001 -o docs/proof_concealed.svg
 
-Simulates the truth of an opened set and the models of its diagnosis at that speed, records all of them with one camera, and holds each model
-against the recording of the truth (`millscope compare`). A disc is the mill's section. Each region has the colour of the difference in the beads'
-speed; those with a rim differ surely. Takes some minutes; what lies in the work folder is kept.
+Simulates the truth of an opened set again, and once each model of its diagnosis at that speed. One camera records all of them, and each model is
+held against the recording of the truth (`millscope compare`). A disc is the mill's section. Each region has the colour of the difference in the
+beads' speed; those with a rim differ surely. Power is that of the diagnosis. Takes some minutes; what lies in the work folder is kept for the same
+cases, camera and program.
 """
 
 import argparse
@@ -39,8 +40,14 @@ class Set:
         self.best = next(each for each in diagnosis["hypotheses"] if each["name"] == diagnosis["named"][0])
         self.models = {model["model"]: model for model in self.held["models"]}
         self.settings = self.answer["made"][self.held["condition"]]["settings"]
+        self.empty = {setting.split("=", 1)[0] for other in self.without_effect(folder.parent) for setting in other}
         times = dict(each.split("=", 1) for each in self.settings)  # of a key that is there twice the last counts
         self.seconds = float(times["time.end_s"]) - float(times["time.analyze_from_s"])
+
+    def without_effect(self, batch):
+        """Settings of the sets of its batch in which nothing is hidden, at its condition."""
+        answers = [json.loads(path.read_text()) for path in sorted((batch / "answers").glob("*.json"))]
+        return [each["made"][self.held["condition"]]["settings"] for each in answers if each["kind"] == "none"]
 
     def key_of(self, parameter):
         """The path in the case that a parameter of the study sets: the one that has the truth's value."""
@@ -50,32 +57,48 @@ class Set:
             sys.exit("proof_concealed: %d settings of the truth have the value of %s; give another set" % (len(keys), parameter))
         return keys.pop()
 
-    def of_effect(self, setting):
-        """Whether a setting of the truth belongs to its effect: its plugin, or its strength."""
-        strength = next(key for key, _ in (each.split("=", 1) for each in self.settings) if key.endswith("." + self.effect["parameter"]))
-        return setting.startswith(strength) or setting.startswith(strength.rpartition(".")[0] + ".kind=")
+    def effect_at(self, value):
+        """The settings that only its effect makes, those of its strength replaced."""
+        key_of, out, replaced = lambda setting: setting.split("=", 1)[0], [], 0
+        for setting in self.settings:
+            if key_of(setting) in self.empty:
+                continue
+            strength = key_of(setting).endswith("." + self.effect["parameter"])
+            replaced += strength
+            out.append("%s=%.4g" % (key_of(setting), value) if strength else setting)
+        if not replaced:
+            sys.exit("proof_concealed: no setting of the truth is the strength of %s; give another set" % self.effect["hypothesis"])
+        return out
 
     def settings_of(self, model):
-        """Settings of the truth, with what the model fitted in their place; its own numerics are those of the study."""
-        kept = ("time.", "mill.speed=", "output.")
-        out = [each for each in self.settings if each.startswith(kept) and not each.startswith("time.step_fraction=")]
+        """What the truth and the study have in common, what the model fitted, and the effect where it has one. Its numerics are the study's."""
+        common = ("time.end_s=", "time.analyze_from_s=", "mill.speed=", "output.")
+        out = [each for each in self.settings if each.startswith(common)]
         out += ["%s=%.4g" % (self.key_of(name), value) for name, value in self.models[model]["parameters"].items() if name in self.answer["theta"]]
         if model == "corrected":
-            strength = self.best["parameters"][self.effect["parameter"]]["value"]
-            out += [re.sub("=.*", "=%.4g" % strength, each) if each.split("=")[0].endswith("." + self.effect["parameter"]) else each for each in self.settings if self.of_effect(each)]
+            out += self.effect_at(self.best["parameters"][self.effect["parameter"]]["value"])
         return out + ["output.tracks={beads: 150, every_s: 0.0005}", "seed=1"]
 
 
+def base_case(batch):
+    """That of the study of the batch's challenge."""
+    said = lambda file, key: file.parent / re.search(r"^%s: *(\S+)" % key, file.read_text(), re.M).group(1)
+    return said(said(ROOT / "configs/proof" / (re.sub(r"_\d+$", "", batch) + ".yaml"), "study"), "base")
+
+
 def recorded(work, name, settings, options):
-    """The analysis of what the camera sees of a case."""
-    analysis = work / name / "analysis"
-    if (analysis / "results.json").exists():
+    """The analysis of what the camera sees of a case; kept for the same words."""
+    words = [str(options.case), "--force", "--quiet", *(word for each in settings for word in ("--set", each))]
+    analysis, made_by = work / name / "analysis", work / name / "made_by.json"
+    asked = json.dumps([words, str(options.camera), str(options.millscope)], indent=1)
+    if made_by.exists() and made_by.read_text() == asked:
         return analysis
     run = lambda *words: subprocess.run([str(options.millscope), *map(str, words)], check=True, stdout=subprocess.DEVNULL)
     print("%s …" % name, flush=True)
-    run("run", options.case, "-o", work / name / "run", "--force", "--quiet", *(word for each in settings for word in ("--set", each)))
+    run("run", *words, "-o", work / name / "run")
     run("pept", "synthesize", work / name / "run", "-o", work / name / "bead.a", "--camera", options.camera, "--force")
     run("analyze", work / name / "bead.yaml", "-o", analysis, "--force", "--quiet", "--no-pictures")
+    made_by.write_text(asked)
     return analysis
 
 
@@ -142,7 +165,6 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("set", type=Path, help="an opened set below docs/proof")
     parser.add_argument("-o", "--output", type=Path, required=True, help="the SVG file")
-    parser.add_argument("--case", type=Path, default=ROOT / "configs/proof/story.yaml", help="base case of its study (default: the story's mill)")
     parser.add_argument("--camera", type=Path, default=ROOT / "configs/cameras/study.yaml")
     parser.add_argument("--millscope", type=Path, default=ROOT / "build/release/bin/millscope")
     parser.add_argument("--work", type=Path, default=ROOT / "build/proof_concealed")
@@ -157,6 +179,7 @@ def main():
 
 def draw(options):
     one = Set(options.set)
+    options.case = base_case(options.set.parent.name)
     work = options.work / options.set.parent.name / options.set.name
     work.mkdir(parents=True, exist_ok=True)
     truth = recorded(work, "truth", one.settings, options)

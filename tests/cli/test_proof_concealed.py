@@ -3,6 +3,7 @@
 import contextlib
 import importlib.util
 import io
+import json
 import os
 import sys
 import unittest
@@ -16,6 +17,14 @@ tool = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(tool)
 
 NAMED = SOURCE / "docs/proof/a_long_2/set_016"  # a pool of 666.8 kg/m3; 576.3 were found
+
+
+def named(folder):
+    """The one effect of an opened set that is named; else None."""
+    answer = json.loads((folder.parent / "answers" / (folder.name + ".json")).read_text())
+    diagnosis = json.loads((folder / "diagnosis" / "diagnosis.json").read_text())
+    effects = [effect["hypothesis"] for effect in answer["effects"]]
+    return effects[0] if diagnosis["verdict"] == "named" and diagnosis["named"] == effects else None
 
 
 class Cases(unittest.TestCase):
@@ -35,6 +44,20 @@ class Cases(unittest.TestCase):
         self.assertIn("body_forces.fluid_pool.kind=fluid_pool", settings)
         self.assertIn("body_forces.fluid_pool.fluid_density=576.3", settings)
         self.assertEqual(1, sum("fluid_density" in each for each in settings))
+
+    def test_every_setting_of_an_effect_is_kept(self):
+        rolling = tool.Set(next(folder for folder in sorted((SOURCE / "docs/proof/b_fresh_1").glob("set_*")) if named(folder) == "rolling_resistance"))
+        settings = rolling.settings_of("corrected")
+        self.assertTrue([each for each in settings if each.startswith("contact.interactions.") and ".kind=" in each])
+        strengths = {each.split("=")[1] for each in settings if each.split("=")[0].endswith(".rolling_friction")}
+        self.assertEqual(1, len(strengths))
+        self.assertNotIn("%.4g" % rolling.effect["value"], strengths)
+        for part in ("run.engine", "facet", "step_fraction"):  # numerics of the truth
+            self.assertFalse([each for each in settings if part in each], part)
+
+    def test_the_base_case_is_that_of_the_batch(self):
+        self.assertEqual("light.yaml", tool.base_case("a_light_1").name)
+        self.assertEqual("story.yaml", tool.base_case("b_fresh_5").name)
 
     def test_the_recording_is_as_long_as_it_was(self):
         self.assertEqual(20, self.one.seconds)
