@@ -17,11 +17,14 @@ import sys
 from html import escape
 from pathlib import Path
 
+from proof_picture import FAINT, INK, text
+
 ROOT = Path(__file__).resolve().parent.parent
 BASES = {"retuned to power": "friction retuned to its power", "retuned to all observables": "refitted to everything"}
-INK, FAINT, SLOWER, FASTER = "#1b2733", "#8a97a3", (0, 114, 178), (213, 94, 0)
+SLOWER, FASTER = (0, 114, 178), (213, 94, 0)
 WIDTH, RADIUS, TOP = 330, 130, 128  # of a panel and its disc; pixels
 FULL = 10.0  # standard errors that have the full colour
+SURE = 0.05  # for all regions together
 REGION = re.compile(r"([\d.]+)–([\d.]+) R, ([\d.]+)–([\d.]+)° (before|past) 6 o'clock")
 SPEED = "pept_grid.speed by region"
 
@@ -41,8 +44,9 @@ class Set:
         self.models = {model["model"]: model for model in self.held["models"]}
         self.settings = self.answer["made"][self.held["condition"]]["settings"]
         self.empty = {setting.split("=", 1)[0] for other in self.without_effect(folder.parent) for setting in other}
-        times = dict(each.split("=", 1) for each in self.settings)  # of a key that is there twice the last counts
-        self.seconds = float(times["time.end_s"]) - float(times["time.analyze_from_s"])
+        last = dict(each.split("=", 1) for each in self.settings)  # of a key that is there twice the last counts
+        self.seconds = float(last["time.end_s"]) - float(last["time.analyze_from_s"])
+        self.beads = int(re.search(r"beads: (\d+)", last["output.tracks"]).group(1))
 
     def without_effect(self, batch):
         """Settings of the sets of its batch in which nothing is hidden, at its condition."""
@@ -59,16 +63,11 @@ class Set:
 
     def effect_at(self, value):
         """The settings that only its effect makes, those of its strength replaced."""
-        key_of, out, replaced = lambda setting: setting.split("=", 1)[0], [], 0
-        for setting in self.settings:
-            if key_of(setting) in self.empty:
-                continue
-            strength = key_of(setting).endswith("." + self.effect["parameter"])
-            replaced += strength
-            out.append("%s=%.4g" % (key_of(setting), value) if strength else setting)
-        if not replaced:
+        own = [(key, old) for key, old in (setting.split("=", 1) for setting in self.settings) if key not in self.empty]
+        strengths = {key for key, _ in own if key.endswith("." + self.effect["parameter"])}
+        if not strengths:
             sys.exit("proof_concealed: no setting of the truth is the strength of %s; give another set" % self.effect["hypothesis"])
-        return out
+        return ["%s=%s" % (key, "%.4g" % value if key in strengths else old) for key, old in own]
 
     def settings_of(self, model):
         """What the truth and the study have in common, what the model fitted, and the effect where it has one. Its numerics are the study's."""
@@ -90,7 +89,7 @@ def recorded(work, name, settings, options):
     """The analysis of what the camera sees of a case; kept for the same words."""
     words = [str(options.case), "--force", "--quiet", *(word for each in settings for word in ("--set", each))]
     analysis, made_by = work / name / "analysis", work / name / "made_by.json"
-    asked = json.dumps([words, str(options.camera), str(options.millscope)], indent=1)
+    asked = json.dumps([words, str(options.camera), options.program], indent=1)
     if made_by.exists() and made_by.read_text() == asked:
         return analysis
     run = lambda *words: subprocess.run([str(options.millscope), *map(str, words)], check=True, stdout=subprocess.DEVNULL)
@@ -110,11 +109,6 @@ def compared(truth, model, options):
     observables = rows("observables.csv")
     regions = [row for row in rows("elements.csv") if row["observable"] == SPEED]
     return {"observables": len(observables), "differ": sum(row["differs"] == "1" for row in observables), "regions": regions}
-
-
-def text(x, y, words, **attributes):
-    more = "".join(' %s="%s"' % (name.replace("_", "-"), value) for name, value in attributes.items())
-    return '<text x="%.1f" y="%.1f"%s>%s</text>' % (x, y, more, escape(words))
 
 
 def colour(errors):
@@ -137,10 +131,11 @@ def panel(x, title, model, found):
     parts = [text(middle, TOP - 34, title, text_anchor="middle", font_weight="bold"),
              text(middle, TOP - 14, "power %+.1f %%" % model["power_percent"], text_anchor="middle", fill=FAINT),
              '<circle cx="%.1f" cy="%.1f" r="%d" fill="#f4f6f8" stroke="%s"/>' % (middle, y, RADIUS, INK)]
-    for row in sorted(found["regions"], key=lambda row: float(row["adjusted_p"]) < 0.05):  # rims last, so that none is covered
+    sure = lambda row: float(row["adjusted_p"]) < SURE
+    for row in sorted(found["regions"], key=sure):  # rims last, so that none is covered
         where = REGION.fullmatch(row["where"])
         errors = float(row["difference"]) / float(row["error"])
-        rim = 'stroke="%s" stroke-width="2.5"' % INK if float(row["adjusted_p"]) < 0.05 else 'stroke="#d5dbe1"'
+        rim = 'stroke="%s" stroke-width="2.5"' % INK if sure(row) else 'stroke="#d5dbe1"'
         parts.append('<polygon points="%s" fill="%s" %s><title>%s: %+.1f %%, %+.1f errors</title></polygon>'
                      % (sector(middle, y, where), colour(errors), rim, escape(row["where"]), 100 * float(row["difference"]) / float(row["a"]), errors))
     parts.append(text(middle, y + RADIUS + 34, "%d of %d quantities differ" % (found["differ"], found["observables"]), text_anchor="middle", font_size=18))
@@ -151,12 +146,12 @@ def picture(one, panels):
     width, height = WIDTH * len(panels) + 40, TOP + 2 * RADIUS + 118
     title = "%s: what each model says of the speed that nobody fitted" % one.name
     parts = [text(20, 36, title, font_weight="bold", font_size=19),
-             text(20, 62, "Hidden: %s. Recording: 60 beads for %g s." % (one.effect["hypothesis"].replace("_", " "), one.seconds), fill=FAINT)]
+             text(20, 62, "Hidden: %s. Recording: %d beads for %g s." % (one.effect["hypothesis"].replace("_", " "), one.beads, one.seconds), fill=FAINT)]
     for k, each in enumerate(panels):
         parts += panel(20 + WIDTH * k, *each)
     left = width / 2 - 160
     parts += ['<rect x="%.1f" y="%d" width="16" height="16" fill="%s" stroke="#d5dbe1"/>' % (left + 32 * k, height - 40, colour(errors)) for k, errors in enumerate((-10, -5, -2, 0, 2, 5, 10))]
-    parts += [text(left - 10, height - 27, "beads slower, −%g errors" % FULL, text_anchor="end", fill=FAINT), text(left + 220, height - 27, "faster, +%g errors; rim: sure at 5 % % for all regions" .replace("% %", "%%") % FULL, fill=FAINT)]
+    parts += [text(left - 10, height - 27, "beads slower, −%g errors" % FULL, text_anchor="end", fill=FAINT), text(left + 220, height - 27, "faster, +%g errors; rim: sure at %g %% for all regions" % (FULL, 100 * SURE), fill=FAINT)]
     return ('<svg xmlns="http://www.w3.org/2000/svg" width="%d" height="%d" viewBox="0 0 %d %d" role="img" aria-label="%s" font-family="system-ui, Helvetica, Arial, sans-serif" '
             'font-size="15" fill="%s">\n<rect width="%d" height="%d" rx="12" fill="#fff"/>\n%s\n</svg>\n' % (width, height, width, height, escape(title), INK, width, height, "\n".join(parts)))
 
@@ -180,6 +175,7 @@ def main():
 def draw(options):
     one = Set(options.set)
     options.case = base_case(options.set.parent.name)
+    options.program = subprocess.run([str(options.millscope), "--version"], check=True, capture_output=True, text=True).stdout
     work = options.work / options.set.parent.name / options.set.name
     work.mkdir(parents=True, exist_ok=True)
     truth = recorded(work, "truth", one.settings, options)

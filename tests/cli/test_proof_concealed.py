@@ -1,7 +1,6 @@
 """tools/proof_concealed.py: which cases it simulates for a set of the proof, and what it draws."""
 
 import contextlib
-import importlib.util
 import io
 import json
 import os
@@ -12,9 +11,8 @@ from xml.etree import ElementTree
 
 SOURCE = Path(os.environ.get("MILLSCOPE_SOURCE_DIR", Path(__file__).resolve().parents[2]))
 sys.dont_write_bytecode = True
-spec = importlib.util.spec_from_file_location("proof_concealed", SOURCE / "tools/proof_concealed.py")
-tool = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(tool)
+sys.path.insert(0, str(SOURCE / "tools"))
+import proof_concealed as tool  # noqa: E402
 
 NAMED = SOURCE / "docs/proof/a_long_2/set_016"  # a pool of 666.8 kg/m3; 576.3 were found
 
@@ -61,6 +59,10 @@ class Cases(unittest.TestCase):
 
     def test_the_recording_is_as_long_as_it_was(self):
         self.assertEqual(20, self.one.seconds)
+
+    def test_the_recording_has_as_many_beads_as_it_had(self):
+        few = next(folder for folder in sorted((SOURCE / "docs/proof").glob("a_few_*/set_*")) if named(folder))
+        self.assertEqual((60, 12), (self.one.beads, tool.Set(few).beads))
 
     def test_a_set_without_a_name_is_refused(self):
         with contextlib.redirect_stderr(io.StringIO()), self.assertRaisesRegex(SystemExit, "give a set that has"):
