@@ -109,29 +109,33 @@ void CandidateFinder::prepare(double reach) {
   distance_ = distance;
 }
 
-/// The beads that are not surely far. False: a cell is not known yet.
-bool CandidateFinder::look_up(const GeometryBeads& beads, std::vector<NearBead>& near) const {
+/// The beads that are not surely far; the cells that are not known yet.
+void CandidateFinder::look_up(const GeometryBeads& beads, std::vector<NearBead>& near, std::vector<std::uint64_t>& unknown) const {
   near.clear();
-  for (std::int64_t i = 0; i < beads.count; ++i) {
-    const std::uint64_t cell = grid_.cell_of({beads.position[0][i], beads.position[1][i], beads.position[2][i]});
-    if (cell == CellGrid::kOutside) continue;
-    const std::uint32_t entry = grid_.entry(cell);
-    if (entry == kFar) continue;
-    if (entry == kUnknown) return false;
-    near.push_back({i, entry});
+  unknown.clear();
+  constexpr std::int64_t kAtOnce = 64;  // beads whose entries come from memory side by side
+  std::uint64_t cells[kAtOnce];
+  for (std::int64_t first = 0; first < beads.count; first += kAtOnce) {
+    const std::int64_t last = std::min(beads.count, first + kAtOnce);
+    for (std::int64_t i = first; i < last; ++i) {
+      cells[i - first] = grid_.cell_of({beads.position[0][i], beads.position[1][i], beads.position[2][i]});
+      grid_.fetch(cells[i - first]);
+    }
+    for (std::int64_t i = first; i < last; ++i) {
+      const std::uint64_t cell = cells[i - first];
+      const std::uint32_t entry = cell == CellGrid::kOutside ? kFar : grid_.entry(cell);
+      if (entry == kFar) continue;
+      if (entry == kUnknown) unknown.push_back(cell);
+      near.push_back({i, entry});
+    }
   }
-  return true;
 }
 
-/// The cells of these beads.
-void CandidateFinder::learn(const GeometryBeads& beads) {
-  std::vector<std::uint64_t> unknown;
-  for (std::int64_t i = 0; i < beads.count; ++i) {
-    const std::uint64_t cell = grid_.cell_of({beads.position[0][i], beads.position[1][i], beads.position[2][i]});
-    if (cell != CellGrid::kOutside && grid_.entry(cell) == kUnknown) unknown.push_back(cell);
-  }
+/// Cells that were unknown; another thread may have learnt some of them since.
+void CandidateFinder::learn(std::vector<std::uint64_t>& unknown) {
   std::sort(unknown.begin(), unknown.end());
   unknown.erase(std::unique(unknown.begin(), unknown.end()), unknown.end());
+  std::erase_if(unknown, [&](std::uint64_t cell) { return grid_.entry(cell) != kUnknown; });
   for (std::size_t begin = 0; begin < unknown.size(); begin += kCellsAtOnce) {
     resolve({unknown.data() + begin, std::min(kCellsAtOnce, unknown.size() - begin)});
   }
@@ -170,13 +174,19 @@ void CandidateFinder::find(const GeometryBeads& beads, double margin, const Cand
   const double reach = largest + margin;
   if (!std::isfinite(reach)) throw Refusal("mesh: a bead's radius or the list margin is not finite");
   std::vector<NearBead> near;
+  near.reserve(beads.count);
+  std::vector<std::uint64_t> unknown;
   std::shared_lock reading(known_);
-  while (reach > distance_ || !look_up(beads, near)) {
+  for (;;) {
+    const double distance = distance_;
+    const bool ready = reach <= distance;
+    if (ready) look_up(beads, near, unknown);
+    if (ready && unknown.empty()) break;
     reading.unlock();
     {
       const std::unique_lock learning(known_);
       prepare(reach);
-      learn(beads);
+      if (ready && distance == distance_) learn(unknown);  // else another thread has made other cells
     }
     reading.lock();
   }

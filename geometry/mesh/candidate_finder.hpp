@@ -32,8 +32,8 @@ class CandidateFinder {
     std::uint32_t entry;  // of the grid
   };
   void prepare(double reach);
-  bool look_up(const GeometryBeads& beads, std::vector<NearBead>& near) const;
-  void learn(const GeometryBeads& beads);
+  void look_up(const GeometryBeads& beads, std::vector<NearBead>& near, std::vector<std::uint64_t>& unknown) const;
+  void learn(std::vector<std::uint64_t>& unknown);
   void resolve(std::span<const std::uint64_t> cells);
   void send(const NearBead& near, const GeometryBeads& beads, double margin, const CandidateSink& sink) const;
 

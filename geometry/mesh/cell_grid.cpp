@@ -24,11 +24,18 @@ void CellGrid::prepare(const Bounds& box, double distance) {
     cells_[k] = static_cast<std::uint64_t>(x[k] * inverse_) + 1;
     size_[k] = static_cast<double>(cells_[k]);
   }
-  entries_.assign(cells_[0] * cells_[1] * cells_[2], 0);
+  std::size_t shorter_first[3] = {0, 1, 2};
+  std::stable_sort(shorter_first, shorter_first + 3, [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
+  std::uint64_t entries = 1;
+  for (const std::size_t k : shorter_first) {
+    stride_[k] = entries;
+    entries *= cells_[k];
+  }
+  entries_.assign(entries, 0);
 }
 
 Point CellGrid::middle_of(std::uint64_t cell) const {
-  const std::uint64_t i = cell % cells_[0], j = cell / cells_[0] % cells_[1], k = cell / cells_[0] / cells_[1];
+  const std::uint64_t i = cell / stride_[0] % cells_[0], j = cell / stride_[1] % cells_[1], k = cell / stride_[2] % cells_[2];
   return low_ + cell_ * Point{static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5, static_cast<double>(k) + 0.5};
 }
 
