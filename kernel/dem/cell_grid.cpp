@@ -39,6 +39,7 @@ void CellGrid::fit(const Settings& settings, const Extent& extent, std::int64_t 
       low_[a] = periodic_[a] ? settings.periodic_low[a] : extent.low[a];
       const double length = periodic_[a] ? period : extent.high[a] - extent.low[a];
       cells_[a] = std::max(1, static_cast<int>(std::floor(length / edge)) + (periodic_[a] ? 0 : 1));
+      if (cells_[a] <= 3) cells_[a] = 1;  // (nearly) all would be neighbours, in more pieces
       inverse_edge_[a] = periodic_[a] ? cells_[a] / length : 1.0 / edge;
       total *= cells_[a];
     }
@@ -83,9 +84,9 @@ std::int64_t CellGrid::cell_at(std::int64_t bead) const {
 
 Neighbourhood CellGrid::round(std::int64_t cell) const {
   const int n[3] = {cells_[axis_[0]], cells_[axis_[1]], cells_[axis_[2]]};
-  const std::int64_t own[3] = {cell / (n[1] * n[2]), cell / n[2] % n[1], cell % n[2]};
+  const int number = static_cast<int>(cell), own[3] = {number / (n[1] * n[2]), number / n[2] % n[1], number % n[2]};
   int near[3][3], m[3];
-  for (int k = 0; k < 3; ++k) m[k] = around(static_cast<int>(own[k]), n[k], periodic_[axis_[k]], near[k]);
+  for (int k = 0; k < 3; ++k) m[k] = around(own[k], n[k], periodic_[axis_[k]], near[k]);
   Neighbourhood found;
   for (int a = 0; a < m[0]; ++a) {
     for (int b = 0; b < m[1]; ++b) {

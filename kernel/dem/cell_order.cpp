@@ -19,6 +19,9 @@ ReferenceLine reference_of(const PositionLine& x, double skin) {
   return {{static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2])}, static_cast<float>(allowed * allowed)};
 }
 
+/// A single that is no less.
+float rounded_up(double a) { return static_cast<float>(a * (1 + 2e-7)); }
+
 /// Of one slab.
 struct Measured {
   Extent extent;
@@ -33,7 +36,7 @@ Extent CellOrder::measure(Particles& p, double time) {
   double largest_radius = 0;
   for (const PositionLine& x : p.position) largest_radius = std::max(largest_radius, x.radius);
   const double law_reach = common_.physics.reach();
-  reaches_.resize(p.position.size());
+  reach_.resize(p.position.size());
   std::vector<Measured> measured(common_.slabs.count);
   common_.each_slab([&](int slab, int) {
     Measured& m = measured[slab];
@@ -48,10 +51,9 @@ Extent CellOrder::measure(Particles& p, double time) {
       }
       const double skin = std::min(settings.skin_cap * largest_radius,
                                    settings.skin_base * x.radius + settings.skin_steps * settings.time_step * speed(p.motion[i]));
-      reaches_[i] = x;
-      reaches_[i].radius = x.radius + skin + 0.5 * law_reach;
+      reach_[i] = rounded_up(x.radius + skin + 0.5 * law_reach);
       p.reference[i] = reference_of(x, skin);
-      m.extent.reach = std::max(m.extent.reach, reaches_[i].radius);
+      m.extent.reach = std::max(m.extent.reach, static_cast<double>(reach_[i]));
     }
   });
   Extent all;
@@ -89,7 +91,7 @@ void CellOrder::renew(Particles& p, double time) {
   grid_.fit(common_.settings, extent, p.count());
   new_index_.resize(p.position.size());
   common_.each_slab([&](int slab, int) {
-    for (std::int64_t i = common_.slabs.begin(slab); i < common_.slabs.end(slab); ++i) new_index_[i] = grid_.cell_of(reaches_[i]);
+    for (std::int64_t i = common_.slabs.begin(slab); i < common_.slabs.end(slab); ++i) new_index_[i] = grid_.cell_of(p.position[i]);
   });
   grid_.number(new_index_);
   // Between steps the forces are zero and their lines are free: the largest of all serve as the other half.
@@ -98,18 +100,34 @@ void CellOrder::renew(Particles& p, double time) {
   permute(p.half, p.force);
   permute(p.position, p.force);
   permute(p.reference, p.force);
-  permute(reaches_, p.force);
+  permute(reach_, p.force);
   permute(p.id, p.force);
   permute(p.material, p.force);
+  place(p, extent);
 }
 
-std::int64_t CellOrder::near(std::int64_t i, const Neighbourhood& round, std::uint32_t* found) const {
-  std::int64_t count = 0;
-  for (const BeadRange& range : round) {
-    const std::int64_t end = std::min(range.end, i);
-    if (range.begin < end) count += common_.wide.near(reaches_.data(), common_.settings.periodic, i, range.begin, end, found + count);
+/// Singles for `near`. With u = 2⁻²⁴ and the largest length L, rounding takes up to u L from a coordinate, up to 6 u L from a difference
+/// between two images, and so up to 11 u L and 3 u of itself from a distance: each of the two beads bears half of more than that.
+void CellOrder::place(const Particles& p, const Extent& extent) {
+  constexpr double kHidden = 5e-7;
+  double largest = extent.reach;
+  for (int a = 0; a < 3; ++a) {
+    largest = std::max({largest, extent.high[a] - extent.low[a], common_.settings.periodic.length[a]});
+    centre_[a].resize(p.position.size() + kNearLanes);
   }
-  return count;
+  near_reach_.resize(p.position.size() + kNearLanes);
+  const float hidden = rounded_up(kHidden * (largest + extent.reach));
+  common_.each_slab([&](int slab, int) {
+    for (std::int64_t i = common_.slabs.begin(slab); i < common_.slabs.end(slab); ++i) {
+      for (int a = 0; a < 3; ++a) centre_[a][i] = static_cast<float>(p.position[i].centre[a] - extent.low[a]);
+      near_reach_[i] = reach_[i] + hidden;
+    }
+  });
+}
+
+std::int64_t CellOrder::near(BeadRange owners, const Neighbourhood& round, const NearSlots& found) const {
+  const NearPlaces places{{centre_[0].data(), centre_[1].data(), centre_[2].data()}, near_reach_.data()};
+  return common_.wide.near(places, common_.settings.periodic, owners, round.ranges.data(), round.count, found);
 }
 
 }  // namespace millscope::dem

@@ -16,16 +16,19 @@ class CellOrder {
 
   /// New numbers of the beads by their old ones.
   const std::vector<std::uint32_t>& new_index() const { return new_index_; }
-  /// In the new order. Centre; `radius`: radius + skin + half the largest reach of a law.
-  const AlignedVector<PositionLine>& reaches() const { return reaches_; }
+  /// Of a bead by its new number: radius + skin + half the largest reach of a law, m; rounded up.
+  double reach(std::int64_t bead) const { return reach_[bead]; }
   const CellGrid& grid() const { return grid_; }
-  /// The beads j < i of a neighbourhood whose reach overlaps that of bead i go to `found`, which has `room` for them. Returns their number.
-  std::int64_t near(std::int64_t i, const Neighbourhood& round, std::uint32_t* found) const;
-  static std::int64_t room(const Neighbourhood& round) { return round.beads + 1; }  // one is written behind the last
+  /// Lists the pairs of some beads i of a cell with the beads j < i of its neighbourhood whose reach overlaps their own. There is `room`
+  /// for them. Returns their number.
+  std::int64_t near(BeadRange owners, const Neighbourhood& round, const NearSlots& found) const;
+  static std::int64_t room(BeadRange owners, const Neighbourhood& round) { return (owners.end - owners.begin) * round.beads + kNearLanes; }
 
   template <class Visit>
   void each_idle(Visit& visit) const {
-    visit.idle(reaches_);
+    for (const AlignedVector<float>& c : centre_) visit.idle(c);
+    visit.idle(reach_);
+    visit.idle(near_reach_);
     visit.idle(new_index_);
   }
 
@@ -33,10 +36,12 @@ class CellOrder {
   Extent measure(Particles& particles, double time);
   template <class Values>
   void permute(Values& values, AlignedVector<ForceLine>& other_half);
+  void place(const Particles& particles, const Extent& extent);
 
   Common& common_;
   CellGrid grid_;
-  AlignedVector<PositionLine> reaches_;
+  AlignedVector<float> reach_;
+  AlignedVector<float> centre_[3], near_reach_;  ///< as NearPlaces
   std::vector<std::uint32_t> new_index_;
 };
 

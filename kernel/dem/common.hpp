@@ -13,11 +13,6 @@
 
 namespace millscope::dem {
 
-/// Beads one after the other, in the order of cells.
-struct BeadRange {
-  std::int64_t begin, end;
-};
-
 /// The cut of the beads into K slabs: the same for any number of threads.
 struct Slabs {
   int count;

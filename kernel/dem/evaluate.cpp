@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <type_traits>
 
 #include "millscope/pack.hpp"
@@ -101,16 +102,25 @@ void run_pair_parameters(const BatchRun& run, std::int64_t padded, ContactArrays
   }
 }
 
+void count_collision(std::int64_t k, const ContactArrays& b, PairLedger& ledger) {
+  const double closing = -(b.velocity[0][k] * b.normal[0][k] + b.velocity[1][k] * b.normal[1][k] + b.velocity[2][k] * b.normal[2][k]);
+  if (closing <= 0) return;
+  const double energy = 0.5 * b.mass[k] * closing * closing;
+  ++ledger.collisions;
+  ledger.impact_energy += energy;
+  ledger.largest_closing_speed = std::max(ledger.largest_closing_speed, closing);
+  ++ledger.spectrum[ImpactBins::bin(energy)];
+}
+
+/// Few contacts are fresh: eight flags are looked at together.
 void count_collisions(std::int64_t count, const ContactArrays& b, PairLedger& ledger) {
-  for (std::int64_t k = 0; k < count; ++k) {
-    if (!b.fresh[k]) continue;
-    const double closing = -(b.velocity[0][k] * b.normal[0][k] + b.velocity[1][k] * b.normal[1][k] + b.velocity[2][k] * b.normal[2][k]);
-    if (closing <= 0) continue;
-    const double energy = 0.5 * b.mass[k] * closing * closing;
-    ++ledger.collisions;
-    ledger.impact_energy += energy;
-    ledger.largest_closing_speed = std::max(ledger.largest_closing_speed, closing);
-    ++ledger.spectrum[ImpactBins::bin(energy)];
+  for (std::int64_t first = 0; first < count; first += 8) {
+    std::uint64_t flags;
+    std::memcpy(&flags, b.fresh + first, sizeof flags);  // the arrays are longer than what is in use
+    if (flags == 0) continue;
+    for (std::int64_t k = first, last = std::min(count, first + 8); k < last; ++k) {
+      if (b.fresh[k]) count_collision(k, b, ledger);
+    }
   }
 }
 

@@ -19,6 +19,21 @@ typedef std::uint32_t FourIndices __attribute__((vector_size(16)));
 inline FourIndices indices(std::uint32_t a) { return FourIndices{a, a, a, a}; }
 inline void store_indices(std::uint32_t* p, FourIndices v) { __builtin_memcpy(p, &v, sizeof v); }
 
+#if defined(__AVX512VL__)
+typedef std::uint32_t EightIndices __attribute__((vector_size(32)));
+typedef int EightInts __attribute__((vector_size(32)));
+
+inline void store_indices(std::uint32_t* p, EightIndices v) { __builtin_memcpy(p, &v, sizeof v); }
+/// Those whose bit is set, first.
+inline EightIndices compressed(EightIndices v, unsigned bits) {
+  return (EightIndices)__builtin_ia32_compresssi256_mask((EightInts)v, EightInts{}, static_cast<unsigned char>(bits));
+}
+/// The first of v where a bit is set, in order; `others` where it is not.
+inline EightIndices expanded(EightIndices v, EightIndices others, unsigned bits) {
+  return (EightIndices)__builtin_ia32_expandsi256_mask((EightInts)v, (EightInts)others, static_cast<unsigned char>(bits));
+}
+#endif
+
 /// Truth values as the bits of a number.
 inline int bits_of(FourBits truth) {
 #if defined(__AVX__)
@@ -47,7 +62,13 @@ inline void store4(void* p, Four v) { *static_cast<FourAlias*>(p) = v; }
 inline void store4_unaligned(double* p, Four v) { __builtin_memcpy(p, &v, sizeof v); }
 
 typedef float FourSingleAlias __attribute__((vector_size(16), may_alias));
-inline Four load4_single(const float* p) { return __builtin_convertvector(*reinterpret_cast<const FourSingleAlias*>(p), Four); }
+inline Four load4_single(const float* p) {
+#if defined(__AVX__)  // which __builtin_convertvector takes in two halves, through memory
+  return __builtin_ia32_cvtps2pd256(*reinterpret_cast<const FourSingleAlias*>(p));
+#else
+  return __builtin_convertvector(*reinterpret_cast<const FourSingleAlias*>(p), Four);
+#endif
+}
 inline void store4_single(float* p, Four v) { *reinterpret_cast<FourSingleAlias*>(p) = __builtin_convertvector(v, FourSingleAlias); }
 
 /// Rounds to the nearest integer (|a| < 2^51) with additions alone: exact and the same everywhere.
@@ -56,9 +77,12 @@ inline Four nearest(Four a) {
   return (a + magic) - magic;
 }
 
+/// Which axes repeat, as a constant of a loop: none, z (as in nearly every case that repeats), or whichever.
+enum class Repeats { none, z, any };
+
 struct Box4 {
   Four length, inverse;
-  bool any;
+  Repeats repeats;
 };
 
 Box4 box4(const PeriodicBox& b) {
@@ -66,18 +90,26 @@ Box4 box4(const PeriodicBox& b) {
   for (int a = 0; a < 3; ++a) {
     r.length[a] = b.length[a];
     r.inverse[a] = b.length[a] > 0 ? 1.0 / b.length[a] : 0.0;
-    r.any = r.any || b.length[a] > 0;
   }
+  r.repeats = b.length[0] > 0 || b.length[1] > 0 ? Repeats::any : b.length[2] > 0 ? Repeats::z : Repeats::none;
   return r;
 }
 
 inline Four minimum_image(Four d, const Box4& b) { return d - b.length * nearest(d * b.inverse); }
 
-/// The same of four differences at once, x, y and z one after the other; axes that do not repeat cost nothing.
+/// The same of four differences at once, x, y and z one after the other.
+template <Repeats kRepeats>
 inline void each_minimum_image(Four (&d)[4], const Box4& b) {
-  for (int a = 0; a < 3; ++a) {
-    if (b.length[a] > 0) d[a] -= four(b.length[a]) * nearest(d[a] * four(b.inverse[a]));
+  for (int a = kRepeats == Repeats::z ? 2 : 0; a < 3 && kRepeats != Repeats::none; ++a) {
+    d[a] -= four(b.length[a]) * nearest(d[a] * four(b.inverse[a]));
   }
+}
+
+/// Calls `work` with what repeats as a constant.
+template <class Work>
+inline auto with_repeats(Repeats repeats, const Work& work) {
+  if (repeats == Repeats::none) return work.template operator()<Repeats::none>();
+  return repeats == Repeats::z ? work.template operator()<Repeats::z>() : work.template operator()<Repeats::any>();
 }
 
 /// 4 × 4 transpose.

@@ -34,7 +34,7 @@ void PairLists::clear() {
   PairList empty;
   empty.history.resize(common_.layout.history_count());
   empty.next.resize(common_.layout.history_count());
-  slabs_.assign(common_.slabs.count, SlabLists{std::vector<PairList>(common_.physics.count(), empty)});
+  slabs_.assign(common_.slabs.count, SlabLists{std::vector<PairList>(common_.physics.count(), empty), {}});
 }
 
 std::int64_t PairLists::count() const {
@@ -64,11 +64,17 @@ void PairLists::add_work(const std::vector<std::uint32_t>& new_index, std::uint3
 
 /// Collects the histories of touching pairs by their owner in the new order; an exchanged owner flips the signs. Slabs work side by side,
 /// so that the contacts of one owner come in any order; `append` puts them into that of the slots.
-void PairLists::begin_rebuild(const CellOrder& order) {
+void PairLists::begin_rebuild(const CellOrder& order, const std::vector<std::uint8_t>& material) {
+  only_.reset();
+  if (std::count(material.begin(), material.end(), material[0]) == std::ssize(material))
+    only_ = common_.physics.of_beads(material[0], material[0]);
   const std::vector<std::uint32_t>& new_index = order.new_index();
   const std::int64_t histories = common_.layout.history_count();
   carried_.start.assign(new_index.size() + 1, 0);
-  const auto next = [](std::uint32_t& counter) { return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed); };
+  const bool alone = common_.workers.count() == 1;
+  const auto next = [alone](std::uint32_t& counter) {
+    return alone ? counter++ : std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed);
+  };
   common_.each_slab([&](int slab, int) {
     each_contact(slab, [&](const PairList& list, std::int64_t slot, std::int64_t) {
       next(carried_.start[std::max(new_index[list.owner[slot]], new_index[list.partner[slot]])]);
@@ -90,40 +96,56 @@ void PairLists::begin_rebuild(const CellOrder& order) {
   });
 }
 
-/// Makes the lists of one slab, in the memory of those before.
+/// Makes the lists of one slab, in the memory of those before: first the slots, then which of them touch, with their histories.
 class PairLists::Builder {
  public:
-  Builder(const Common& common, const Carried& carried, std::vector<PairList>& lists)
-      : common_(common), carried_(carried), lists_(lists), count_(lists.size(), 0) {
-    for (PairList& list : lists_) {
-      for (auto& h : list.history) h.clear();
+  Builder(const PairLists& all, SlabLists& own, BeadRange slab)
+      : common_(all.common_), only_(all.only_), lists_(own.lists), first_(own.first), slab_(slab) {
+    first_.resize(lists_.size());
+    for (auto& slots : first_) slots.resize(slab.end - slab.begin + 1);
+    count_.assign(lists_.size(), 0);
+  }
+
+  void list(const CellOrder& order, const std::vector<std::uint8_t>& material) {
+    std::int64_t cell = order.grid().cell_at(slab_.begin);
+    for (BeadRange owners{slab_.begin, 0}; owners.begin < slab_.end; owners.begin = owners.end) {
+      while (order.grid().end_of(cell) <= owners.begin) ++cell;
+      owners.end = std::min(slab_.end, order.grid().end_of(cell));
+      const Neighbourhood round = order.grid().round(cell);
+      if (only_) {
+        list_all(order, round, owners);
+      } else {
+        list_by_material(order, round, owners, material);
+      }
+    }
+    for (std::size_t p = 0; p < lists_.size(); ++p) {
+      first_[p][slab_.end - slab_.begin] = static_cast<std::uint32_t>(count_[p]);
+      resize(lists_[p], count_[p]);
+      std::fill(lists_[p].touching.begin(), lists_[p].touching.end(), 0);
     }
   }
 
-  void run(const CellOrder& order, BeadRange slab, const std::vector<std::uint8_t>& material) {
-    std::int64_t cell = order.grid().cell_at(slab.begin);
-    for (std::int64_t i = slab.begin; i < slab.end;) {
-      while (order.grid().end_of(cell) <= i) ++cell;
-      const Neighbourhood round = order.grid().round(cell);
-      for (const std::int64_t end = std::min(slab.end, order.grid().end_of(cell)); i < end; ++i) {
-        const std::uint32_t owner = static_cast<std::uint32_t>(i);
-        if (common_.physics.material_count() == 1) {
-          const int p = common_.physics.of_beads(0, 0);
-          make_room(p, CellOrder::room(round));
-          append(p, owner, order.near(i, round, lists_[p].partner.data() + count_[p]));
-        } else {
-          near_.resize(CellOrder::room(round));
-          const std::int64_t count = order.near(i, round, near_.data());
-          for (std::int64_t k = 0; k < count; ++k) {
-            const int p = common_.physics.of_beads(material[i], material[near_[k]]);
-            make_room(p, 1);
-            lists_[p].partner[count_[p]] = near_[k];
-            append(p, owner, 1);
-          }
-        }
+  void take_over(const Carried& carried, const std::vector<std::uint8_t>& material) {
+    const std::int64_t contacts = carried.start[slab_.end] - carried.start[slab_.begin];
+    for (PairList& list : lists_) {
+      for (auto& h : list.history) {
+        if (std::ssize(h) < contacts) h.resize(contacts + contacts / 8);
       }
     }
-    for (std::size_t p = 0; p < lists_.size(); ++p) resize(lists_[p], count_[p]);
+    count_.assign(lists_.size(), 0);  // of contacts from here on
+    std::vector<std::uint32_t> entries;
+    for (std::int64_t i = slab_.begin; i < slab_.end; ++i) {
+      entries.clear();
+      for (std::uint32_t e = carried.start[i]; e < carried.start[i + 1]; ++e) {  // as their slots stand
+        entries.push_back(e);
+        for (std::size_t k = entries.size() - 1; k > 0 && carried.partner[entries[k - 1]] > carried.partner[e]; --k) {
+          std::swap(entries[k - 1], entries[k]);
+        }
+      }
+      for (const std::uint32_t e : entries) {
+        take_over(carried, e, i, only_ ? *only_ : common_.physics.of_beads(material[i], material[carried.partner[e]]));
+      }
+    }
   }
 
  private:
@@ -137,38 +159,59 @@ class PairLists::Builder {
     if (lists_[p].count() < needed) resize(lists_[p], needed <= held ? std::min(held, needed + needed / 8) : needed + needed / 2);
   }
 
-  /// Makes slots of the partners that stand behind the last slot, all of one owner, with the histories of the pairs that touched.
-  void append(int p, std::uint32_t owner, std::int64_t partners) {
+  void list_all(const CellOrder& order, const Neighbourhood& round, BeadRange owners) {
+    const int p = *only_;
+    make_room(p, CellOrder::room(owners, round));
     PairList& list = lists_[p];
-    const std::int64_t first = count_[p], last = count_[p] += partners;
-    for (std::int64_t s = first; s < last; ++s) {
-      list.owner[s] = owner;
-      list.touching[s] = 0;
+    std::uint32_t* const first = first_[p].data() + (owners.begin - slab_.begin);
+    const std::int64_t before = count_[p];
+    count_[p] += order.near(owners, round, {list.owner.data() + before, list.partner.data() + before, first});
+    for (std::int64_t k = 0; k < owners.end - owners.begin; ++k) first[k] += static_cast<std::uint32_t>(before);
+  }
+
+  void list_by_material(const CellOrder& order, const Neighbourhood& round, BeadRange owners, const std::vector<std::uint8_t>& material) {
+    for (std::int64_t i = owners.begin; i < owners.end; ++i) {
+      for (std::size_t p = 0; p < lists_.size(); ++p) first_[p][i - slab_.begin] = static_cast<std::uint32_t>(count_[p]);
+      const BeadRange owner{i, i + 1};
+      owner_.resize(CellOrder::room(owner, round));
+      partner_.resize(owner_.size());
+      std::uint32_t first;
+      const std::int64_t count = order.near(owner, round, {owner_.data(), partner_.data(), &first});
+      for (std::int64_t k = 0; k < count; ++k) {
+        const int p = common_.physics.of_beads(material[i], material[partner_[k]]);
+        make_room(p, 1);
+        lists_[p].owner[count_[p]] = owner_[k];
+        lists_[p].partner[count_[p]++] = partner_[k];
+      }
     }
-    kept_.clear();
-    for (std::uint32_t e = carried_.start[owner]; e < carried_.start[owner + 1]; ++e) {
-      const auto end = list.partner.begin() + last, at = std::find(list.partner.begin() + first, end, carried_.partner[e]);
-      if (at == end) continue;
-      list.touching[at - list.partner.begin()] = 1;
-      kept_.emplace_back(at - list.partner.begin(), e);
-    }
-    if (kept_.size() > 1) std::sort(kept_.begin(), kept_.end());
-    const std::int64_t histories = std::ssize(list.history);
-    for (const auto& [slot, e] : kept_) {
-      for (std::int64_t h = 0; h < histories; ++h) list.history[h].push_back(carried_.history[e * histories + h]);
+  }
+
+  /// One history, if its pair is still near.
+  void take_over(const Carried& carried, std::int64_t entry, std::int64_t owner, int p) {
+    PairList& list = lists_[p];
+    const std::uint32_t* const first = first_[p].data() + (owner - slab_.begin);
+    for (std::uint32_t slot = first[0]; slot < first[1]; ++slot) {
+      if (list.partner[slot] != carried.partner[entry]) continue;
+      list.touching[slot] = 1;
+      const std::int64_t contact = count_[p]++, histories = common_.layout.history_count();
+      for (std::int64_t h = 0; h < histories; ++h) list.history[h][contact] = carried.history[entry * histories + h];
+      return;
     }
   }
 
   const Common& common_;
-  const Carried& carried_;
+  const std::optional<int> only_;
   std::vector<PairList>& lists_;
-  std::vector<std::int64_t> count_;  ///< [list]: slots that are made
-  std::vector<std::uint32_t> near_;
-  std::vector<std::pair<std::int64_t, std::uint32_t>> kept_;  ///< of one owner: slot and entry of each carried history
+  std::vector<std::vector<std::uint32_t>>& first_;  ///< [list][owner in the slab; one more at the end]: its first slot
+  BeadRange slab_;
+  std::vector<std::int64_t> count_;  ///< [list]: slots, or contacts, that are made
+  std::vector<std::uint32_t> owner_, partner_;
 };
 
 void PairLists::rebuild(int slab, const CellOrder& order, const std::vector<std::uint8_t>& material) {
-  Builder(common_, carried_, slabs_[slab].lists).run(order, common_.slabs.range(slab), material);
+  Builder builder(*this, slabs_[slab], common_.slabs.range(slab));
+  builder.list(order, material);
+  builder.take_over(carried_, material);
 }
 
 }  // namespace millscope::dem

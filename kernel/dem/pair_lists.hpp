@@ -1,6 +1,8 @@
 // The lists of pairs: which beads are near one another, made anew at each rebuild, with the histories of the pairs that touch.
 #pragma once
 
+#include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "kernel/dem/batch.hpp"
@@ -29,7 +31,7 @@ class PairLists {
   /// Empty lists.
   void clear();
   /// From here, slab by slab, `rebuild`: takes the histories out of the old lists.
-  void begin_rebuild(const CellOrder& order);
+  void begin_rebuild(const CellOrder& order, const std::vector<std::uint8_t>& material_of_bead);
   /// Lists, by new numbers, all pairs of a slab whose reaches overlap. The histories of touching pairs are carried over; where owner and
   /// partner change places, the numbers that a law declares odd change sign. Many slabs at once.
   void rebuild(int slab, const CellOrder& order, const std::vector<std::uint8_t>& material_of_bead);
@@ -51,10 +53,17 @@ class PairLists {
   }
   template <class Visit>
   void each_contact(int slab, const Visit& visit) const {
+    constexpr std::int64_t kAtOnce = 256;  // slots, of which first the touching ones are collected, without a branch
+    std::int64_t touching[kAtOnce + 1];
     for (const PairList& list : slabs_[slab].lists) {
       std::int64_t contact = 0;
-      for (std::int64_t s = 0; s < std::ssize(list.touching); ++s) {
-        if (list.touching[s]) visit(list, s, contact++);
+      for (std::int64_t first = 0; first < list.count(); first += kAtOnce) {
+        std::int64_t found = 0;
+        for (std::int64_t s = first, last = std::min(list.count(), first + kAtOnce); s < last; ++s) {
+          touching[found] = s;
+          found += list.touching[s];
+        }
+        for (std::int64_t k = 0; k < found; ++k) visit(list, touching[k], contact++);
       }
     }
   }
@@ -65,7 +74,8 @@ class PairLists {
 
  private:
   struct alignas(kCacheLine) SlabLists {
-    std::vector<PairList> lists;  ///< [physics]; those with a wall stay empty
+    std::vector<PairList> lists;                    ///< [physics]; those with a wall stay empty
+    std::vector<std::vector<std::uint32_t>> first;  ///< for a rebuild
   };
   /// Histories on their way to a new list, by the new number of the owner.
   struct Carried {
@@ -77,6 +87,7 @@ class PairLists {
   class Builder;
   Common& common_;
   std::vector<SlabLists> slabs_;
+  std::optional<int> only_;  ///< where all beads are of one material: the list of all pairs
   Carried carried_;
 };
 

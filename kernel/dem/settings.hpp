@@ -14,7 +14,7 @@ struct Settings {
   int threads = 1;
   PeriodicBox periodic{};
   double periodic_low[3] = {0, 0, 0};
-  double skin_steps = 30;           ///< a bead's skin lasts this many steps at its present speed …
+  double skin_steps = 40;           ///< a bead's skin lasts this many steps at its present speed …
   double skin_base = 0.05;          ///< … beyond this fraction of its radius
   double skin_cap = 0.6;            ///< and no more than this fraction of the largest radius
   double low[3], high[3];           ///< a bead outside has left the domain, m

@@ -6,6 +6,12 @@
 
 namespace millscope::dem {
 
+namespace {
+
+constexpr std::int64_t kSharedAnew = 8;  ///< rebuilds after which the work of the slabs is shared out again
+
+}  // namespace
+
 System::System(Settings settings, Layout layout, std::vector<PairPhysics> physics, int material_count)
     : parts_(std::make_unique<Parts>(*this, std::move(settings), std::move(layout), PhysicsTable(std::move(physics), material_count))) {}
 
@@ -48,14 +54,18 @@ void System::start(std::int64_t step) {
 void System::rebuild() {
   Parts& p = *parts_;
   p.order.renew(particles, time());
-  if (rebuilds_ > 0 && p.common.slabs.count > 1) p.share_work();
-  p.pairs.begin_rebuild(p.order);
+  if (rebuilds_ % kSharedAnew == 1 && p.common.slabs.count > 1) p.share_work();
+  p.pairs.begin_rebuild(p.order, particles.material);
   p.walls.begin_rebuild(p.order, time());
-  p.common.each_slab([&](int slab, int) {
-    p.pairs.rebuild(slab, p.order, particles.material);
-    p.walls.rebuild(slab, p.order, particles);
-    const BeadRange beads = p.common.slabs.range(slab);
-    std::fill(particles.force.begin() + beads.begin, particles.force.begin() + beads.end, ForceLine{});
+  p.common.workers.run_any(2 * p.common.slabs.count, [&](int task, int) {
+    const int slab = task / 2;
+    if (task % 2 == 0) {
+      p.pairs.rebuild(slab, p.order, particles.material);
+    } else {
+      p.walls.rebuild(slab, p.order, particles);
+      const BeadRange beads = p.common.slabs.range(slab);
+      std::fill(particles.force.begin() + beads.begin, particles.force.begin() + beads.end, ForceLine{});
+    }
   });
   p.walls.end_rebuild();
   p.step.lists_changed();

@@ -51,12 +51,12 @@ GeometryBeads WallLists::beads_of(int slab, int body, const CellOrder& order, Pa
   double* const lines = reinterpret_cast<double*>(particles.force.data() + range.begin);
   double* const place[3] = {lines, lines + n, lines + 2 * n};
   double* const radius = lines + 3 * n;
-  // Half of the laws' reach is in `reaches`, for two beads share it; a wall has none of its own.
+  // Half of the laws' reach is in that of a bead, for two beads share it; a wall has none of its own.
   const double law_reach = common_.physics.reach();
   for (std::int64_t k = 0; k < n; ++k) {
     const std::int64_t i = range.begin + k;
     for (int a = 0; a < 3; ++a) place[a][k] = particles.position[i].centre[a];
-    radius[k] = order.reaches()[i].radius + 0.5 * law_reach;
+    radius[k] = order.reach(i) + 0.5 * law_reach;
   }
   common_.wide.to_frame(poses_[body], n, place);
   return {n, {place[0], place[1], place[2]}, radius};
@@ -77,24 +77,22 @@ std::vector<WallLists::Near> WallLists::near(const Body& body, const GeometryBea
 }
 
 /// The contacts of the last step, in the order of the beads' new numbers; the lists have them no more.
-std::vector<WallLists::Carried> WallLists::take_contacts(int body, const std::vector<std::uint32_t>& new_index) {
-  std::vector<Carried> carried;
+void WallLists::take_contacts(int body, const std::vector<std::uint32_t>& new_index) {
+  Carried& carried = carried_[body];
   each_contact(body, [&](const WallList& list, std::int64_t c) {
     const WallContacts& active = list.active;
-    std::vector<double> history;
-    for (const std::vector<double>& h : active.history) history.push_back(h[c]);
-    carried.push_back({new_index[list.bead[active.bead[c]]], active.feature[c], active.normal[c], std::move(history)});
+    carried.contacts.push_back({new_index[list.bead[active.bead[c]]], active.feature[c], active.normal[c], std::ssize(carried.history)});
+    for (const std::vector<double>& h : active.history) carried.history.push_back(h[c]);
   });
   for (SlabLists& slab : slabs_) slab.lists[body].active.resize(0);
-  std::stable_sort(carried.begin(), carried.end(), [](const Carried& a, const Carried& b) { return a.bead < b.bead; });
-  return carried;
+  std::stable_sort(carried.contacts.begin(), carried.contacts.end(), [](const Contact& a, const Contact& b) { return a.bead < b.bead; });
 }
 
 /// Makes the list of a slab: its beads with their candidates and contacts.
 void WallLists::deal(int slab, int body, const std::vector<Near>& near) {
   const std::int64_t first = common_.slabs.begin(slab);
-  const std::vector<Carried>& carried = carried_[body];
-  auto from = std::lower_bound(carried.begin(), carried.end(), first, [](const Carried& c, std::int64_t bead) { return c.bead < bead; });
+  const auto& [carried, history] = carried_[body];
+  auto from = std::lower_bound(carried.begin(), carried.end(), first, [](const Contact& c, std::int64_t bead) { return c.bead < bead; });
   WallList& list = of(slab, body);
   list.bead.clear();
   list.first.assign(1, 0);
@@ -110,7 +108,7 @@ void WallLists::deal(int slab, int body, const std::vector<Near>& near) {
       list.active.bead.push_back(local);
       list.active.feature.push_back(from->feature);
       list.active.normal.push_back(from->normal);
-      for (std::int64_t h = 0; h < std::ssize(from->history); ++h) list.active.history[h].push_back(from->history[h]);
+      for (std::int64_t h = 0; h < std::ssize(list.active.history); ++h) list.active.history[h].push_back(history[from->history + h]);
     }
   }
 }
@@ -120,10 +118,10 @@ void WallLists::begin_rebuild(const CellOrder& order, double time) {
   moved_ = 0;
   margin_ = speed_ * 1.1 * common_.settings.skin_steps * common_.settings.time_step;
   poses_.clear();
-  carried_.clear();
+  carried_.assign(bodies_.size(), {});
   for (int b = 0; b < std::ssize(bodies_); ++b) {
     poses_.push_back(plain(pose_at(bodies_[b].motion, time)));
-    carried_.push_back(take_contacts(b, order.new_index()));
+    take_contacts(b, order.new_index());
   }
 }
 

@@ -96,9 +96,14 @@ class WallLists {
   struct alignas(kCacheLine) SlabLists {
     std::vector<WallList> lists;  ///< [body]
   };
-  struct Carried {
+  struct Contact {
     std::uint32_t bead, feature;  ///< bead: its new number
     Vector3 normal;
+    std::int64_t history;  ///< its first number in Carried::history
+  };
+  /// Contacts on their way to a new list, by the beads' new numbers.
+  struct Carried {
+    std::vector<Contact> contacts;
     std::vector<double> history;
   };
   struct Near {
@@ -108,17 +113,17 @@ class WallLists {
   double greatest_speed() const;
   GeometryBeads beads_of(int slab, int body, const CellOrder& order, Particles& particles) const;
   std::vector<Near> near(const Body& body, const GeometryBeads& beads) const;
-  std::vector<Carried> take_contacts(int body, const std::vector<std::uint32_t>& new_index);
+  void take_contacts(int body, const std::vector<std::uint32_t>& new_index);
   void deal(int slab, int body, const std::vector<Near>& near);
 
   Common& common_;
   const std::vector<Body>& bodies_;
   std::vector<SlabLists> slabs_;
-  std::vector<WallPose> poses_;                ///< [body]: at the rebuild
-  std::vector<std::vector<Carried>> carried_;  ///< [body]: contacts on their way to a new list, by the beads' new numbers
-  double speed_ = 0;                           ///< greatest of any wall, m/s
-  double margin_ = 0;                          ///< the walls may move this far before a rebuild, m
-  double moved_ = 0;                           ///< bound on their displacement since the rebuild, m
+  std::vector<WallPose> poses_;   ///< [body]: at the rebuild
+  std::vector<Carried> carried_;  ///< [body]
+  double speed_ = 0;              ///< greatest of any wall, m/s
+  double margin_ = 0;             ///< the walls may move this far before a rebuild, m
+  double moved_ = 0;              ///< bound on their displacement since the rebuild, m
 };
 
 }  // namespace millscope::dem

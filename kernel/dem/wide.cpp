@@ -3,6 +3,7 @@
 #include "kernel/dem/wide.hpp"
 
 #include "kernel/dem/four.hpp"
+#include "kernel/dem/wide_near.hpp"
 #include "kernel/dem/wide_search.hpp"
 #include "kernel/dem/wide_walls.hpp"
 
@@ -16,7 +17,7 @@ inline void store_each(double* const* to, std::int64_t k, const Four (&v)[kCount
 
 /// Four contacts from place k on: overlap, normal and the surfaces' relative velocity
 /// v_i − v_j − (a_i ω_i + a_j ω_j) × n, a = r − δ/2.
-template <bool kEqual, bool kPeriodic>
+template <bool kEqual, Repeats kRepeats>
 inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k, const PairBatch& b) {
   const double* __restrict x = reinterpret_cast<const double*>(g.position);
   const double* __restrict m = reinterpret_cast<const double*>(g.motion);
@@ -35,7 +36,7 @@ inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k,
     }
   }
   transpose(d[0], d[1], d[2], d[3]);
-  if constexpr (kPeriodic) each_minimum_image(d, box);
+  each_minimum_image<kRepeats>(d, box);
   transpose(v[0], v[1], v[2], v[3]);
   transpose(wi[0], wi[1], wi[2], wi[3]);
   const Four distance = root(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), inverse = four(1.0) / distance;
@@ -67,11 +68,9 @@ inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k,
 
 template <bool kEqual>
 void gather_all(const GatherContext& g, const Box4& box, std::int64_t padded, const PairBatch& b) {
-  if (box.any) {
-    for (std::int64_t k = 0; k < padded; k += 4) gather_four<kEqual, true>(g, box, k, b);
-  } else {
-    for (std::int64_t k = 0; k < padded; k += 4) gather_four<kEqual, false>(g, box, k, b);
-  }
+  with_repeats(box.repeats, [&]<Repeats kRepeats>() {
+    for (std::int64_t k = 0; k < padded; k += 4) gather_four<kEqual, kRepeats>(g, box, k, b);
+  });
 }
 
 /// Of equal beads, where interactions need them.
@@ -260,7 +259,7 @@ inline Moved move_bead(const IntegrateContext& c, std::int64_t i) {
   store4(&c.position[i], x);
   store4(force.f, four(0.0));
   store4(force.t, four(0.0));
-  const double square = c.position[i].radius * c.position[i].radius;
+  const double square = x[3] * x[3];  // of the radius
   return {step, x - load4_single(c.reference[i].centre), (a + fourth) * last_a + four(square) * (alpha * last_alpha)};
 }
 
@@ -287,7 +286,8 @@ void hold_back(const IntegrateContext& c, std::int64_t i, double along, double a
 inline void judge_prediction(const IntegrateContext& c, std::int64_t i, Four (&along)[4], int count) {
   transpose(along[0], along[1], along[2], along[3]);
   const Four sum = along[0] + along[1] + along[2];
-  for (int k = 0; k < count; ++k) c.last[i + k].linear[3] = static_cast<float>(sum[k]);
+  const FourSingleAlias noted = __builtin_convertvector(sum, FourSingleAlias);
+  for (int k = 0; k < count; ++k) c.last[i + k].linear[3] = noted[k];
   const int twice = bits_of((sum < four(0.0)) & (along[3] < four(0.0)));
   if (twice == 0) return;
   for (int k = 0; k < count; ++k) {
@@ -331,33 +331,6 @@ IntegrateResult integrate(const IntegrateContext& context) {
     judge(i, step2[0] + step2[1] + step2[2], moved2[0] + moved2[1] + moved2[2], static_cast<double>(c.reference[i].allowed2));
   }
   return result;
-}
-
-std::int64_t near(const PositionLine* reaches, const PeriodicBox& periodic, std::int64_t i, std::int64_t first, std::int64_t last,
-                  std::uint32_t* found) {
-  const Box4 box = box4(periodic);
-  const Four own = load4(reaches + i);
-  std::int64_t n = 0, j = first;
-  for (; j + 4 <= last; j += 4) {
-    Four d[4];
-    for (int k = 0; k < 4; ++k) {
-      d[k] = own + negate3(load4(reaches + j + k));
-    }
-    transpose(d[0], d[1], d[2], d[3]);
-    if (box.any) each_minimum_image(d, box);
-    const FourBits hit = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) < (d[3] * d[3]);
-    for (int k = 0; k < 4; ++k) {
-      found[n] = static_cast<std::uint32_t>(j + k);
-      n += hit[k] & 1;
-    }
-  }
-  for (; j < last; ++j) {
-    Four d = own + negate3(load4(reaches + j));
-    if (box.any) d = minimum_image(d, box);
-    found[n] = static_cast<std::uint32_t>(j);
-    n += d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < d[3] * d[3];
-  }
-  return n;
 }
 
 }  // namespace

@@ -5,6 +5,25 @@
 
 namespace millscope::dem {
 
+/// Beads one after the other, in the order of cells.
+struct BeadRange {
+  std::int64_t begin, end;
+};
+
+/// Where beads are and how far they reach, for a rebuild, which may list a pair too many but none too few: singles, relative to a corner,
+/// with what rounding may hide in the reach. They can be read up to kNearLanes behind the last.
+struct NearPlaces {
+  const float* centre[3];  ///< m
+  const float* reach;      ///< m
+};
+inline constexpr std::int64_t kNearLanes = 8;
+
+/// Where pairs are listed.
+struct NearSlots {
+  std::uint32_t *owner, *partner;  ///< [slot]
+  std::uint32_t* first;            ///< [owner]: its first slot
+};
+
 /// What a gather needs besides the list.
 struct GatherContext {
   const PositionLine* position;
@@ -85,9 +104,9 @@ struct WideTable {
   void (*scatter_walls)(const WallPose&, const ForceWindow&, std::int64_t count, bool with_moments, WallBatch&, WallSums&);
   /// Kick, drift, predict; clears the forces.
   IntegrateResult (*integrate)(const IntegrateContext&);
-  /// Appends to `found` the j in [first, last) with |x_i − x_j| < reach_i + reach_j (the reaches stand in `radius`). Returns the number.
-  std::int64_t (*near)(const PositionLine* reaches, const PeriodicBox&, std::int64_t i, std::int64_t first, std::int64_t last,
-                       std::uint32_t* found);
+  /// Lists for each of some owners i the j < i of `count` ranges with |x_i − x_j| < reach_i + reach_j. Returns how many pairs they are;
+  /// behind them up to kNearLanes slots are overwritten.
+  std::int64_t (*near)(const NearPlaces&, const PeriodicBox&, BeadRange owners, const BeadRange* ranges, int count, const NearSlots&);
 };
 
 /// The best build that this machine runs, or the one asked for ("v2", "v3", "v4"; "" for the best).

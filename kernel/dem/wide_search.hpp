@@ -38,10 +38,10 @@ constexpr KeptOfFour kept_of_four() {
 }
 constexpr KeptOfFour kKept = kept_of_four();
 
-/// Keeps those of a list's slots that are within reach, four by four and without a branch, whose outcome no processor could guess.
+/// Keeps those of a list's slots that are within reach, eight by eight and without a branch, whose outcome no processor could guess.
 struct Sieve {
-  PairListView& list;
-  PairBatch& batch;
+  std::uint32_t* __restrict slot;
+  std::uint32_t* __restrict source;
   std::uint32_t read;
   std::int64_t count = 0;
 
@@ -50,74 +50,110 @@ struct Sieve {
     const FourIndices places = kKept.places[hits], ranks = kKept.ranks[touched];
     const FourIndices slots = indices(static_cast<std::uint32_t>(s)) + FourIndices{0, 1, 2, 3};
     const FourIndices sources = (indices(read) + ranks) | kKept.fresh[touched];
-    store_indices(batch.slot + count, __builtin_shuffle(slots, places));
-    store_indices(batch.source + count, __builtin_shuffle(sources, places));
+    store_indices(slot + count, __builtin_shuffle(slots, places));
+    store_indices(source + count, __builtin_shuffle(sources, places));
     read += static_cast<std::uint32_t>(kKept.count[touched]);
     count += kKept.count[hits];
   }
 
+  void eight_slots(std::int64_t s, unsigned hits, unsigned touched) {
+#if defined(__AVX512VL__)
+    const EightIndices order{0, 1, 2, 3, 4, 5, 6, 7}, slots = (EightIndices{} + static_cast<std::uint32_t>(s)) + order;
+    const EightIndices sources = expanded((EightIndices{} + read) + order, EightIndices{} + kNoSource, touched);
+    store_indices(slot + count, compressed(slots, hits));
+    store_indices(source + count, compressed(sources, hits));
+    read += static_cast<std::uint32_t>(__builtin_popcount(touched));
+    count += __builtin_popcount(hits);
+#else
+    four_slots(s, static_cast<int>(hits & 0xfU), static_cast<int>(touched & 0xfU));
+    four_slots(s + 4, static_cast<int>(hits >> 4), static_cast<int>(touched >> 4));
+#endif
+  }
+
   /// The same of the last slots of a list.
-  void one_slot(std::int64_t s, bool hit) {
-    const std::uint8_t touched = list.touching[s];
-    batch.slot[count] = static_cast<std::uint32_t>(s);
-    batch.source[count] = touched != 0 ? read : kNoSource;
-    list.touching[s] = hit ? 1 : 0;
-    read += touched;
+  void one_slot(std::int64_t s, bool hit, bool touched) {
+    slot[count] = static_cast<std::uint32_t>(s);
+    source[count] = touched ? read : kNoSource;
+    read += touched ? 1 : 0;
     count += hit ? 1 : 0;
   }
 };
 
-/// Four bytes that are 0 or 1 as four bits.
-inline int bits_of(const std::uint8_t* flags) {
-  std::uint32_t word;
+/// Eight bytes that are 0 or 1 as eight bits, and back.
+inline unsigned bits_of(const std::uint8_t* flags) {
+  std::uint64_t word;
   __builtin_memcpy(&word, flags, sizeof word);
-  return static_cast<int>((word | word >> 7 | word >> 14 | word >> 21) & 0xfU);
+  return static_cast<unsigned>(word * 0x0102040810204080U >> 56);
+}
+inline void store_bits(std::uint8_t* flags, unsigned bits) {
+  __builtin_memcpy(flags, &kKept.flags[bits & 0xfU], 4);
+  __builtin_memcpy(flags + 4, &kKept.flags[bits >> 4], 4);
 }
 
-template <bool kPeriodic>
-std::int64_t search_slots(const GatherContext& g, PairListView& list, std::int64_t first, std::int64_t last, PairBatch& b) {
-  const Box4 box = box4(g.box);
+/// Asks for the lines of two beads after the other.
+struct Lookahead {
+  const GatherContext& g;
+  std::int64_t bead = g.ahead;
+
+  void two() {
+    if (bead >= g.ahead_end) return;
+    __builtin_prefetch(g.position + bead, 0, 2);
+    __builtin_prefetch(g.motion + bead, 0, 2);
+    __builtin_prefetch(g.motion + bead + 1, 0, 2);
+    if (g.ahead_force) {
+      __builtin_prefetch(g.ahead_force + (bead - g.ahead), 1, 2);
+      __builtin_prefetch(g.ahead_force + (bead - g.ahead) + 1, 1, 2);
+    }
+    bead += 2;
+  }
+};
+
+template <Repeats kRepeats>
+std::int64_t search_slots(const GatherContext& context, const Box4& box4, PairListView& list, std::int64_t first, std::int64_t last,
+                          const PairBatch& b) {
+  const GatherContext g = context;
+  const Box4 box = box4;
   const double* __restrict x = reinterpret_cast<const double*>(g.position);
   const std::uint32_t* __restrict owner = list.owner;
   const std::uint32_t* __restrict partner = list.partner;
-  const double reach = g.reach;
-  Sieve sieve{list, b, static_cast<std::uint32_t>(list.read)};
+  std::uint8_t* __restrict touching = list.touching;
+  Sieve sieve{b.slot, b.source, static_cast<std::uint32_t>(list.read)};
   const auto difference = [&](std::int64_t s) {
     return load4(x + 4 * static_cast<std::int64_t>(owner[s])) + negate3(load4(x + 4 * static_cast<std::int64_t>(partner[s])));
   };
-  std::int64_t s = first;
-  std::int64_t ahead = g.ahead;
-  for (; s + 4 <= last; s += 4) {
-    if (ahead < g.ahead_end) {
-      __builtin_prefetch(g.position + ahead, 0, 2);
-      __builtin_prefetch(g.motion + ahead, 0, 2);
-      __builtin_prefetch(g.motion + ahead + 1, 0, 2);
-      if (g.ahead_force) {
-        __builtin_prefetch(g.ahead_force + (ahead - g.ahead), 1, 2);
-        __builtin_prefetch(g.ahead_force + (ahead - g.ahead) + 1, 1, 2);
-      }
-      ahead += 2;
-    }
-    Four d[4] = {difference(s), difference(s + 1), difference(s + 2), difference(s + 3)};
+  const auto four_hits = [&](Four d0, Four d1, Four d2, Four d3) {
+    Four d[4] = {d0, d1, d2, d3};
     transpose(d[0], d[1], d[2], d[3]);
-    if constexpr (kPeriodic) each_minimum_image(d, box);
-    const Four limit = d[3] + four(reach);
-    const int hits = bits_of((d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) < (limit * limit));
-    sieve.four_slots(s, hits, bits_of(list.touching + s));
-    __builtin_memcpy(list.touching + s, &kKept.flags[hits], 4);
+    each_minimum_image<kRepeats>(d, box);
+    const Four limit = d[3] + four(g.reach);
+    return static_cast<unsigned>(bits_of((d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) < (limit * limit)));
+  };
+  Lookahead ahead{g};
+  std::int64_t s = first;
+  for (; s + 8 <= last; s += 8) {
+    ahead.two();
+    ahead.two();
+    const unsigned low = four_hits(difference(s), difference(s + 1), difference(s + 2), difference(s + 3));
+    const unsigned high = four_hits(difference(s + 4), difference(s + 5), difference(s + 6), difference(s + 7));
+    const unsigned hits = low | high << 4;
+    sieve.eight_slots(s, hits, bits_of(touching + s));
+    store_bits(touching + s, hits);
   }
   for (; s < last; ++s) {
-    const Four d = kPeriodic ? minimum_image(difference(s), box) : difference(s);
-    const double limit = d[3] + reach;
-    sieve.one_slot(s, d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < limit * limit);
+    const Four d = difference(s);
+    const bool hit = (four_hits(d, d, d, d) & 1U) != 0;
+    sieve.one_slot(s, hit, touching[s] != 0);
+    touching[s] = hit ? 1 : 0;
   }
   list.read = sieve.read;
-  for (std::int64_t k = 0; k < sieve.count; ++k) b.fresh[k] = b.source[k] == kNoSource;
+  std::uint8_t* __restrict fresh = b.fresh;
+  for (std::int64_t k = 0; k < sieve.count; ++k) fresh[k] = sieve.source[k] == kNoSource ? 1 : 0;
   return sieve.count;
 }
 
 std::int64_t search(const GatherContext& g, PairListView& list, std::int64_t first, std::int64_t last, PairBatch& b) {
-  return box4(g.box).any ? search_slots<true>(g, list, first, last, b) : search_slots<false>(g, list, first, last, b);
+  const Box4 box = box4(g.box);
+  return with_repeats(box.repeats, [&]<Repeats kRepeats>() { return search_slots<kRepeats>(g, box, list, first, last, b); });
 }
 
 }  // namespace

@@ -34,8 +34,13 @@ Workers::~Workers() {
 
 void Workers::share(int worker) {
   try {
-    const int last = first(worker + 1, slabs_);
-    for (int slab = first(worker, slabs_); slab < last; ++slab) (*task_)(slab, worker);
+    const auto next = [&] { return next_.fetch_add(1, std::memory_order_relaxed); };
+    if (turns_ == Turns::any) {
+      for (int task = next(); task < slabs_; task = next()) (*task_)(task, worker);
+    } else {
+      const int last = first(worker + 1, slabs_);
+      for (int slab = first(worker, slabs_); slab < last; ++slab) (*task_)(slab, worker);
+    }
   } catch (...) {
     if (!failed_.exchange(true)) failure_ = std::current_exception();
   }
@@ -47,8 +52,10 @@ bool Workers::claim(int worker, unsigned generation) {
   return claimed_[worker].compare_exchange_strong(before, generation, std::memory_order_acq_rel);
 }
 
-void Workers::run(int slabs, const std::function<void(int, int)>& task) {
+void Workers::run(int slabs, const std::function<void(int, int)>& task, Turns turns) {
   slabs_ = slabs;
+  turns_ = turns;
+  next_.store(0, std::memory_order_relaxed);
   task_ = &task;
   pending_.store(count_, std::memory_order_relaxed);
   const unsigned generation = generation_.fetch_add(1, std::memory_order_acq_rel) + 1;

@@ -26,7 +26,9 @@ class Workers {
   /// left out, and the state is of no use any more. The share of a worker whose thread has not begun when the calling thread is done
   /// with its own is taken over by it, under that worker's number, from the last to the first: on a busy machine nobody waits for a thread
   /// that is not running.
-  void run(int slabs, const std::function<void(int slab, int worker)>& task);
+  void run(int slabs, const std::function<void(int slab, int worker)>& task) { run(slabs, task, Turns::own); }
+  /// The same of tasks whose cost nobody knows beforehand: each worker takes the next that is left.
+  void run_any(int tasks, const std::function<void(int task, int worker)>& task) { run(tasks, task, Turns::any); }
 
   /// Inside a task: waits until `done`, which a share of a higher number brings about. False: a task has failed, so that it may never come.
   template <class Done>
@@ -38,6 +40,8 @@ class Workers {
   }
 
  private:
+  enum class Turns { own, any };
+  void run(int slabs, const std::function<void(int, int)>& task, Turns turns);
   /// Between two looks; `spins` counts them.
   static void pause(int& spins);
   void loop(int worker);
@@ -47,6 +51,8 @@ class Workers {
 
   int count_;
   int slabs_ = 0;
+  Turns turns_ = Turns::own;
+  std::atomic<int> next_{0};  ///< task that nobody has taken, where any may
   const std::function<void(int, int)>* task_ = nullptr;
   std::atomic<unsigned> generation_{0};
   std::atomic<int> pending_{0};                 ///< shares of this generation that are not done

@@ -4,8 +4,11 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <limits>
 
 #include "dem/support.hpp"
+#include "kernel/dem/ledger.hpp"
+#include "millscope/random.hpp"
 
 using namespace dem_test;
 
@@ -124,4 +127,18 @@ TEST_CASE("a settled charge weighs what it weighs, and the torque on the drum is
   CHECK(power / steps == Approx(-12 * torque / steps).epsilon(1e-9));
   CHECK(torque / steps == Approx(-moment / steps).epsilon(0.05));
   CHECK(power / steps > 0);
+}
+
+TEST_CASE("an impact's bin is the one between whose edges its energy lies") {
+  Random random(1);
+  for (int k = 0; k < 20000; ++k) {
+    const double energy = std::pow(10, -14 + 18 * random.uniform());
+    const int bin = dem::ImpactBins::bin(energy);
+    INFO(energy);
+    CHECK((bin == 0 || dem::ImpactBins::lower_edge(bin) <= energy));
+    CHECK((bin == dem::ImpactBins::kCount - 1 || energy < dem::ImpactBins::lower_edge(bin + 1)));
+  }
+  for (int b = 0; b < dem::ImpactBins::kCount; ++b) CHECK(dem::ImpactBins::bin(dem::ImpactBins::lower_edge(b)) == b);
+  for (const double none : {0.0, -1.0, 1e-320, std::numeric_limits<double>::quiet_NaN()}) CHECK(dem::ImpactBins::bin(none) == 0);
+  CHECK(dem::ImpactBins::bin(std::numeric_limits<double>::infinity()) == dem::ImpactBins::kCount - 1);
 }

@@ -3,11 +3,10 @@
 
 #include <fmt/core.h>
 
-#include <atomic>
+#include <cmath>
 #include <map>
 #include <set>
 
-#include "kernel/base/error.hpp"
 #include "kernel/dem/schedule.hpp"
 #include "kernel/dem/wall_lists.hpp"
 #include "millscope/random.hpp"
@@ -53,7 +52,7 @@ Particles strewn(std::int64_t count, std::uint64_t seed) {
 }
 
 void rebuild_lists(Common& common, const CellOrder& order, PairLists& pairs, const Particles& beads) {
-  pairs.begin_rebuild(order);
+  pairs.begin_rebuild(order, beads.material);
   common.each_slab([&](int slab, int) { pairs.rebuild(slab, order, beads.material); });
 }
 
@@ -360,19 +359,4 @@ TEST_CASE("the number of slabs follows from the number of beads: one for hundred
   CHECK(partitions_for(4259) == 4);
   CHECK(partitions_for(60000) == 32);
   CHECK(partitions_for(300000) == 64);
-}
-
-TEST_CASE("a share that waits for another is let go when that one fails") {
-  Workers workers(2);
-  std::atomic<bool> let_go{false};
-  CHECK_THROWS_WITH(workers.run(2,
-                                [&](int slab, int) {
-                                  if (slab == 0) throw base::UserError("no memory");
-                                  let_go = !workers.wait_for([] { return false; });
-                                }),
-                    "no memory");
-  CHECK(let_go);
-  int done = 0;
-  workers.run(1, [&](int, int) { ++done; });
-  CHECK(done == 1);
 }
