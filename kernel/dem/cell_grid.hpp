@@ -22,8 +22,6 @@ struct Neighbourhood {
   std::int64_t beads = 0;
 
   void add(BeadRange range);
-  const BeadRange* begin() const { return ranges.data(); }
-  const BeadRange* end() const { return ranges.data() + count; }
 };
 
 class CellGrid {

@@ -95,9 +95,7 @@ Box4 box4(const PeriodicBox& b) {
   return r;
 }
 
-inline Four minimum_image(Four d, const Box4& b) { return d - b.length * nearest(d * b.inverse); }
-
-/// The same of four differences at once, x, y and z one after the other.
+/// Four differences, x, y and z one after the other, between the nearest images.
 template <Repeats kRepeats>
 inline void each_minimum_image(Four (&d)[4], const Box4& b) {
   for (int a = kRepeats == Repeats::z ? 2 : 0; a < 3 && kRepeats != Repeats::none; ++a) {

@@ -18,7 +18,7 @@ class Explosion(CliTest):
         self.assert_one_line(self.millscope("resume", "out"), "no checkpoint")
 
     def test_a_step_too_long_for_the_damping_is_halved_before_the_analysis_begins(self):
-        words = ("run", "case.yaml", "-q", "--set", "pairs.default.restitution=0.05", "--set", "pairs.default.static_friction=0.8", "--set", "fill.settle_s=0.2")
+        words = ("run", "case.yaml", "-q", "--set", "pairs.default.restitution=0.02", "--set", "pairs.default.static_friction=0.8", "--set", "fill.settle_s=0.2")
         result = self.succeed(*words, "-o", "out")
         self.assertIn("Starting again with half the time step: time.step_fraction=0.1", result.stderr)
         halvings = result.stderr.count("Starting again")
