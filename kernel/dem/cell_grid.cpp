@@ -84,7 +84,9 @@ std::int64_t CellGrid::cell_at(std::int64_t bead) const {
 
 Neighbourhood CellGrid::round(std::int64_t cell) const {
   const int n[3] = {cells_[axis_[0]], cells_[axis_[1]], cells_[axis_[2]]};
-  const int number = static_cast<int>(cell), own[3] = {number / (n[1] * n[2]), number / n[2] % n[1], number % n[2]};
+  const std::uint32_t number = static_cast<std::uint32_t>(cell), row = number / static_cast<std::uint32_t>(n[2]);
+  const int own[3] = {static_cast<int>(row) / n[1], static_cast<int>(row) % n[1],
+                      static_cast<int>(number % static_cast<std::uint32_t>(n[2]))};
   int near[3][3], m[3];
   for (int k = 0; k < 3; ++k) m[k] = around(own[k], n[k], periodic_[axis_[k]], near[k]);
   Neighbourhood found;

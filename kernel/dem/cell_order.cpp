@@ -107,7 +107,7 @@ void CellOrder::renew(Particles& p, double time) {
 }
 
 /// Singles for `near`. With u = 2⁻²⁴ and the largest length L, rounding takes up to u L from a coordinate, up to 6 u L from a difference
-/// between two images, and so up to 11 u L and 3 u of itself from a distance: each of the two beads bears half of more than that.
+/// between two images, and so up to 11 u L and 4 u of itself from a distance: each of the two beads bears half of more than that.
 void CellOrder::place(const Particles& p, const Extent& extent) {
   constexpr double kHidden = 5e-7;
   double largest = extent.reach;

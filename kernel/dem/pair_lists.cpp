@@ -63,10 +63,10 @@ void PairLists::add_work(const std::vector<std::uint32_t>& new_index, std::uint3
 }
 
 /// Collects the histories of touching pairs by their owner in the new order; an exchanged owner flips the signs. Slabs work side by side,
-/// so that the contacts of one owner come in any order; `append` puts them into that of the slots.
+/// so that the contacts of one owner come in any order; `take_over` puts them into that of the slots.
 void PairLists::begin_rebuild(const CellOrder& order, const std::vector<std::uint8_t>& material) {
   only_.reset();
-  if (std::count(material.begin(), material.end(), material[0]) == std::ssize(material))
+  if (!material.empty() && std::count(material.begin(), material.end(), material[0]) == std::ssize(material))
     only_ = common_.physics.of_beads(material[0], material[0]);
   const std::vector<std::uint32_t>& new_index = order.new_index();
   const std::int64_t histories = common_.layout.history_count();
@@ -107,15 +107,19 @@ class PairLists::Builder {
   }
 
   void list(const CellOrder& order, const std::vector<std::uint8_t>& material) {
+    constexpr std::int64_t kRoom = 16384;  // slots that are kept free at once: a cell of small beads among large ones has thousands
     std::int64_t cell = order.grid().cell_at(slab_.begin);
-    for (BeadRange owners{slab_.begin, 0}; owners.begin < slab_.end; owners.begin = owners.end) {
+    for (BeadRange owners{slab_.begin, slab_.begin}; owners.begin < slab_.end;) {
       while (order.grid().end_of(cell) <= owners.begin) ++cell;
-      owners.end = std::min(slab_.end, order.grid().end_of(cell));
+      const std::int64_t end = std::min(slab_.end, order.grid().end_of(cell));
       const Neighbourhood round = order.grid().round(cell);
-      if (only_) {
-        list_all(order, round, owners);
-      } else {
-        list_by_material(order, round, owners, material);
+      for (; owners.begin < end; owners.begin = owners.end) {
+        owners.end = std::min(end, owners.begin + std::max<std::int64_t>(1, kRoom / round.beads));
+        if (only_) {
+          list_all(order, round, owners);
+        } else {
+          list_by_material(order, round, owners, material);
+        }
       }
     }
     for (std::size_t p = 0; p < lists_.size(); ++p) {
@@ -180,7 +184,7 @@ class PairLists::Builder {
       for (std::int64_t k = 0; k < count; ++k) {
         const int p = common_.physics.of_beads(material[i], material[partner_[k]]);
         make_room(p, 1);
-        lists_[p].owner[count_[p]] = owner_[k];
+        lists_[p].owner[count_[p]] = static_cast<std::uint32_t>(i);
         lists_[p].partner[count_[p]++] = partner_[k];
       }
     }

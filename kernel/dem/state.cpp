@@ -85,6 +85,9 @@ void PairLists::each_array(Self& self, Visit& visit) {
       for (const PairList* list : lists) visit.idle(list->next[h]);
     }
   }
+  for (const SlabLists& slab : self.slabs_) {
+    for (const std::vector<std::uint32_t>& first : slab.first) visit.idle(first);
+  }
   visit.idle(self.carried_.start);
   visit.idle(self.carried_.filled);
   visit.idle(self.carried_.partner);

@@ -31,7 +31,7 @@ inline Eight nearest(Eight a) {
   return (a + magic) - magic;
 }
 
-/// Few beads stand in a row of three cells: eight at once are mostly all of them, and the last are no special case.
+/// Few beads stand side by side in three cells: eight at once are mostly all of them, and the last are no special case.
 template <Repeats kRepeats>
 std::int64_t near_repeating(const NearPlaces& places, const PeriodicBox& box, BeadRange owners, const BeadRange* ranges, int count,
                             const NearSlots& found) {

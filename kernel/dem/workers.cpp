@@ -36,10 +36,10 @@ void Workers::share(int worker) {
   try {
     const auto next = [&] { return next_.fetch_add(1, std::memory_order_relaxed); };
     if (turns_ == Turns::any) {
-      for (int task = next(); task < slabs_; task = next()) (*task_)(task, worker);
+      for (int task = next(); task < tasks_; task = next()) (*task_)(task, worker);
     } else {
-      const int last = first(worker + 1, slabs_);
-      for (int slab = first(worker, slabs_); slab < last; ++slab) (*task_)(slab, worker);
+      const int last = first(worker + 1, tasks_);
+      for (int slab = first(worker, tasks_); slab < last; ++slab) (*task_)(slab, worker);
     }
   } catch (...) {
     if (!failed_.exchange(true)) failure_ = std::current_exception();
@@ -52,8 +52,8 @@ bool Workers::claim(int worker, unsigned generation) {
   return claimed_[worker].compare_exchange_strong(before, generation, std::memory_order_acq_rel);
 }
 
-void Workers::run(int slabs, const std::function<void(int, int)>& task, Turns turns) {
-  slabs_ = slabs;
+void Workers::run(int tasks, const std::function<void(int, int)>& task, Turns turns) {
+  tasks_ = tasks;
   turns_ = turns;
   next_.store(0, std::memory_order_relaxed);
   task_ = &task;

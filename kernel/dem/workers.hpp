@@ -27,7 +27,7 @@ class Workers {
   /// with its own is taken over by it, under that worker's number, from the last to the first: on a busy machine nobody waits for a thread
   /// that is not running.
   void run(int slabs, const std::function<void(int slab, int worker)>& task) { run(slabs, task, Turns::own); }
-  /// The same of tasks whose cost nobody knows beforehand: each worker takes the next that is left.
+  /// The same of tasks whose cost nobody knows beforehand: each worker takes the next that is left. When one fails, all others are done.
   void run_any(int tasks, const std::function<void(int task, int worker)>& task) { run(tasks, task, Turns::any); }
 
   /// Inside a task: waits until `done`, which a share of a higher number brings about. False: a task has failed, so that it may never come.
@@ -41,7 +41,7 @@ class Workers {
 
  private:
   enum class Turns { own, any };
-  void run(int slabs, const std::function<void(int, int)>& task, Turns turns);
+  void run(int tasks, const std::function<void(int, int)>& task, Turns turns);
   /// Between two looks; `spins` counts them.
   static void pause(int& spins);
   void loop(int worker);
@@ -50,7 +50,7 @@ class Workers {
   bool claim(int worker, unsigned generation);
 
   int count_;
-  int slabs_ = 0;
+  int tasks_ = 0;  ///< slabs among them
   Turns turns_ = Turns::own;
   std::atomic<int> next_{0};  ///< task that nobody has taken, where any may
   const std::function<void(int, int)>* task_ = nullptr;

@@ -90,7 +90,7 @@ void check_lists(const Assembly& a) {
 }  // namespace
 
 TEST_CASE("the lists hold every near pair once, in open and periodic boxes") {
-  // The shortest period for radii up to 3 mm: 4 · 3 mm · (1 + 0.6) = 19.2 mm, two cells.
+  // The shortest period for radii up to 3 mm: 4 · 3 mm · (1 + 0.6) = 19.2 mm, one cell.
   const char* const domains[] = {"{}",
                                  "{periodic: {x: [0, 50 mm]}}",
                                  "{periodic: {y: [-10 mm, 40 mm]}}",
