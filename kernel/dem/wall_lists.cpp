@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "kernel/base/error.hpp"
 
@@ -79,36 +80,41 @@ std::vector<WallLists::Near> WallLists::near(const Body& body, const GeometryBea
 /// The contacts of the last step, in the order of the beads' new numbers; the lists have them no more.
 void WallLists::take_contacts(int body, const std::vector<std::uint32_t>& new_index) {
   Carried& carried = carried_[body];
+  const auto new_bead = [&](const WallList& list, std::int64_t c) { return new_index[list.bead[list.active.bead[c]]]; };
+  carried.first.assign(new_index.size() + 1, 0);
+  each_contact(body, [&](const WallList& list, std::int64_t c) { ++carried.first[new_bead(list, c)]; });
+  std::exclusive_scan(carried.first.begin(), carried.first.end(), carried.first.begin(), std::uint32_t{0});
+  carried.contacts.resize(carried.first.back());
+  std::vector<std::uint32_t> next(carried.first.begin(), carried.first.end() - 1);
   each_contact(body, [&](const WallList& list, std::int64_t c) {
     const WallContacts& active = list.active;
-    carried.contacts.push_back({new_index[list.bead[active.bead[c]]], active.feature[c], active.normal[c], std::ssize(carried.history)});
+    carried.contacts[next[new_bead(list, c)]++] = {active.feature[c], active.normal[c], std::ssize(carried.history)};
     for (const std::vector<double>& h : active.history) carried.history.push_back(h[c]);
   });
   for (SlabLists& slab : slabs_) slab.lists[body].active.resize(0);
-  std::stable_sort(carried.contacts.begin(), carried.contacts.end(), [](const Contact& a, const Contact& b) { return a.bead < b.bead; });
 }
 
 /// Makes the list of a slab: its beads with their candidates and contacts.
 void WallLists::deal(int slab, int body, const std::vector<Near>& near) {
-  const std::int64_t first = common_.slabs.begin(slab);
-  const auto& [carried, history] = carried_[body];
-  auto from = std::lower_bound(carried.begin(), carried.end(), first, [](const Contact& c, std::int64_t bead) { return c.bead < bead; });
+  const Carried& carried = carried_[body];
   WallList& list = of(slab, body);
   list.bead.clear();
   list.first.assign(1, 0);
   list.candidates.clear();
   for (auto at = near.begin(); at != near.end();) {
-    const std::uint32_t in_slab = at->bead, bead = static_cast<std::uint32_t>(first) + in_slab;
+    const std::uint32_t in_slab = at->bead, bead = static_cast<std::uint32_t>(common_.slabs.begin(slab)) + in_slab;
     const std::uint32_t local = static_cast<std::uint32_t>(list.bead.size());
     list.bead.push_back(bead);
     for (; at != near.end() && at->bead == in_slab; ++at) list.candidates.push_back(at->feature);
     list.first.push_back(std::ssize(list.candidates));
-    while (from != carried.end() && from->bead < bead) ++from;
-    for (; from != carried.end() && from->bead == bead; ++from) {
+    for (std::uint32_t c = carried.first[bead]; c < carried.first[bead + 1]; ++c) {
+      const Contact& contact = carried.contacts[c];
       list.active.bead.push_back(local);
-      list.active.feature.push_back(from->feature);
-      list.active.normal.push_back(from->normal);
-      for (std::int64_t h = 0; h < std::ssize(list.active.history); ++h) list.active.history[h].push_back(history[from->history + h]);
+      list.active.feature.push_back(contact.feature);
+      list.active.normal.push_back(contact.normal);
+      for (std::int64_t h = 0; h < std::ssize(list.active.history); ++h) {
+        list.active.history[h].push_back(carried.history[contact.history + h]);
+      }
     }
   }
 }

@@ -97,12 +97,13 @@ class WallLists {
     std::vector<WallList> lists;  ///< [body]
   };
   struct Contact {
-    std::uint32_t bead, feature;  ///< bead: its new number
+    std::uint32_t feature;
     Vector3 normal;
     std::int64_t history;  ///< its first number in Carried::history
   };
   /// Contacts on their way to a new list, by the beads' new numbers.
   struct Carried {
+    std::vector<std::uint32_t> first;  ///< [bead]; one more at the end
     std::vector<Contact> contacts;
     std::vector<double> history;
   };
