@@ -130,12 +130,6 @@ class PairLists::Builder {
   }
 
   void take_over(const Carried& carried, const std::vector<std::uint8_t>& material) {
-    const std::int64_t contacts = carried.start[slab_.end] - carried.start[slab_.begin];
-    for (PairList& list : lists_) {
-      for (auto& h : list.history) {
-        if (std::ssize(h) < contacts) h.resize(contacts + contacts / 8);
-      }
-    }
     count_.assign(lists_.size(), 0);  // of contacts from here on
     std::vector<std::uint32_t> entries;
     for (std::int64_t i = slab_.begin; i < slab_.end; ++i) {
@@ -198,7 +192,11 @@ class PairLists::Builder {
       if (list.partner[slot] != carried.partner[entry]) continue;
       list.touching[slot] = 1;
       const std::int64_t contact = count_[p]++, histories = common_.layout.history_count();
-      for (std::int64_t h = 0; h < histories; ++h) list.history[h][contact] = carried.history[entry * histories + h];
+      for (std::int64_t h = 0; h < histories; ++h) {
+        std::vector<double>& history = list.history[h];
+        if (std::ssize(history) == contact) history.resize(contact + contact / 4 + 64);
+        history[contact] = carried.history[entry * histories + h];
+      }
       return;
     }
   }
