@@ -1,6 +1,7 @@
 // Which beads are near one another is found in single precision: none is missed, wherever it stands, and each build finds the same.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -120,4 +121,68 @@ TEST_CASE("where thousands of small beads share a cell with large ones, the list
   pairs.begin_rebuild(order, beads.material);
   pairs.rebuild(0, order, beads.material);
   CHECK(pairs.of(0, 0).partner.capacity() < 100000);
+}
+
+// Odd beads are of another material. In a mirror the order of cells is another, and owners and partners change places.
+TEST_CASE("histories follow their pairs into the lists of several materials") {
+  PairPhysics same, mixed, other;
+  mixed.second = 1;
+  other.first = other.second = 1;
+  Common common(box({0, 0, 0}, ""), dem::Layout{{}, {1, -1}}, {{same, mixed, other}, 2});
+  Random random(11);
+  Particles beads;
+  beads.resize(400);
+  for (std::int64_t i = 0; i < beads.count(); ++i) {
+    beads.position[i].radius = 2.5e-3;
+    for (double& c : beads.position[i].centre) c = 0.05 * random.uniform();
+    beads.id[i] = static_cast<std::uint32_t>(i);
+    beads.material[i] = static_cast<std::uint8_t>(i % 2);
+  }
+  common.slabs.cut_equally(beads.count());
+  CellOrder order(common);
+  PairLists pairs(common);
+  pairs.clear();
+  const auto rebuild = [&] {
+    order.renew(beads, 0);
+    pairs.begin_rebuild(order, beads.material);
+    pairs.rebuild(0, order, beads.material);
+  };
+  const auto name = [&](std::uint32_t i, std::uint32_t j) {
+    const auto [small, large] = std::minmax(beads.id[i], beads.id[j]);
+    return 1000.0 * small + large + 1;
+  };
+  rebuild();
+  std::array<std::int64_t, 3> touching{}, kept{}, exchanged{};
+  for (int p = 0; p < 3; ++p) {
+    PairList& list = pairs.of(0, p);
+    for (auto& h : list.history) h.clear();
+    for (std::int64_t s = 0; s < list.count(); s += 3) {  // a third of them
+      const std::uint32_t i = list.owner[s], j = list.partner[s];
+      list.touching[s] = 1;
+      list.history[0].push_back(name(i, j));
+      list.history[1].push_back(beads.id[i] < beads.id[j] ? name(i, j) : -name(i, j));
+      ++touching[p];
+    }
+    REQUIRE(touching[p] > 20);
+  }
+  for (PositionLine& x : beads.position) {
+    for (double& c : x.centre) c = 0.05 - c;
+  }
+  rebuild();
+  for (int p = 0; p < 3; ++p) {
+    const PairList& list = pairs.of(0, p);
+    std::int64_t contact = 0;
+    for (std::int64_t s = 0; s < list.count(); ++s) {
+      if (list.touching[s] == 0) continue;
+      const std::uint32_t i = list.owner[s], j = list.partner[s];
+      const double sign = beads.id[i] < beads.id[j] ? 1 : -1;
+      CHECK(common.physics.of_beads(beads.material[i], beads.material[j]) == p);
+      CHECK(list.history[0][contact] == name(i, j));
+      CHECK(list.history[1][contact++] == sign * name(i, j));
+      exchanged[p] += sign < 0;
+      ++kept[p];
+    }
+    CHECK(kept[p] == touching[p]);
+    CHECK(exchanged[p] > 5);
+  }
 }
