@@ -123,21 +123,34 @@ TEST_CASE("where thousands of small beads share a cell with large ones, the list
   CHECK(pairs.of(0, 0).partner.capacity() < 100000);
 }
 
-// Odd beads are of another material. In a mirror the order of cells is another, and owners and partners change places.
-TEST_CASE("histories follow their pairs into the lists of several materials") {
+namespace {
+
+PhysicsTable two_materials() {
   PairPhysics same, mixed, other;
   mixed.second = 1;
   other.first = other.second = 1;
-  Common common(box({0, 0, 0}, ""), dem::Layout{{}, {1, -1}}, {{same, mixed, other}, 2});
+  return {{same, mixed, other}, 2};
+}
+
+Particles two_kinds(std::int64_t count) {
   Random random(11);
   Particles beads;
-  beads.resize(400);
-  for (std::int64_t i = 0; i < beads.count(); ++i) {
+  beads.resize(count);
+  for (std::int64_t i = 0; i < count; ++i) {
     beads.position[i].radius = 2.5e-3;
     for (double& c : beads.position[i].centre) c = 0.05 * random.uniform();
     beads.id[i] = static_cast<std::uint32_t>(i);
     beads.material[i] = static_cast<std::uint8_t>(i % 2);
   }
+  return beads;
+}
+
+}  // namespace
+
+// Odd beads are of another material. In a mirror the order of cells is another, and owners and partners change places.
+TEST_CASE("histories follow their pairs into the lists of several materials") {
+  Common common(box({0, 0, 0}, ""), dem::Layout{{}, {1, -1}}, two_materials());
+  Particles beads = two_kinds(400);
   common.slabs.cut_equally(beads.count());
   CellOrder order(common);
   PairLists pairs(common);

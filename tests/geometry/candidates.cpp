@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <thread>
@@ -47,6 +49,22 @@ TEST_CASE("Candidates are exactly the triangles within radius and margin") {
     }
   }
   CHECK(total > 500);
+}
+
+TEST_CASE("Whichever side of a box is the longest, the same triangles are near") {
+  std::array<double, 3> sides{1, 2, 5};  // of the cube's
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> u(-0.05, 1.05);
+  do {
+    INFO(sides[0] << " by " << sides[1] << " by " << sides[2]);
+    Soup soup = cube(0.02);
+    for (Point& p : soup.corners) p = {p.x * sides[0], p.y * sides[1], p.z * sides[2]};
+    const auto box = make_mesh(soup);
+    std::vector<Point> points;
+    for (int i = 0; i < 400; ++i) points.push_back({0.02 * sides[0] * u(random), 0.02 * sides[1] * u(random), 0.02 * sides[2] * u(random)});
+    const auto found = candidates_of(*box, points, 0.002, 0.0005);
+    for (std::size_t i = 0; i < points.size(); ++i) REQUIRE(found[i] == all_within(box->contact().triangles(), points[i], 0.0025));
+  } while (std::next_permutation(sides.begin(), sides.end()));
 }
 
 TEST_CASE("Beads outside the grid or with absurd values are no candidates and harm nothing") {
