@@ -174,7 +174,6 @@ void CandidateFinder::find(const GeometryBeads& beads, double margin, const Cand
   const double reach = largest + margin;
   if (!std::isfinite(reach)) throw Refusal("mesh: a bead's radius or the list margin is not finite");
   std::vector<NearBead> near;
-  near.reserve(beads.count);
   std::vector<std::uint64_t> unknown;
   std::shared_lock reading(known_);
   for (;;) {

@@ -133,13 +133,10 @@ class PairLists::Builder {
     count_.assign(lists_.size(), 0);  // of contacts from here on
     std::vector<std::uint32_t> entries;
     for (std::int64_t i = slab_.begin; i < slab_.end; ++i) {
-      entries.clear();
-      for (std::uint32_t e = carried.start[i]; e < carried.start[i + 1]; ++e) {  // as their slots stand
-        entries.push_back(e);
-        for (std::size_t k = entries.size() - 1; k > 0 && carried.partner[entries[k - 1]] > carried.partner[e]; --k) {
-          std::swap(entries[k - 1], entries[k]);
-        }
-      }
+      entries.resize(carried.start[i + 1] - carried.start[i]);
+      std::iota(entries.begin(), entries.end(), carried.start[i]);
+      // As their slots stand.
+      std::sort(entries.begin(), entries.end(), [&](std::uint32_t a, std::uint32_t b) { return carried.partner[a] < carried.partner[b]; });
       for (const std::uint32_t e : entries) {
         take_over(carried, e, i, only_ ? *only_ : common_.physics.of_beads(material[i], material[carried.partner[e]]));
       }

@@ -33,14 +33,14 @@ inline Eight nearest(Eight a) {
 
 /// Few beads stand side by side in three cells: eight at once are mostly all of them, and the last are no special case.
 template <Repeats kRepeats>
-std::int64_t near_repeating(const NearPlaces& places, const PeriodicBox& box, BeadRange owners, const BeadRange* ranges, int count,
+std::int64_t near_repeating(const NearPlaces& places, const Box4& box, BeadRange owners, const BeadRange* ranges, int count,
                             const NearSlots& found) {
   const NearPlaces p = places;
   const NearSlots f = found;
   Eight length[3], inverse[3];
   for (int a = 0; a < 3; ++a) {
     length[a] = eight(static_cast<float>(box.length[a]));
-    inverse[a] = eight(box.length[a] > 0 ? static_cast<float>(1.0 / box.length[a]) : 0.0F);
+    inverse[a] = eight(static_cast<float>(box.inverse[a]));
   }
   std::int64_t n = 0;
   for (std::int64_t i = owners.begin; i < owners.end; ++i) {
@@ -68,10 +68,10 @@ std::int64_t near_repeating(const NearPlaces& places, const PeriodicBox& box, Be
   return n;
 }
 
-std::int64_t near(const NearPlaces& places, const PeriodicBox& box, BeadRange owners, const BeadRange* ranges, int count,
+std::int64_t near(const NearPlaces& places, const PeriodicBox& periodic, BeadRange owners, const BeadRange* ranges, int count,
                   const NearSlots& found) {
-  return with_repeats(box4(box).repeats,
-                      [&]<Repeats kRepeats>() { return near_repeating<kRepeats>(places, box, owners, ranges, count, found); });
+  const Box4 box = box4(periodic);
+  return with_repeats(box.repeats, [&]<Repeats kRepeats>() { return near_repeating<kRepeats>(places, box, owners, ranges, count, found); });
 }
 
 }  // namespace

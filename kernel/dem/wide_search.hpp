@@ -90,7 +90,7 @@ inline void store_bits(std::uint8_t* flags, unsigned bits) {
   __builtin_memcpy(flags + 4, &kKept.flags[bits >> 4], 4);
 }
 
-/// Asks for the lines of two beads after the other.
+/// Asks early for the lines of beads, two at a time.
 struct Lookahead {
   const GatherContext& g;
   std::int64_t bead = g.ahead;

@@ -34,9 +34,8 @@ Workers::~Workers() {
 
 void Workers::share(int worker) {
   try {
-    const auto next = [&] { return next_.fetch_add(1, std::memory_order_relaxed); };
     if (turns_ == Turns::any) {
-      for (int task = next(); task < tasks_; task = next()) (*task_)(task, worker);
+      for (int task; (task = next_.fetch_add(1, std::memory_order_relaxed)) < tasks_;) (*task_)(task, worker);
     } else {
       const int last = first(worker + 1, tasks_);
       for (int slab = first(worker, tasks_); slab < last; ++slab) (*task_)(slab, worker);

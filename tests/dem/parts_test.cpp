@@ -7,37 +7,18 @@
 #include <map>
 #include <set>
 
+#include "dem/lists.hpp"
 #include "kernel/dem/schedule.hpp"
 #include "kernel/dem/wall_lists.hpp"
 #include "millscope/random.hpp"
 
 using namespace millscope;
 using namespace millscope::dem;
+using namespace dem_test;
 
 namespace {
 
 constexpr double kSide = 0.05, kBeadRadius = 2.5e-3;  // m
-
-Settings open_box(int partitions) {
-  Settings s;
-  s.time_step = 1e-5;
-  s.partitions = partitions;
-  for (int a = 0; a < 3; ++a) {
-    s.low[a] = -1;
-    s.high[a] = 1;
-  }
-  return s;
-}
-
-PhysicsTable one_material() {
-  PairPhysics beads, wall;
-  wall.second = 1;
-  wall.wall = true;
-  return {{beads, wall}, 2};
-}
-
-/// Two numbers per contact, the second odd: it changes sign when owner and partner change places.
-const dem::Layout kOneEvenOneOdd{{}, {1, -1}};
 
 Particles strewn(std::int64_t count, std::uint64_t seed) {
   Random random(seed);
@@ -51,55 +32,12 @@ Particles strewn(std::int64_t count, std::uint64_t seed) {
   return p;
 }
 
-void rebuild_lists(Common& common, const CellOrder& order, PairLists& pairs, const Particles& beads) {
-  pairs.begin_rebuild(order, beads.material);
-  common.each_slab([&](int slab, int) { pairs.rebuild(slab, order, beads.material); });
+/// Those with odd ids are of another material.
+Particles two_kinds(std::int64_t count, std::uint64_t seed) {
+  Particles p = strewn(count, seed);
+  for (std::int64_t i = 0; i < count; ++i) p.material[i] = static_cast<std::uint8_t>(i % 2);
+  return p;
 }
-
-/// Order and pair lists of some beads, and what they keep.
-struct Lists {
-  explicit Lists(Particles beads, int partitions = 4)
-      : common(open_box(partitions), kOneEvenOneOdd, one_material()), order(common), pairs(common), particles(std::move(beads)) {
-    common.slabs.cut_equally(particles.count());
-    pairs.clear();
-    rebuild();
-  }
-  void rebuild() {
-    order.renew(particles, 0);
-    rebuild_lists(common, order, pairs, particles);
-  }
-  /// Makes all pairs touch that overlap; the numbers say which pair it is, as seen from its owner.
-  void touch() {
-    for (int slab = 0; slab < common.slabs.count; ++slab) {
-      PairList& list = pairs.of(slab, 0);
-      for (auto& h : list.history) h.clear();
-      for (std::int64_t s = 0; s < list.count(); ++s) {
-        const std::uint32_t i = list.owner[s], j = list.partner[s];
-        list.touching[s] = distance(i, j) < 2 * kBeadRadius;
-        if (!list.touching[s]) continue;
-        list.history[0].push_back(name(i, j));
-        list.history[1].push_back(particles.id[i] < particles.id[j] ? name(i, j) : -name(i, j));
-      }
-    }
-  }
-  double name(std::uint32_t i, std::uint32_t j) const {
-    const auto [small, large] = std::minmax(particles.id[i], particles.id[j]);
-    return 1000.0 * small + large + 1;
-  }
-  double distance(std::uint32_t i, std::uint32_t j) const {
-    double square = 0;
-    for (int a = 0; a < 3; ++a) {
-      const double d = particles.position[i].centre[a] - particles.position[j].centre[a];
-      square += d * d;
-    }
-    return std::sqrt(square);
-  }
-
-  Common common;
-  CellOrder order;
-  PairLists pairs;
-  Particles particles;
-};
 
 /// A geometry that says of each bead which features are near.
 struct MadeUpWall {
@@ -130,28 +68,39 @@ void rebuild_walls(Lists& l, WallLists& walls, MadeUpWall& wall) {
 }  // namespace
 
 TEST_CASE("histories follow their pairs through a rebuild, and odd ones change sign with the owner") {
-  Lists l(strewn(300, 1));
-  l.touch();
-  std::int64_t touching = 0;
-  l.pairs.each_contact([&](const PairList&, std::int64_t, std::int64_t) { ++touching; });
-  REQUIRE(touching > 100);
-  // Seen in a mirror the order of cells is another, and what is near stays near.
-  for (PositionLine& x : l.particles.position) {
-    for (double& c : x.centre) c = kSide - c;
+  for (const bool several : {false, true}) {
+    INFO((several ? "two materials" : "one material"));
+    Lists l(several ? two_kinds(300, 1) : strewn(300, 1), open_box(1, 4), several ? two_materials() : one_material());
+    l.touch();
+    std::int64_t touching = 0;
+    l.pairs.each_contact([&](const PairList&, std::int64_t, std::int64_t) { ++touching; });
+    REQUIRE(touching > 100);
+    // Seen in a mirror the order of cells is another, and what is near stays near.
+    for (PositionLine& x : l.particles.position) {
+      for (double& c : x.centre) c = kSide - c;
+    }
+    l.rebuild();
+    std::int64_t exchanged = 0, kept = 0;
+    std::map<int, std::int64_t> exchanged_of;  // pairs of materials
+    for (int slab = 0; slab < l.common.slabs.count; ++slab) {
+      l.pairs.each_contact(slab, [&](const PairList& list, std::int64_t slot, std::int64_t contact) {
+        const std::uint32_t i = list.owner[slot], j = list.partner[slot];
+        const double sign = l.particles.id[i] < l.particles.id[j] ? 1 : -1;
+        const int p = l.common.physics.of_beads(l.particles.material[i], l.particles.material[j]);
+        CHECK(&list == &l.pairs.of(slab, p));
+        CHECK(list.history[0][contact] == l.name(i, j));
+        CHECK(list.history[1][contact] == sign * l.name(i, j));
+        exchanged += sign < 0;
+        exchanged_of[p] += sign < 0;
+        ++kept;
+      });
+    }
+    CHECK(kept == touching);
+    CHECK(exchanged > 20);
+    CHECK(exchanged < kept - 20);
+    CHECK(exchanged_of.size() == (several ? 3 : 1));
+    for (const auto& [p, count] : exchanged_of) CHECK(count > 5);
   }
-  l.rebuild();
-  std::int64_t exchanged = 0, kept = 0;
-  l.pairs.each_contact([&](const PairList& list, std::int64_t slot, std::int64_t contact) {
-    const std::uint32_t i = list.owner[slot], j = list.partner[slot];
-    const double sign = l.particles.id[i] < l.particles.id[j] ? 1 : -1;
-    CHECK(list.history[0][contact] == l.name(i, j));
-    CHECK(list.history[1][contact] == sign * l.name(i, j));
-    exchanged += sign < 0;
-    ++kept;
-  });
-  CHECK(kept == touching);
-  CHECK(exchanged > 20);
-  CHECK(exchanged < kept - 20);
 }
 
 TEST_CASE("a pair that is listed no more loses its history, the others keep theirs") {
@@ -261,18 +210,13 @@ TEST_CASE("contacts at a wall go with their bead to its new number and slab, and
 
 // All slabs are gone through as a step of one worker does it: a bead carries forces from the first pair that touches it until phase B.
 TEST_CASE("phase B follows right behind the last pair that touches a bead, and the ring holds all beads that carry forces at once") {
-  Particles beads = strewn(20000, 5);
-  for (PositionLine& x : beads.position) x.centre[0] *= 20;  // longer than wide: a slab is much longer than its pairs reach
-  Settings settings = open_box(3);
+  Particles long_bed = strewn(20000, 5);
+  for (PositionLine& x : long_bed.position) x.centre[0] *= 20;  // longer than wide: a slab is much longer than its pairs reach
+  Settings settings = open_box(1, 3);
   settings.high[0] = 3;
-  Common common(settings, kOneEvenOneOdd, one_material());
-  common.slabs.cut_equally(beads.count());
-  CellOrder order(common);
-  PairLists pairs(common);
+  Lists l(std::move(long_bed), settings, one_material());
+  auto& [common, order, pairs, beads] = l;
   Schedule schedule(common);
-  pairs.clear();
-  order.renew(beads, 0);
-  rebuild_lists(common, order, pairs, beads);
   schedule.renew(pairs, beads.count());
   // The last pair of all, in the order of a step, that touches each bead.
   std::vector<std::int64_t> last_touch(beads.count(), -1);
@@ -312,18 +256,9 @@ TEST_CASE("phase B follows right behind the last pair that touches a bead, and t
 }
 
 TEST_CASE("where lists of several pairs of materials follow one another, a slab carries its forces at once") {
-  PairPhysics same, mixed, other;
-  mixed.second = other.first = other.second = 1;
-  Common common(open_box(2), kOneEvenOneOdd, PhysicsTable({same, mixed, other}, 2));
-  Particles beads = strewn(2000, 6);
-  for (std::int64_t i = 0; i < beads.count(); ++i) beads.material[i] = static_cast<std::uint8_t>(i % 2);
-  common.slabs.cut_equally(beads.count());
-  CellOrder order(common);
-  PairLists pairs(common);
+  Lists l(two_kinds(2000, 6), open_box(1, 2), two_materials());
+  auto& [common, order, pairs, beads] = l;
   Schedule schedule(common);
-  pairs.clear();
-  order.renew(beads, 0);
-  rebuild_lists(common, order, pairs, beads);
   schedule.renew(pairs, beads.count());
   CHECK(schedule.last_list() == 2);
   CHECK(schedule.ring() > common.slabs.end(0));
