@@ -90,4 +90,16 @@ struct WallBatch : ContactArrays {
   double* worn;              ///< what they say: m³ of the body, in this step
 };
 
+/// Beads as body forces see them (BodyForceBatch), and what these answer; like the arrays above.
+struct BodyForceArrays {
+  double* position[3];
+  double* velocity[3];
+  double* spin[3];
+  double* radius;
+  double* mass;
+  double* force[3];
+  double* moment[3];
+  double* added_mass;
+};
+
 }  // namespace millscope::dem

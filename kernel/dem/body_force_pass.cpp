@@ -3,27 +3,10 @@
 namespace millscope::dem {
 
 void BodyForcePass::run(BeadRange beads) {
-  gather(beads);
+  const WideTable& wide = pass_.common.wide;
+  wide.gather_bodies(pass_.particles.position.data(), pass_.particles.motion.data(), beads, pass_.scratch.bodies);
   evaluate(beads.end - beads.begin);
-  scatter(beads);
-}
-
-void BodyForcePass::gather(BeadRange beads) {
-  const BodyForceArrays& b = pass_.scratch.bodies;
-  for (std::int64_t i = beads.begin; i < beads.end; ++i) {
-    const std::int64_t k = i - beads.begin;
-    const PositionLine& x = pass_.particles.position[i];
-    const MotionLine& m = pass_.particles.motion[i];
-    for (int a = 0; a < 3; ++a) {
-      b.position[a][k] = x.centre[a];
-      b.velocity[a][k] = m.v[a];
-      b.spin[a][k] = m.w[a];
-      b.force[a][k] = b.moment[a][k] = 0.0;
-    }
-    b.radius[k] = x.radius;
-    b.mass[k] = 1.0 / m.inverse_mass;
-    b.added_mass[k] = 0.0;
-  }
+  wide.scatter_bodies(pass_.force, beads, acceleration_.data(), pass_.scratch.bodies);
 }
 
 void BodyForcePass::evaluate(std::int64_t count) {
@@ -46,22 +29,6 @@ void BodyForcePass::evaluate(std::int64_t count) {
                          0.0};
     forces_[f].table->evaluate(forces_[f].self, &batch);
     pass_.state.ledger.body_force_work[f] += batch.power_sum * time_step;
-  }
-}
-
-/// The fluid that moves with a bead slows all that acts on it: (m + m_a) a = ΣF + m g, scaled so that the integrator's F/m + g gives that.
-void BodyForcePass::scatter(BeadRange beads) {
-  const BodyForceArrays& b = pass_.scratch.bodies;
-  for (std::int64_t i = beads.begin; i < beads.end; ++i) {
-    const std::int64_t k = i - beads.begin;
-    ForceLine& line = pass_.force[i];
-    for (int a = 0; a < 3; ++a) {
-      line.f[a] += b.force[a][k];
-      line.t[a] += b.moment[a][k];
-    }
-    if (b.added_mass[k] == 0.0) continue;
-    const double mass = b.mass[k], ratio = mass / (mass + b.added_mass[k]);
-    for (int a = 0; a < 3; ++a) line.f[a] = ratio * (line.f[a] + mass * acceleration_[a]) - mass * acceleration_[a];
   }
 }
 

@@ -18,9 +18,7 @@ class BodyForcePass {
   void run(BeadRange beads);
 
  private:
-  void gather(BeadRange beads);
   void evaluate(std::int64_t count);
-  void scatter(BeadRange beads);
 
   const SlabPass& pass_;
   const std::vector<BodyForceReference>& forces_;

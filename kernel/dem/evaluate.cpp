@@ -78,6 +78,18 @@ void run_interactions(const BatchRun& run, bool pre, std::int64_t padded, Contac
   }
 }
 
+/// What interactions press, on top of the law's own.
+void add_to_law(std::int64_t padded, ContactArrays& b) {
+  const double* __restrict added = b.added_force;
+  double* __restrict normal_force = b.normal_force;
+  for (std::int64_t k = 0; k < padded; ++k) normal_force[k] += added[k];
+  for (int a = 0; a < 3; ++a) {
+    const double* __restrict normal = b.normal[a];
+    double* __restrict force = b.force[a];
+    for (std::int64_t k = 0; k < padded; ++k) force[k] += added[k] * normal[k];
+  }
+}
+
 void run_pair_parameters(const BatchRun& run, std::int64_t padded, ContactArrays& b, ContactBatch& contacts) {
   std::size_t history = run.physics->law.table->info.history_count;
   for (const InteractionReference& i : run.physics->interactions) history += i.table->info.history_count;
@@ -153,12 +165,7 @@ void evaluate(const BatchRun& run, ContactArrays& b, PairLedger& ledger) {
   law.evaluate(run.physics->law.self, &contacts);
   ledger.elastic += contacts.elastic_sum;
   for (std::size_t c = 0; c < law.info.channel_count; ++c) ledger.dissipated[c] += contacts.power_sum[c] * run.time_step;
-  if (pre) {
-    for (std::int64_t k = 0; k < padded; ++k) {
-      b.normal_force[k] += b.added_force[k];
-      for (int a = 0; a < 3; ++a) b.force[a][k] += b.added_force[k] * b.normal[a][k];
-    }
-  }
+  if (pre) add_to_law(padded, b);
   if (post) {
     for (int a = 0; a < 3; ++a) {
       fill(b.moment_i[a], padded, 0.0);

@@ -9,18 +9,6 @@
 
 namespace millscope::dem {
 
-/// What BodyForceBatch is filled from.
-struct BodyForceArrays {
-  double* position[3];
-  double* velocity[3];
-  double* spin[3];
-  double* radius;
-  double* mass;
-  double* force[3];
-  double* moment[3];
-  double* added_mass;
-};
-
 /// What the kernel notes of a contact that the geometry found.
 struct FoundContact {
   static constexpr int kOutOfReach = -1;

@@ -3,6 +3,7 @@
 #include "kernel/dem/wide.hpp"
 
 #include "kernel/dem/four.hpp"
+#include "kernel/dem/wide_bodies.hpp"
 #include "kernel/dem/wide_near.hpp"
 #include "kernel/dem/wide_search.hpp"
 #include "kernel/dem/wide_walls.hpp"
@@ -16,8 +17,8 @@ inline void store_each(double* const* to, std::int64_t k, const Four (&v)[kCount
 }
 
 /// Four contacts from place k on: overlap, normal and the surfaces' relative velocity
-/// v_i − v_j − (a_i ω_i + a_j ω_j) × n, a = r − δ/2.
-template <bool kEqual, Repeats kRepeats>
+/// v_i − v_j − (a_i ω_i + a_j ω_j) × n, a = r − δ/2; where interactions need them, the spins.
+template <bool kEqual, bool kSpins, Repeats kRepeats>
 inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k, const PairBatch& b) {
   const double* __restrict x = reinterpret_cast<const double*>(g.position);
   const double* __restrict m = reinterpret_cast<const double*>(g.motion);
@@ -28,9 +29,8 @@ inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k,
     v[c] = load4(m + 8 * i) + negate3(load4(m + 8 * j));
     wi[c] = load4(m + 8 * i + 4);
     wj[c] = load4(m + 8 * j + 4);
-    if constexpr (kEqual) {
-      wi[c] += wj[c];
-    } else {
+    if constexpr (kEqual && !kSpins) wi[c] += wj[c];
+    if constexpr (!kEqual) {
       ri[c] = x[4 * i + 3];
       rj[c] = x[4 * j + 3];
     }
@@ -39,6 +39,11 @@ inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k,
   each_minimum_image<kRepeats>(d, box);
   transpose(v[0], v[1], v[2], v[3]);
   transpose(wi[0], wi[1], wi[2], wi[3]);
+  if constexpr (!kEqual || kSpins) transpose(wj[0], wj[1], wj[2], wj[3]);
+  if constexpr (kSpins) {
+    store_each(b.spin_i, k, wi);
+    store_each(b.spin_j, k, wj);
+  }
   const Four distance = root(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]), inverse = four(1.0) / distance;
   const Four n[3] = {d[0] * inverse, d[1] * inverse, d[2] * inverse};
   Four w[3];
@@ -46,9 +51,8 @@ inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k,
     const Four arm = four(0.5) * distance;
     store4_unaligned(b.overlap + k, four(2 * g.radius) - distance);
     store4_unaligned(b.arm_i + k, arm);
-    for (int a = 0; a < 3; ++a) w[a] = arm * wi[a];
+    for (int a = 0; a < 3; ++a) w[a] = arm * (kSpins ? wi[a] + wj[a] : wi[a]);
   } else {
-    transpose(wj[0], wj[1], wj[2], wj[3]);
     const Four sum = ri + rj, half = four(0.5) * (sum - distance), arm_i = ri - half, arm_j = rj - half;
     store4_unaligned(b.overlap + k, sum - distance);
     store4_unaligned(b.radius_i + k, ri);
@@ -57,8 +61,6 @@ inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k,
     store4_unaligned(b.mass + k, four(1.0) / v[3]);
     store4_unaligned(b.arm_i + k, arm_i);
     store4_unaligned(b.arm_j + k, arm_j);
-    store_each(b.spin_i, k, wi);
-    store_each(b.spin_j, k, wj);
     for (int a = 0; a < 3; ++a) w[a] = arm_i * wi[a] + arm_j * wj[a];
   }
   const Four surfaces[3] = {v[0] - (w[1] * n[2] - w[2] * n[1]), v[1] - (w[2] * n[0] - w[0] * n[2]), v[2] - (w[0] * n[1] - w[1] * n[0])};
@@ -66,29 +68,11 @@ inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k,
   store_each(b.velocity, k, surfaces);
 }
 
-template <bool kEqual>
+template <bool kEqual, bool kSpins>
 void gather_all(const GatherContext& g, const Box4& box, std::int64_t padded, const PairBatch& b) {
   with_repeats(box.repeats, [&]<Repeats kRepeats>() {
-    for (std::int64_t k = 0; k < padded; k += 4) gather_four<kEqual, kRepeats>(g, box, k, b);
+    for (std::int64_t k = 0; k < padded; k += 4) gather_four<kEqual, kSpins, kRepeats>(g, box, k, b);
   });
-}
-
-/// Of equal beads, where interactions need them.
-void gather_spins(const GatherContext& g, std::int64_t padded, PairBatch& b) {
-  const double* m = reinterpret_cast<const double*>(g.motion);
-  for (std::int64_t k = 0; k < padded; k += 4) {
-    Four p[4], q[4];
-    for (int c = 0; c < 4; ++c) {
-      p[c] = load4(m + 8 * static_cast<std::int64_t>(b.owner[k + c]) + 4);
-      q[c] = load4(m + 8 * static_cast<std::int64_t>(b.partner[k + c]) + 4);
-    }
-    transpose(p[0], p[1], p[2], p[3]);
-    transpose(q[0], q[1], q[2], q[3]);
-    for (int a = 0; a < 3; ++a) {
-      store4_unaligned(b.spin_i[a] + k, p[a]);
-      store4_unaligned(b.spin_j[a] + k, q[a]);
-    }
-  }
 }
 
 void gather_history(const PairListView& list, std::int64_t count, std::int64_t padded, PairBatch& b) {
@@ -128,12 +112,9 @@ void gather(const GatherContext& g, const PairListView& list, std::int64_t count
     partner[k] = partner[count - 1];
   }
   const PairBatch local = b;
-  if (g.equal) {
-    gather_all<true>(g, box, padded, local);
-    if (g.spins) gather_spins(g, padded, b);
-  } else {
-    gather_all<false>(g, box, padded, local);
-  }
+  const auto all = g.equal ? (g.spins ? gather_all<true, true> : gather_all<true, false>)
+                           : (g.spins ? gather_all<false, true> : gather_all<false, false>);
+  all(g, box, padded, local);
   gather_history(list, count, padded, b);
   for (std::int32_t h = 0; h < list.history_count; ++h) {  // those of the next batch, about as many
     for (std::int64_t k = 0; k < count; k += 8) __builtin_prefetch(list.history[h] + list.read + k, 0, 2);
@@ -336,6 +317,7 @@ IntegrateResult integrate(const IntegrateContext& context) {
 }  // namespace
 
 extern const WideTable MILLSCOPE_WIDE;
-const WideTable MILLSCOPE_WIDE = {MILLSCOPE_WIDE_NAME, search, gather, scatter, to_frame, gather_walls, scatter_walls, integrate, near};
+const WideTable MILLSCOPE_WIDE = {MILLSCOPE_WIDE_NAME, search,        gather,         scatter,   to_frame, gather_walls,
+                                  scatter_walls,       gather_bodies, scatter_bodies, integrate, near};
 
 }  // namespace millscope::dem

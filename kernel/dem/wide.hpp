@@ -102,6 +102,10 @@ struct WideTable {
   void (*gather_walls)(const WallGather&, const WallPose&, std::int64_t count, WallBatch&);
   /// Adds force and torque (and moments when `with_moments`) to the beads and to what the body gets.
   void (*scatter_walls)(const WallPose&, const ForceWindow&, std::int64_t count, bool with_moments, WallBatch&, WallSums&);
+  /// Beads for body forces; force, moment and added mass are 0.
+  void (*gather_bodies)(const PositionLine*, const MotionLine*, BeadRange, const BodyForceArrays&);
+  /// What body forces answered, on top of all that the contacts push; `acceleration` of those that are uniform, m/s².
+  void (*scatter_bodies)(const ForceWindow&, BeadRange, const double* acceleration, const BodyForceArrays&);
   /// Kick, drift, predict; clears the forces.
   IntegrateResult (*integrate)(const IntegrateContext&);
   /// Lists for each of some owners i the j < i of `count` ranges with |x_i − x_j| < reach_i + reach_j. Returns how many pairs they are;

@@ -115,7 +115,9 @@ TEST_CASE("the bridge's energy is the work to break it, and that is what a touch
     double work = 0;
     constexpr int kSteps = 4000;
     for (int k = 0; k < kSteps; ++k) {
-      work -= b.at((k + 0.5) / kSteps * end) * end / kSteps;
+      const double half = -0.5 * b.at((k + 0.5) / kSteps * end) * end / kSteps;
+      CHECK(-b.pair.batch.elastic_sum == Approx(bound - (work + half)).margin(1e-5 * bound));  // what is left, on the way
+      work += 2 * half;
       CHECK(b.pair.batch.power_sum[0] == 0.0);  // booked once
     }
     INFO(text);

@@ -4,7 +4,8 @@
 //   log₂ x: x = 2^e m with √½ ≤ m < √2, log₂ x = e + 2/ln 2 · (s + s³/3 + s⁵/5 + …), s = (m − 1)/(m + 1), |s| < 0.172
 //   2^t: t = n + f with n whole and |f| ≤ ½, 2^t = 2^n Σ (f ln 2)^k/k!
 //
-// Both series are cut where what they leave is below 1e-17. Relative errors: of 2^t below 4e-16, of e^x below 3e-16 (1 + |x|), of x^y below
+// Both series are cut where what they leave is below 1e-17. Their even and their odd terms are summed side by side: a processor need not
+// wait for the one to go on with the other. Relative errors: of 2^t below 4e-16, of e^x below 3e-16 (1 + |x|), of x^y below
 // 1e-15 (1 + |y log₂ x|) while that is within 2^±1022. What is no number stays none; infinite ones are outside.
 #pragma once
 
@@ -45,6 +46,19 @@ inline constexpr std::uint64_t kWholeBits = 0x4338000000000000, kMantissa = 0x00
 inline constexpr int kMantissaBits = 52;
 inline constexpr std::uint64_t kExponentBias = 1023;
 
+struct InverseFactorials {
+  double value[15];
+  constexpr InverseFactorials() : value{} {
+    double factorial = 1;  // exact up to 18!
+    for (int k = 0; k < 15; ++k) {
+      factorial *= k > 0 ? k : 1;
+      value[k] = 1 / factorial;
+    }
+  }
+  constexpr double operator[](int k) const { return value[k]; }
+};
+inline constexpr InverseFactorials kInverseFactorial;
+
 }  // namespace detail
 
 /// log₂ x for normal x > 0; for what is smaller, the logarithm of the smallest normal number (−1022).
@@ -56,10 +70,11 @@ R binary_logarithm(R x) {
   const auto upper = m > R(std::numbers::sqrt2);
   m = select(upper, R(0.5) * m, m);
   e = e + select(upper, R(1.0), R(0.0));
-  const R s = (m - R(1.0)) / (m + R(1.0)), square = s * s;
-  R sum(1.0 / 21.0);
-  for (int k = 9; k >= 0; --k) sum = R(1.0 / (2 * k + 1)) + square * sum;
-  return select(x <= x, e + R(2.0 * std::numbers::log2e) * (s * sum), x);
+  const R s = (m - R(1.0)) / (m + R(1.0)), square = s * s, fourth = square * square;
+  R even(1.0 / 21.0), odd(1.0 / 19.0);
+  for (int k = 8; k >= 0; k -= 2) even = R(1.0 / (2 * k + 1)) + fourth * even;
+  for (int k = 7; k >= 1; k -= 2) odd = R(1.0 / (2 * k + 1)) + fourth * odd;
+  return select(x <= x, e + R(2.0 * std::numbers::log2e) * (s * (even + square * odd)), x);
 }
 
 /// 2^t; t is taken to lie from −1022 to 1023.
@@ -68,10 +83,12 @@ R binary_power(R exponent) {
   const R t = maximum(R(-1022.0), minimum(exponent, R(1023.0)));
   const R shifted = t + R(detail::kWhole);
   const R f = R(std::numbers::ln2) * (t - (shifted - R(detail::kWhole)));
-  R sum(1.0);
-  for (int k = 14; k >= 1; --k) sum = R(1.0) + f * sum * R(1.0 / k);
+  const R square = f * f;
+  R even(detail::kInverseFactorial[14]), odd(detail::kInverseFactorial[13]);
+  for (int k = 12; k >= 2; k -= 2) even = R(detail::kInverseFactorial[k]) + square * even;
+  for (int k = 11; k >= 1; k -= 2) odd = R(detail::kInverseFactorial[k]) + square * odd;
   const R whole = detail::from_bits<R>((detail::bits_of(shifted) - detail::kWholeBits + detail::kExponentBias) << detail::kMantissaBits);
-  return select(exponent <= exponent, sum * whole, exponent);
+  return select(exponent <= exponent, (R(1.0) + (f * odd + square * even)) * whole, exponent);
 }
 
 /// e^x for −708 ≤ x ≤ 709; beyond, 2^−1022 and 2^1023.
