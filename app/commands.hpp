@@ -2,6 +2,7 @@
 #pragma once
 
 #include <boost/program_options.hpp>
+#include <cstdint>
 #include <map>
 #include <span>
 #include <string>
@@ -97,6 +98,7 @@ class Options {
   std::vector<std::string> list(const std::string& name) const;
   int integer(const std::string& name) const { return values_[name].as<int>(); }
   double number(const std::string& name) const { return values_[name].as<double>(); }
+  std::uint64_t seed(const std::string& name) const;  ///< declared as text; throws UserError for what is no whole number of 64 bits
   host::Registry registry() const;
 
  private:

@@ -141,7 +141,7 @@ doe::Design plan_of(const Options& options) {
   if (kind == "two-level") return doe::two_level(factors, options.list("generators"), centre_points);
   if (options.has("generators")) throw UserError(fmt::format("--generators: a {} plan has none; leave the option out", kind));
   if (kind == "central-composite") return doe::central_composite(factors, axial_of(options, factors.size()), centre_points);
-  if (kind == "latin-hypercube") return doe::latin_hypercube(factors, runs(), static_cast<std::uint64_t>(whole(options, "seed", 1)));
+  if (kind == "latin-hypercube") return doe::latin_hypercube(factors, runs(), options.seed("seed"));
   if (kind == "sobol") return doe::sobol(factors, runs());
   throw UserError(fmt::format("'doe design {}' is no plan; {}", kind,
                               base::suggestion(kind, {"two-level", "central-composite", "latin-hypercube", "sobol"})));
@@ -161,7 +161,7 @@ int design(const Arguments& arguments) {
   options.add()("centre-points", po::value<int>()->value_name("N"), "runs at the centre (default: 3)");
   options.add()("axial", po::value<std::string>()->value_name("STEPS"), "rotatable (default), face-centred or a number of steps");
   options.add()("runs", po::value<int>()->value_name("N"), "of a Latin hypercube or Sobol' plan");
-  options.add()("seed", po::value<int>()->value_name("N"), "of a Latin hypercube (default: 1)");
+  options.add()("seed", po::value<std::string>()->value_name("N")->default_value("1"), "of a Latin hypercube");
   options.add()("output,o", po::value<std::string>()->value_name("PLAN.csv"), "write the table (default: print it)");
   options.add()("force", "replace PLAN.csv");
   if (!options.parse(arguments)) return kDone;

@@ -1,6 +1,8 @@
 #include <fmt/core.h>
 
+#include <charconv>
 #include <iostream>
+#include <limits>
 #include <sstream>
 
 #include "app/commands.hpp"
@@ -97,6 +99,14 @@ std::string Options::text(const std::string& name) const {
   const auto& value = values_[name].value();
   if (const auto* list = boost::any_cast<std::vector<std::string>>(&value)) return list->front();
   return boost::any_cast<std::string>(value);
+}
+
+std::uint64_t Options::seed(const std::string& name) const {
+  const std::string digits = text(name);
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc{} && end == digits.data() + digits.size()) return value;
+  throw UserError(fmt::format("--{} {}: a seed is a whole number from 0 to {}", name, digits, std::numeric_limits<std::uint64_t>::max()));
 }
 
 std::vector<std::string> Options::list(const std::string& name) const {

@@ -53,7 +53,7 @@ int pept_synthesize(const Arguments& arguments) {
                 "the camera of this recording, estimated; written to FILE_camera.yaml");
   options.add()("bead", po::value<std::vector<std::string>>()->value_name("ID"),
                 "only this bead (may be repeated; default: all that were followed)");
-  options.add()("seed", po::value<int>()->value_name("N")->default_value(1), "another seed gives another noise");
+  options.add()("seed", po::value<std::string>()->value_name("N")->default_value("1"), "another seed gives another noise");
   options.add()("from", po::value<double>()->value_name("S"), "leave out what comes before, s (default: time.analyze_from_s of the case)");
   options.add()("force", "overwrite files");
   options.with_overrides("replace a value of the camera (may be repeated), e.g. --set observations.noise.growth=0");
@@ -63,7 +63,7 @@ int pept_synthesize(const Arguments& arguments) {
   const camera::SimulatedBeads beads(options.text("OUT"), registry);
   camera::SynthesisRequest request;
   request.file = options.text("output");
-  request.seed = static_cast<std::uint64_t>(options.integer("seed"));
+  request.seed = options.seed("seed");
   request.overwrite = options.has("force");
   if (options.has("from")) request.from = options.number("from");
   for (const std::string& id : options.list("bead")) {

@@ -77,6 +77,14 @@ class Mistyped(CliTest):
             self.assert_one_line(self.millscope("run", "case.yaml", "-o", "out", f"--threads={word}"), "threads")
         self.assertFalse((self.folder / "out").exists())
 
+    def test_seed(self):
+        plan = ("doe", "design", "latin-hypercube", "-f", "A=0:1", "-f", "B=0:1", "--runs", "8")
+        for word in ("-1", "1.5", "one", "1 ", "18446744073709551616"):
+            self.assert_one_line(self.millscope(*plan, f"--seed={word}"), f"--seed {word}: a seed is a whole number from 0 to 18446744073709551615")
+        plans = [self.succeed(*plan, f"--seed={seed}").stdout for seed in ("1", "4294967297", "18446744073709551615")]
+        self.assertEqual(plans[0], self.succeed(*plan).stdout)
+        self.assertEqual(len(set(plans)), 3)  # none of the 64 bits is dropped
+
     def test_instruction_set(self):
         self.assert_one_line(self.millscope("plugins", "--instruction-set", "v9"), "v2, v3 or v4")
 
