@@ -19,7 +19,7 @@ inline void store_each(double* const* to, std::int64_t k, const Four (&v)[kCount
 /// Four contacts from place k on: overlap, normal and the surfaces' relative velocity
 /// v_i − v_j − (a_i ω_i + a_j ω_j) × n, a = r − δ/2; where interactions need them, the spins.
 template <bool kEqual, bool kSpins, Repeats kRepeats>
-inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k, const PairBatch& b) {
+[[gnu::always_inline]] inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k, const PairBatch& b) {
   const double* __restrict x = reinterpret_cast<const double*>(g.position);
   const double* __restrict m = reinterpret_cast<const double*>(g.motion);
   Four d[4], v[4], wi[4], wj[4], ri, rj;
