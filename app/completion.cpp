@@ -20,7 +20,7 @@ class Offer {
   Offer(std::string typed, std::string kept) : typed_(std::move(typed)), kept_(std::move(kept)) {}
 
   void word(const std::string& word, const std::string& what = "") {
-    if (word.starts_with(typed_)) fmt::print("{}{}\t{}\n", kept_, word, what.substr(0, what.find_first_of("\n")));
+    if (word.starts_with(typed_)) fmt::print("{}{}\t{}\n", kept_, word, what.substr(0, what.find('\n')));
   }
   void shell(const std::string& directive) { fmt::print(":{}\n", directive); }
   const std::string& typed() const { return typed_; }

@@ -134,6 +134,7 @@ doe::Design plan_of(const Options& options) {
   for (const std::string& text : options.list("factor")) factors.push_back(doe::parse_factor(text));
   const std::string kind = options.text("KIND");
   const int centre_points = whole(options, "centre-points", 3);
+  const std::uint64_t seed = options.seed("seed");
   const auto runs = [&options] {
     if (!options.has("runs")) throw UserError("--runs is missing: how many points shall the plan have?");
     return options.integer("runs");
@@ -141,7 +142,7 @@ doe::Design plan_of(const Options& options) {
   if (kind == "two-level") return doe::two_level(factors, options.list("generators"), centre_points);
   if (options.has("generators")) throw UserError(fmt::format("--generators: a {} plan has none; leave the option out", kind));
   if (kind == "central-composite") return doe::central_composite(factors, axial_of(options, factors.size()), centre_points);
-  if (kind == "latin-hypercube") return doe::latin_hypercube(factors, runs(), options.seed("seed"));
+  if (kind == "latin-hypercube") return doe::latin_hypercube(factors, runs(), seed);
   if (kind == "sobol") return doe::sobol(factors, runs());
   throw UserError(fmt::format("'doe design {}' is no plan; {}", kind,
                               base::suggestion(kind, {"two-level", "central-composite", "latin-hypercube", "sobol"})));

@@ -41,7 +41,7 @@ struct ContactArrays {
   std::uint8_t* fresh;  ///< did not touch in the last step: no history
   double* normal[3];    ///< from j to i
   double* velocity[3];  ///< of the surface of i against that of j, m/s
-  double* spin_i[3];    ///< rad/s
+  double* spin_i[3];    ///< rad/s; of two beads only where interactions need them
   double* spin_j[3];
   double* overlap;  ///< m
   double* radius_i;

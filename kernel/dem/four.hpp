@@ -122,6 +122,18 @@ inline void transpose(Four& a, Four& b, Four& c, Four& d) {
   d = __builtin_shuffle(ab_hi, cd_hi, FourBits{2, 3, 6, 7});
 }
 
+/// The components of four vectors, from place k on, as four lines.
+inline void lines_of(double* const (&components)[3], std::int64_t k, Four (&lines)[4]) {
+  for (int a = 0; a < 3; ++a) lines[a] = load4(components[a] + k);
+  lines[3] = four(0.0);
+  transpose(lines[0], lines[1], lines[2], lines[3]);
+}
+/// And back: three components of four lines that were transposed.
+template <int kCount>
+inline void store_each(double* const* to, std::int64_t k, const Four (&v)[kCount]) {
+  for (int a = 0; a < 3; ++a) store4_unaligned(to[a] + k, v[a]);
+}
+
 /// Turns (x, y, z, r) of j into (−x, −y, −z, r), so that one addition gives the difference of the first three and the sum of the last.
 inline Four negate3(Four a) {
   const FourBits sign = {INT64_MIN, INT64_MIN, INT64_MIN, 0};

@@ -11,13 +11,9 @@
 namespace millscope::dem {
 namespace {
 
-template <int kCount>
-inline void store_each(double* const* to, std::int64_t k, const Four (&v)[kCount]) {
-  for (int a = 0; a < 3; ++a) store4_unaligned(to[a] + k, v[a]);
-}
-
 /// Four contacts from place k on: overlap, normal and the surfaces' relative velocity
-/// v_i − v_j − (a_i ω_i + a_j ω_j) × n, a = r − δ/2; where interactions need them, the spins.
+/// v_i − v_j − (a_i ω_i + a_j ω_j) × n, a = r − δ/2; where interactions need them, the spins. Always inline, for g++ would
+/// call it for every four pairs.
 template <bool kEqual, bool kSpins, Repeats kRepeats>
 [[gnu::always_inline]] inline void gather_four(const GatherContext& g, const Box4& box, std::int64_t k, const PairBatch& b) {
   const double* __restrict x = reinterpret_cast<const double*>(g.position);
@@ -69,7 +65,9 @@ template <bool kEqual, bool kSpins, Repeats kRepeats>
 }
 
 template <bool kEqual, bool kSpins>
-void gather_all(const GatherContext& g, const Box4& box, std::int64_t padded, const PairBatch& b) {
+void gather_all(const GatherContext& context, const Box4& box, std::int64_t padded, const PairBatch& arrays) {
+  const GatherContext g = context;
+  const PairBatch b = arrays;
   with_repeats(box.repeats, [&]<Repeats kRepeats>() {
     for (std::int64_t k = 0; k < padded; k += 4) gather_four<kEqual, kSpins, kRepeats>(g, box, k, b);
   });
@@ -111,10 +109,9 @@ void gather(const GatherContext& g, const PairListView& list, std::int64_t count
     owner[k] = owner[count - 1];
     partner[k] = partner[count - 1];
   }
-  const PairBatch local = b;
   const auto all = g.equal ? (g.spins ? gather_all<true, true> : gather_all<true, false>)
                            : (g.spins ? gather_all<false, true> : gather_all<false, false>);
-  all(g, box, padded, local);
+  all(g, box, padded, b);
   gather_history(list, count, padded, b);
   for (std::int32_t h = 0; h < list.history_count; ++h) {  // those of the next batch, about as many
     for (std::int64_t k = 0; k < count; k += 8) __builtin_prefetch(list.history[h] + list.read + k, 0, 2);
@@ -161,17 +158,10 @@ std::int64_t scatter_lines(const ScatterContext& s, std::int64_t count, const Pa
   const PairBatch b = arrays;
   std::int64_t noted = 0;
   for (std::int64_t k = 0; k < count; k += 4) {
-    Four f[4] = {load4(b.force[0] + k), load4(b.force[1] + k), load4(b.force[2] + k), four(0.0)};
-    Four ti[4] = {load4(b.torque_i[0] + k), load4(b.torque_i[1] + k), load4(b.torque_i[2] + k), four(0.0)};
-    Four tj[4] = {};
-    transpose(f[0], f[1], f[2], f[3]);
-    transpose(ti[0], ti[1], ti[2], ti[3]);
-    if constexpr (!kSame) {
-      tj[0] = load4(b.torque_j[0] + k);
-      tj[1] = load4(b.torque_j[1] + k);
-      tj[2] = load4(b.torque_j[2] + k);
-      transpose(tj[0], tj[1], tj[2], tj[3]);
-    }
+    Four f[4], ti[4], tj[4];
+    lines_of(b.force, k, f);
+    lines_of(b.torque_i, k, ti);
+    if constexpr (!kSame) lines_of(b.torque_j, k, tj);
     const int lanes = count - k < 4 ? static_cast<int>(count - k) : 4;
     for (int c = 0; c < lanes; ++c) {
       const std::int64_t i = b.owner[k + c], j = b.partner[k + c];

@@ -9,6 +9,7 @@ namespace {
 
 void gather_bodies(const PositionLine* position, const MotionLine* motion, BeadRange beads, const BodyForceArrays& arrays) {
   const BodyForceArrays b = arrays;
+  const Four none[3] = {};
   for (std::int64_t k = 0; k < beads.end - beads.begin; k += 4) {
     Four x[4], v[4], w[4];
     for (int c = 0; c < 4; ++c) {
@@ -20,13 +21,11 @@ void gather_bodies(const PositionLine* position, const MotionLine* motion, BeadR
     transpose(x[0], x[1], x[2], x[3]);
     transpose(v[0], v[1], v[2], v[3]);
     transpose(w[0], w[1], w[2], w[3]);
-    for (int a = 0; a < 3; ++a) {
-      store4_unaligned(b.position[a] + k, x[a]);
-      store4_unaligned(b.velocity[a] + k, v[a]);
-      store4_unaligned(b.spin[a] + k, w[a]);
-      store4_unaligned(b.force[a] + k, four(0.0));
-      store4_unaligned(b.moment[a] + k, four(0.0));
-    }
+    store_each(b.position, k, x);
+    store_each(b.velocity, k, v);
+    store_each(b.spin, k, w);
+    store_each(b.force, k, none);
+    store_each(b.moment, k, none);
     store4_unaligned(b.radius + k, x[3]);
     store4_unaligned(b.mass + k, four(1.0) / v[3]);
     store4_unaligned(b.added_mass + k, four(0.0));
@@ -45,10 +44,9 @@ void scatter_bodies(const ForceWindow& window, BeadRange beads, const double* ac
   const Four g = {acceleration[0], acceleration[1], acceleration[2], 0.0};
   const std::int64_t count = beads.end - beads.begin;
   for (std::int64_t k = 0; k < count; k += 4) {
-    Four f[4] = {load4(b.force[0] + k), load4(b.force[1] + k), load4(b.force[2] + k), four(0.0)};
-    Four t[4] = {load4(b.moment[0] + k), load4(b.moment[1] + k), load4(b.moment[2] + k), four(0.0)};
-    transpose(f[0], f[1], f[2], f[3]);
-    transpose(t[0], t[1], t[2], t[3]);
+    Four f[4], t[4];
+    lines_of(b.force, k, f);
+    lines_of(b.moment, k, t);
     const int lanes = count - k < 4 ? static_cast<int>(count - k) : 4;
     for (int c = 0; c < lanes; ++c) {
       ForceLine& line = lines[beads.begin + k + c];

@@ -37,11 +37,9 @@ inline void gather_four_at_wall(const WallGather& g, std::int64_t k, const WallB
   transpose(x[0], x[1], x[2], x[3]);
   transpose(v[0], v[1], v[2], v[3]);
   transpose(w[0], w[1], w[2], w[3]);
-  for (int a = 0; a < 3; ++a) {
-    store4_unaligned(b.lever[a] + k, x[a]);
-    store4_unaligned(b.velocity[a] + k, v[a]);
-    store4_unaligned(b.spin_i[a] + k, w[a]);
-  }
+  store_each(b.lever, k, x);
+  store_each(b.velocity, k, v);
+  store_each(b.spin_i, k, w);
   store4_unaligned(b.radius + k, x[3]);
   store4_unaligned(b.mass + k, four(1.0) / v[3]);
 }
@@ -152,13 +150,6 @@ inline void wall_torques(const WallPose& pose, std::int64_t count, bool with_mom
       power[k] -= mj[k] * p.omega[a];
     }
   }
-}
-
-/// Four contacts' components as lines.
-inline void lines_of(double* const (&components)[3], std::int64_t k, Four (&lines)[4]) {
-  for (int a = 0; a < 3; ++a) lines[a] = load4(components[a] + k);
-  lines[3] = four(0.0);
-  transpose(lines[0], lines[1], lines[2], lines[3]);
 }
 
 void scatter_walls(const WallPose& pose, const ForceWindow& force, std::int64_t count, bool with_moments, WallBatch& b, WallSums& sums) {

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -68,8 +69,10 @@ constexpr NamedLaw kLaws[] = {
     {"{kind: hertz_mindlin}", "restitution: 0.7, static_friction: 0.3", "{film: {kind: lubrication, viscosity: 0.02}}"},
 };
 
+/// Of the first contact.
 struct SeenSpins {
-  double i = 0, j = 0;
+  double normal_x = 0;  ///< above 0: i lies to the right of j
+  std::array<double, 3> i{}, j{};
 };
 
 const InteractionTable kWatcher{pair_term({}, {}),
@@ -77,7 +80,10 @@ const InteractionTable kWatcher{pair_term({}, {}),
                                 nullptr,
                                 [](const void*, double) { return 0.0; },
                                 [](const void* self, InteractionBatch* b) {
-                                  *static_cast<SeenSpins*>(const_cast<void*>(self)) = {b->spin_i[2][0], b->spin_j[2][0]};
+                                  const auto first = [](const double* const* spin) {
+                                    return std::array{spin[0][0], spin[1][0], spin[2][0]};
+                                  };
+                                  *static_cast<SeenSpins*>(const_cast<void*>(self)) = {b->normal[0][0], first(b->spin_i), first(b->spin_j)};
                                   b->elastic_sum = 0;
                                 },
                                 nullptr};
@@ -85,18 +91,26 @@ const InteractionTable kWatcher{pair_term({}, {}),
 }  // namespace
 
 TEST_CASE("an interaction before the law sees the spins of both beads") {
-  Assembly a = assembled(Setup{});
-  SeenSpins seen;
-  std::vector<dem::PairPhysics> physics = a.system->physics();
-  physics[0].interactions.push_back({&kWatcher, &seen, true, "watcher"});
-  a.system = std::make_unique<dem::System>(a.system->settings(), a.system->layout(), physics, 1);
-  Bead p, q;
-  q.position = {1.999 * kRadius, 0, 0};
-  p.spin = {0, 0, 3};
-  q.spin = {0, 0, -5};
-  start(a, {p, q});
-  a.system->advance();
-  CHECK(seen.i * seen.j == Approx(-15));
+  for (const bool equal : {true, false}) {
+    INFO((equal ? "equal" : "unequal"));
+    Setup s;
+    if (!equal) s.beads = kTwoKinds;
+    Assembly a = assembled(s);
+    SeenSpins seen;
+    std::vector<dem::PairPhysics> physics = a.system->physics();
+    for (dem::PairPhysics& p : physics) p.interactions.push_back({&kWatcher, &seen, true, "watcher"});
+    a.system = std::make_unique<dem::System>(a.system->settings(), a.system->layout(), physics, 1);
+    Bead right, left;
+    if (!equal) left.radius = 1.5e-3, left.density = 7800, left.material = 1;
+    right.position = {0.999 * (right.radius + left.radius), 0, 0};
+    right.spin = {1, 2, 3};
+    left.spin = {-4, -5, -6};
+    start(a, {right, left});
+    a.system->advance();
+    REQUIRE(seen.normal_x != 0);
+    CHECK((seen.normal_x > 0 ? seen.i : seen.j) == right.spin);
+    CHECK((seen.normal_x > 0 ? seen.j : seen.i) == left.spin);
+  }
 }
 
 TEST_CASE("two free spheres keep momentum and angular momentum, and the ledger knows where the energy went") {

@@ -104,6 +104,7 @@ TEST_CASE("the bridge's energy is the work to break it, and that is what a touch
                                                   {"surface_tension=0.0728 contact_angle=1 volume_ratio=0.05", 1},
                                                   {"surface_tension=0.0728 volume_ratio=1e-8", 0}};
   for (const auto& [text, angle] : cases) {
+    INFO(text);
     Bridge b;
     b.text = text;
     b.at(-1e-15);
@@ -120,12 +121,31 @@ TEST_CASE("the bridge's energy is the work to break it, and that is what a touch
       work += 2 * half;
       CHECK(b.pair.batch.power_sum[0] == 0.0);  // booked once
     }
-    INFO(text);
     CHECK(bound == Approx(work).epsilon(1e-5));
     CHECK(lost == Approx(bound).epsilon(1e-6));
     b.at(end);
     CHECK(b.pair.batch.elastic_sum == Approx(0.0).margin(1e-12 * bound));
     b.at(-1e-6);  // pressed together: the constant force gives its work
     CHECK(-b.pair.batch.elastic_sum == Approx(bound + 2 * kPi * 5e-3 * kTension * std::cos(angle) * 1e-6));
+  }
+}
+
+TEST_CASE("what is left of a bridge's energy is the closed form, with the standard library's arctangent") {
+  const double radius = 5e-3, root = std::sqrt(10 - 1.05 * 1.05), strength = 2 * kPi * radius * kTension;
+  for (const char* ratio_text : {"1e-9", "1e-3", "0.1"}) {
+    const double ratio = std::atof(ratio_text);
+    Bridge b;
+    b.text = std::string("surface_tension=0.0728 volume_ratio=") + ratio_text;
+    INFO(b.text);
+    const double length = std::sqrt(ratio) * radius, end = rupture(ratio, 0, radius) / length;  // of ŝ = 1; ŝ where it breaks
+    // z is tan π/8, where the arctangent changes its way, at this ŝ.
+    const double z = std::sqrt(2.0) - 1, turn = (root * end - z * (2 + 1.05 * end)) / (root + z * (1.05 + 5 * end));
+    b.at(-1e-15);
+    const double whole = -b.pair.batch.elastic_sum;
+    for (const double stretch : {1e-6, 0.1 * end, turn - 1e-7, turn + 1e-7, 0.7 * end, 0.999 * end}) {
+      const double angle = std::atan(root * (end - stretch) / (2 + 1.05 * (stretch + end) + 5 * stretch * end));
+      b.at(stretch * length);
+      CHECK(-b.pair.batch.elastic_sum == Approx(strength * length * 2 / root * angle).margin(1e-12 * whole));
+    }
   }
 }

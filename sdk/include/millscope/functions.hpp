@@ -9,6 +9,8 @@
 // 1e-15 (1 + |y log₂ x|) while that is within 2^±1022. What is no number stays none; infinite ones are outside.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 
@@ -46,18 +48,13 @@ inline constexpr std::uint64_t kWholeBits = 0x4338000000000000, kMantissa = 0x00
 inline constexpr int kMantissaBits = 52;
 inline constexpr std::uint64_t kExponentBias = 1023;
 
-struct InverseFactorials {
-  double value[15];
-  constexpr InverseFactorials() : value{} {
-    double factorial = 1;  // exact up to 18!
-    for (int k = 0; k < 15; ++k) {
-      factorial *= k > 0 ? k : 1;
-      value[k] = 1 / factorial;
-    }
-  }
-  constexpr double operator[](int k) const { return value[k]; }
-};
-inline constexpr InverseFactorials kInverseFactorial;
+/// 1/k!
+inline constexpr auto kInverseFactorial = [] {
+  std::array<double, 15> inverse{1.0};
+  double factorial = 1.0;  // exact
+  for (std::size_t k = 1; k < inverse.size(); ++k) inverse[k] = 1.0 / (factorial *= static_cast<double>(k));
+  return inverse;
+}();
 
 }  // namespace detail
 
@@ -85,8 +82,10 @@ R binary_power(R exponent) {
   const R f = R(std::numbers::ln2) * (t - (shifted - R(detail::kWhole)));
   const R square = f * f;
   R even(detail::kInverseFactorial[14]), odd(detail::kInverseFactorial[13]);
-  for (int k = 12; k >= 2; k -= 2) even = R(detail::kInverseFactorial[k]) + square * even;
-  for (int k = 11; k >= 1; k -= 2) odd = R(detail::kInverseFactorial[k]) + square * odd;
+  for (std::size_t k = 12; k > 0; k -= 2) {
+    even = R(detail::kInverseFactorial[k]) + square * even;
+    odd = R(detail::kInverseFactorial[k - 1]) + square * odd;
+  }
   const R whole = detail::from_bits<R>((detail::bits_of(shifted) - detail::kWholeBits + detail::kExponentBias) << detail::kMantissaBits);
   return select(exponent <= exponent, (R(1.0) + (f * odd + square * even)) * whole, exponent);
 }
