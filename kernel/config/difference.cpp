@@ -39,7 +39,7 @@ class Difference {
       const NodeEntry* before = base.entry(e.key);
       if (before != nullptr && maps(*before->value, *e.value)) {
         const std::string below = lines(*before->value, *e.value, path + e.key + ".", indent + 2);
-        if (!below.empty()) out += margin + e.key + ":\n" + below;
+        if (!below.empty()) out.append(margin).append(e.key).append(":\n").append(below);
       } else if (before == nullptr || flow(*before->value) != flow(*e.value) || named(path + e.key)) {
         out += value(e, indent);
       }

@@ -23,7 +23,8 @@ std::string wrong_with(const fs::path& file) {
 }  // namespace
 
 std::string existing_file(const Node& node, const std::string& remedy) {
-  const std::string file = resolve_file(node), wrong = wrong_with(file);
+  std::string file = resolve_file(node);
+  const std::string wrong = wrong_with(file);
   if (!wrong.empty()) node.fail(fmt::format("is '{}': {}; {}", node.text(), wrong, remedy));
   return file;
 }

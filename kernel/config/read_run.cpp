@@ -30,7 +30,7 @@ void read_period(const Node& node, std::size_t axis, DomainCase& domain) {
 /// The section of one output; nothing when it is absent or `off`.
 std::optional<Node> section_of(const std::optional<Node>& output, const char* key) {
   if (!output) return std::nullopt;
-  const auto node = output->find(key);
+  auto node = output->find(key);
   if (!node) return std::nullopt;
   if (!node->is_scalar()) return node;
   read_choice(*node, "off");

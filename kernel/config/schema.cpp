@@ -16,9 +16,9 @@ json flag(const std::string& doc) { return {{"type", "boolean"}, {"description",
 json vector() { return {{"type", "array"}, {"minItems", 3}, {"maxItems", 4}, {"items", {{"type", {"number", "string"}}}}}; }
 json choice(std::initializer_list<const char*> words) { return {{"enum", std::vector<std::string>(words.begin(), words.end())}}; }
 
-json object(json properties, std::vector<std::string> required = {}) {
+json object(json properties, const std::vector<std::string>& required = {}) {
   json result = {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
-  if (!required.empty()) result["required"] = std::move(required);
+  if (!required.empty()) result["required"] = required;
   return result;
 }
 json map_of(json value) { return {{"type", "object"}, {"additionalProperties", std::move(value)}}; }
