@@ -73,14 +73,27 @@ void gather_all(const GatherContext& context, const Box4& box, std::int64_t padd
   });
 }
 
+/// Histories come in the order of the contacts, so eight of them stand side by side unless one of them is fresh or another one has parted.
 void gather_history(const PairListView& list, std::int64_t count, std::int64_t padded, PairBatch& b) {
+  const std::uint8_t* __restrict fresh = b.fresh;
+  const std::uint32_t* __restrict source = b.source;
+  const auto one = [&](std::int64_t k) {
+    for (std::int32_t h = 0; h < list.history_count; ++h) b.history[h][k] = fresh[k] ? 0.0 : list.history[h][source[k]];
+  };
+  std::int64_t k = 0;
+  for (; k + 8 <= count; k += 8) {
+    std::uint64_t any_fresh;
+    __builtin_memcpy(&any_fresh, fresh + k, sizeof any_fresh);
+    if (any_fresh == 0 && source[k + 7] - source[k] == 7) {
+      for (std::int32_t h = 0; h < list.history_count; ++h)
+        __builtin_memcpy(b.history[h] + k, list.history[h] + source[k], 8 * sizeof(double));
+    } else {
+      for (std::int64_t c = k; c < k + 8; ++c) one(c);
+    }
+  }
+  for (; k < count; ++k) one(k);
   for (std::int32_t h = 0; h < list.history_count; ++h) {
-    const double* __restrict from = list.history[h];
-    double* __restrict to = b.history[h];
-    const std::uint8_t* __restrict fresh = b.fresh;
-    const std::uint32_t* __restrict source = b.source;
-    for (std::int64_t k = 0; k < count; ++k) to[k] = fresh[k] ? 0.0 : from[source[k]];
-    for (std::int64_t k = count; k < padded; ++k) to[k] = 0.0;
+    for (k = count; k < padded; ++k) b.history[h][k] = 0.0;
   }
 }
 
