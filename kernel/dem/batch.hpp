@@ -66,7 +66,6 @@ struct ContactArrays {
 struct PairBatch : ContactArrays {
   std::uint32_t* owner;
   std::uint32_t* partner;
-  std::uint32_t* slot;
   std::uint32_t* source;  ///< where the history stood in the last step; no place when fresh
   double* arm_i;          ///< r_i − δ/2
   double* arm_j;

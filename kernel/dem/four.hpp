@@ -17,6 +17,12 @@ typedef double Two __attribute__((vector_size(16)));
 typedef std::uint32_t FourIndices __attribute__((vector_size(16)));
 
 inline FourIndices indices(std::uint32_t a) { return FourIndices{a, a, a, a}; }
+template <class Indices>
+inline Indices load_indices(const std::uint32_t* p) {
+  Indices v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}
 inline void store_indices(std::uint32_t* p, FourIndices v) { __builtin_memcpy(p, &v, sizeof v); }
 
 #if defined(__AVX512VL__)

@@ -44,7 +44,7 @@ Scratch::Scratch(int history_count) {
   doubles.deal(doubles_);
 
   Arrays<std::uint32_t> integers;
-  integers.add(p.owner, p.partner, p.slot, p.source, found.feature, triangle, found.material);
+  integers.add(p.owner, p.partner, p.source, found.feature, triangle, found.material);
   integers.deal(integers_);
   Arrays<std::int32_t> indices;
   indices.add(found.bead);
@@ -56,7 +56,7 @@ Scratch::Scratch(int history_count) {
 
   static_cast<ContactArrays&>(walls) = p;
   walls.bead = p.owner;
-  walls.contact = p.slot;
+  walls.contact = p.partner;
   walls.arm = p.arm_i;
   walls.wall_power = p.arm_j;
   for (int a = 0; a < 3; ++a) {

@@ -113,11 +113,6 @@ void gather(const GatherContext& g, const PairListView& list, std::int64_t count
   const std::int64_t padded = padded_count(count);
   std::uint32_t* __restrict owner = b.owner;
   std::uint32_t* __restrict partner = b.partner;
-  const std::uint32_t* __restrict slot = b.slot;
-  for (std::int64_t k = 0; k < count; ++k) {
-    owner[k] = list.owner[slot[k]];
-    partner[k] = list.partner[slot[k]];
-  }
   for (std::int64_t k = count; k < padded; ++k) {
     owner[k] = owner[count - 1];
     partner[k] = partner[count - 1];

@@ -89,7 +89,8 @@ struct IntegrateResult {
 
 struct WideTable {
   const char* name;
-  /// Finds the pairs of slots [first, last) that are within reach; fills slot, source, fresh; advances `read`. Returns their number.
+  /// Finds the pairs of slots [first, last) that are within reach; fills owner, partner, source, fresh; advances `read`. Returns their
+  /// number.
   std::int64_t (*search)(const GatherContext&, PairListView&, std::int64_t first, std::int64_t last, PairBatch&);
   /// Fills overlap, normal, velocity, radius, mass (padded), history; spins where interactions need them.
   void (*gather)(const GatherContext&, const PairListView&, std::int64_t count, PairBatch&);

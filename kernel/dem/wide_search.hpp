@@ -40,7 +40,10 @@ constexpr KeptOfFour kKept = kept_of_four();
 
 /// Keeps those of a list's slots that are within reach, eight by eight and without a branch, whose outcome no processor could guess.
 struct Sieve {
-  std::uint32_t* __restrict slot;
+  const std::uint32_t* __restrict all_owners;  // of the list
+  const std::uint32_t* __restrict all_partners;
+  std::uint32_t* __restrict owner;  // of those that are kept
+  std::uint32_t* __restrict partner;
   std::uint32_t* __restrict source;
   std::uint32_t read;
   std::int64_t count = 0;
@@ -48,9 +51,9 @@ struct Sieve {
   /// The slots from s on; bit k of `hits`: slot s + k is within reach; bit k of `touched`: it was in the last step.
   void four_slots(std::int64_t s, int hits, int touched) {
     const FourIndices places = kKept.places[hits], ranks = kKept.ranks[touched];
-    const FourIndices slots = indices(static_cast<std::uint32_t>(s)) + FourIndices{0, 1, 2, 3};
     const FourIndices sources = (indices(read) + ranks) | kKept.fresh[touched];
-    store_indices(slot + count, __builtin_shuffle(slots, places));
+    store_indices(owner + count, __builtin_shuffle(load_indices<FourIndices>(all_owners + s), places));
+    store_indices(partner + count, __builtin_shuffle(load_indices<FourIndices>(all_partners + s), places));
     store_indices(source + count, __builtin_shuffle(sources, places));
     read += static_cast<std::uint32_t>(kKept.count[touched]);
     count += kKept.count[hits];
@@ -58,9 +61,10 @@ struct Sieve {
 
   void eight_slots(std::int64_t s, unsigned hits, unsigned touched) {
 #if defined(__AVX512VL__)
-    const EightIndices order{0, 1, 2, 3, 4, 5, 6, 7}, slots = (EightIndices{} + static_cast<std::uint32_t>(s)) + order;
+    const EightIndices order{0, 1, 2, 3, 4, 5, 6, 7};
     const EightIndices sources = expanded((EightIndices{} + read) + order, EightIndices{} + kNoSource, touched);
-    store_indices(slot + count, compressed(slots, hits));
+    store_indices(owner + count, compressed(load_indices<EightIndices>(all_owners + s), hits));
+    store_indices(partner + count, compressed(load_indices<EightIndices>(all_partners + s), hits));
     store_indices(source + count, compressed(sources, hits));
     read += static_cast<std::uint32_t>(__builtin_popcount(touched));
     count += __builtin_popcount(hits);
@@ -72,7 +76,8 @@ struct Sieve {
 
   /// The same of the last slots of a list.
   void one_slot(std::int64_t s, bool hit, bool touched) {
-    slot[count] = static_cast<std::uint32_t>(s);
+    owner[count] = all_owners[s];
+    partner[count] = all_partners[s];
     source[count] = touched ? read : kNoSource;
     read += touched ? 1 : 0;
     count += hit ? 1 : 0;
@@ -117,7 +122,7 @@ std::int64_t search_slots(const GatherContext& context, const Box4& box4, PairLi
   const std::uint32_t* __restrict owner = list.owner;
   const std::uint32_t* __restrict partner = list.partner;
   std::uint8_t* __restrict touching = list.touching;
-  Sieve sieve{b.slot, b.source, static_cast<std::uint32_t>(list.read)};
+  Sieve sieve{list.owner, list.partner, b.owner, b.partner, b.source, static_cast<std::uint32_t>(list.read)};
   const auto difference = [&](std::int64_t s) {
     return load4(x + 4 * static_cast<std::int64_t>(owner[s])) + negate3(load4(x + 4 * static_cast<std::int64_t>(partner[s])));
   };
