@@ -140,6 +140,26 @@ inline void store_each(double* const* to, std::int64_t k, const Four (&v)[kCount
   for (int a = 0; a < 3; ++a) store4_unaligned(to[a] + k, v[a]);
 }
 
+/// Four beads, component by component: centre and radius, velocity and 1/m, spin and 1/I.
+struct FourBeads {
+  Four x[4], v[4], w[4];
+};
+/// `bead`: the number of the bead at each of the four places.
+template <class NumberAt>
+inline FourBeads four_beads(const PositionLine* position, const MotionLine* motion, const NumberAt& bead) {
+  FourBeads b;
+  for (int c = 0; c < 4; ++c) {
+    const std::int64_t i = bead(c);
+    b.x[c] = load4(position + i);
+    b.v[c] = load4(motion[i].v);
+    b.w[c] = load4(motion[i].w);
+  }
+  transpose(b.x[0], b.x[1], b.x[2], b.x[3]);
+  transpose(b.v[0], b.v[1], b.v[2], b.v[3]);
+  transpose(b.w[0], b.w[1], b.w[2], b.w[3]);
+  return b;
+}
+
 /// Turns (x, y, z, r) of j into (−x, −y, −z, r), so that one addition gives the difference of the first three and the sum of the last.
 inline Four negate3(Four a) {
   const FourBits sign = {INT64_MIN, INT64_MIN, INT64_MIN, 0};

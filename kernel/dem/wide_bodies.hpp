@@ -11,23 +11,17 @@ void gather_bodies(const PositionLine* position, const MotionLine* motion, BeadR
   const BodyForceArrays b = arrays;
   const Four none[3] = {};
   for (std::int64_t k = 0; k < beads.end - beads.begin; k += 4) {
-    Four x[4], v[4], w[4];
-    for (int c = 0; c < 4; ++c) {
-      const std::int64_t next = beads.begin + k + c, i = next < beads.end ? next : beads.end - 1;  // the arrays have room for padding
-      x[c] = load4(position + i);
-      v[c] = load4(motion[i].v);
-      w[c] = load4(motion[i].w);
-    }
-    transpose(x[0], x[1], x[2], x[3]);
-    transpose(v[0], v[1], v[2], v[3]);
-    transpose(w[0], w[1], w[2], w[3]);
-    store_each(b.position, k, x);
-    store_each(b.velocity, k, v);
-    store_each(b.spin, k, w);
+    const FourBeads bead = four_beads(position, motion, [&](int c) {
+      const std::int64_t next = beads.begin + k + c;
+      return next < beads.end ? next : beads.end - 1;  // the arrays have room for padding
+    });
+    store_each(b.position, k, bead.x);
+    store_each(b.velocity, k, bead.v);
+    store_each(b.spin, k, bead.w);
     store_each(b.force, k, none);
     store_each(b.moment, k, none);
-    store4_unaligned(b.radius + k, x[3]);
-    store4_unaligned(b.mass + k, four(1.0) / v[3]);
+    store4_unaligned(b.radius + k, bead.x[3]);
+    store4_unaligned(b.mass + k, four(1.0) / bead.v[3]);
     store4_unaligned(b.added_mass + k, four(0.0));
   }
 }

@@ -27,21 +27,12 @@ inline void to_frame(const WallPose& pose, std::int64_t count, double* const (&p
 
 /// Lines of four beads from place k on: centre to `lever`, velocity to `velocity`, spin to `spin_i`.
 inline void gather_four_at_wall(const WallGather& g, std::int64_t k, const WallBatch& b) {
-  Four x[4], v[4], w[4];
-  for (int c = 0; c < 4; ++c) {
-    const std::int64_t bead = b.bead[k + c];
-    x[c] = load4(g.position + bead);
-    v[c] = load4(g.motion[bead].v);
-    w[c] = load4(g.motion[bead].w);
-  }
-  transpose(x[0], x[1], x[2], x[3]);
-  transpose(v[0], v[1], v[2], v[3]);
-  transpose(w[0], w[1], w[2], w[3]);
-  store_each(b.lever, k, x);
-  store_each(b.velocity, k, v);
-  store_each(b.spin_i, k, w);
-  store4_unaligned(b.radius + k, x[3]);
-  store4_unaligned(b.mass + k, four(1.0) / v[3]);
+  const FourBeads bead = four_beads(g.position, g.motion, [&](int c) { return b.bead[k + c]; });
+  store_each(b.lever, k, bead.x);
+  store_each(b.velocity, k, bead.v);
+  store_each(b.spin_i, k, bead.w);
+  store4_unaligned(b.radius + k, bead.x[3]);
+  store4_unaligned(b.mass + k, four(1.0) / bead.v[3]);
 }
 
 /// Normals into the world's frame.

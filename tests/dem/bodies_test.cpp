@@ -2,11 +2,11 @@
 // of 4.
 #include <catch2/catch.hpp>
 
-#include <array>
 #include <cstring>
+#include <string>
 #include <vector>
 
-#include "kernel/base/error.hpp"
+#include "dem/support.hpp"
 #include "kernel/dem/scratch.hpp"
 #include "kernel/dem/wide.hpp"
 #include "millscope/random.hpp"
@@ -93,15 +93,10 @@ void check(const WideTable& wide, std::int64_t count) {
 }  // namespace
 
 TEST_CASE("each bead hands body forces its own state and gets what they answer it, whatever their number, in each build") {
-  for (const char* set : {"v2", "v3", "v4"}) {
-    try {
-      const WideTable& wide = wide_table(set);
-      for (const std::int64_t count : {0, 1, 2, 3, 4, 5, 6, 7, 8, 241, 511, 512}) {
-        INFO(set << ", " << count << " beads");
-        check(wide, count);
-      }
-    } catch (const base::UserError&) {
-      WARN("this machine does not run " << set);
+  for (const std::string& level : dem_test::levels()) {
+    for (const std::int64_t count : {0, 1, 2, 3, 4, 5, 6, 7, 8, 241, 511, 512}) {
+      INFO(level << ", " << count << " beads");
+      check(wide_table(level.c_str()), count);
     }
   }
 }
