@@ -20,6 +20,7 @@
 // `friction: net` it is taken off the cap.
 #include <numbers>
 
+#include "millscope/functions.hpp"
 #include "millscope/interaction_adapter.hpp"
 
 namespace millscope::interactions {
@@ -42,17 +43,13 @@ constexpr Hypothesis kHypotheses[] = {
 };
 
 /// atan z for 0 ≤ z < 2.85 (here z < D/1.05 = 2.842) from operations that IEEE fixes; error below 1e-13. Where z > tan π/8, it is
-/// π/4 + atan((z − 1)/(z + 1)). The angle is halved once; then comes the series, its even and its odd terms side by side.
+/// π/4 + atan((z − 1)/(z + 1)). The angle is halved once; then comes the series.
 template <class R>
 R arctangent(R z) {
   const R one(1.0);
   const auto far = z > R(std::numbers::sqrt2 - 1.0);  // tan π/8
   const R near = select(far, (z - one) / (z + one), z), half = near / (one + square_root(one + near * near));
-  const R square = half * half, fourth = square * square;
-  R even(1.0 / 17.0), odd(1.0 / 15.0);
-  for (int term = 6; term >= 0; term -= 2) even = R(1.0 / (2 * term + 1)) + fourth * even;
-  for (int term = 5; term >= 1; term -= 2) odd = R(1.0 / (2 * term + 1)) + fourth * odd;
-  return select(far, R(0.25 * std::numbers::pi), R(0.0)) + R(2.0) * half * (even - square * odd);
+  return select(far, R(0.25 * std::numbers::pi), R(0.0)) + R(2.0) * half * inverse_odd_series<8>(-(half * half));
 }
 
 class CapillaryBridge {

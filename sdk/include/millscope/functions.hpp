@@ -58,6 +58,16 @@ inline constexpr auto kInverseFactorial = [] {
 
 }  // namespace detail
 
+/// Σ q^k/(2k + 1) up to k = kLast, which is even: artanh(s)/s for q = s², arctan(s)/s for q = −s².
+template <int kLast, class R>
+R inverse_odd_series(const R& q) {
+  const R square = q * q;
+  R even(1.0 / (2 * kLast + 1)), odd(1.0 / (2 * kLast - 1));
+  for (int k = kLast - 2; k >= 0; k -= 2) even = R(1.0 / (2 * k + 1)) + square * even;
+  for (int k = kLast - 3; k >= 1; k -= 2) odd = R(1.0 / (2 * k + 1)) + square * odd;
+  return even + q * odd;
+}
+
 /// log₂ x for normal x > 0; for what is smaller, the logarithm of the smallest normal number (−1022).
 template <class R>
 R binary_logarithm(R x) {
@@ -67,11 +77,8 @@ R binary_logarithm(R x) {
   const auto upper = m > R(std::numbers::sqrt2);
   m = select(upper, R(0.5) * m, m);
   e = e + select(upper, R(1.0), R(0.0));
-  const R s = (m - R(1.0)) / (m + R(1.0)), square = s * s, fourth = square * square;
-  R even(1.0 / 21.0), odd(1.0 / 19.0);
-  for (int k = 8; k >= 0; k -= 2) even = R(1.0 / (2 * k + 1)) + fourth * even;
-  for (int k = 7; k >= 1; k -= 2) odd = R(1.0 / (2 * k + 1)) + fourth * odd;
-  return select(x <= x, e + R(2.0 * std::numbers::log2e) * (s * (even + square * odd)), x);
+  const R s = (m - R(1.0)) / (m + R(1.0));
+  return select(x <= x, e + R(2.0 * std::numbers::log2e) * (s * inverse_odd_series<10>(s * s)), x);
 }
 
 /// 2^t; t is taken to lie from −1022 to 1023.
