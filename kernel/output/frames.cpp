@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include "kernel/base/error.hpp"
 #include "kernel/output/file.hpp"
@@ -21,6 +24,12 @@ using hdf5::Handle;
 namespace {
 
 constexpr std::array<const char*, 3> kBeadColumns{"position", "velocity", "spin"};
+using Clock = std::chrono::steady_clock;
+
+// Frames wait for each other: to bring a small one alone to the operating system costs as much as hundreds of steps of its beads.
+constexpr std::size_t kWaiting = 256 << 10;          // bytes
+constexpr std::chrono::milliseconds kPatience{250};  // of who looks on
+
 constexpr std::array<const char*, 3> kBeadUnits{"m", "m/s", "rad/s"};
 
 template <class T>
@@ -86,22 +95,36 @@ void check_bead_count(hid_t file, const fs::path& path, std::size_t bead_count) 
 }  // namespace
 
 struct FrameWriter::Impl {
-  explicit Impl(const fs::path& path) : file(path), time(file.column("time")) {}
+  /// A column and its rows that wait to be written.
+  template <class T>
+  struct Rows {
+    Column column;
+    std::vector<T> values{};
+
+    void add(std::span<const T> row) { values.insert(values.end(), row.begin(), row.end()); }
+    void write(std::size_t count) {
+      column.append(values.data(), count);
+      values.clear();
+    }
+  };
+
+  explicit Impl(const fs::path& path) : file(path), time{file.column("time")} {}
 
   GrowingFile file;
-  Column time;
-  std::vector<Column> scalars;  // wall_angle, angular_velocity
-  std::vector<Column> beads;    // kBeadColumns
-  std::vector<Column> ledger;   // wall_work, dissipation: 0 or 1 column each
-  std::vector<Column> impacts;  // 0 or 1 column
-  std::vector<Column> masses;   // 0 or 1 column
+  Rows<double> time;
+  std::vector<Rows<double>> scalars;         // wall_angle, angular_velocity
+  std::vector<Rows<float>> beads;            // kBeadColumns
+  std::vector<Rows<double>> ledger;          // wall_work, dissipation: 0 or 1 column each
+  std::vector<Rows<std::uint64_t>> impacts;  // 0 or 1 column
+  std::vector<Rows<double>> masses;          // 0 or 1 column
   std::size_t bead_count = 0, wall_count = 0, dissipation_count = 0;
   double last_time = 0;
-  std::vector<float> rounded;
+  std::size_t waiting = 0;  // frames
+  Clock::time_point last_write{};
 
   static std::unique_ptr<Impl> open(const fs::path& path, std::size_t bead_count, std::size_t walls, std::size_t dissipations,
                                     bool with_impacts);
-  void append_beads(Column& column, std::span<const double> values);
+  void write_through();
   bool close();
 };
 
@@ -111,19 +134,32 @@ std::unique_ptr<FrameWriter::Impl> FrameWriter::Impl::open(const fs::path& path,
   impl->bead_count = bead_count;
   impl->wall_count = walls;
   impl->dissipation_count = dissipations;
-  for (const char* name : {"wall_angle", "angular_velocity"}) impl->scalars.push_back(impl->file.column(name));
-  for (const char* name : kBeadColumns) impl->beads.push_back(impl->file.column(name));
-  if (walls > 0) impl->ledger.push_back(impl->file.column("wall_work"));
-  if (dissipations > 0) impl->ledger.push_back(impl->file.column("dissipation"));
-  if (with_impacts) impl->impacts.push_back(impl->file.column("impacts"));
+  for (const char* name : {"wall_angle", "angular_velocity"}) impl->scalars.push_back({impl->file.column(name)});
+  for (const char* name : kBeadColumns) impl->beads.push_back({impl->file.column(name)});
+  if (walls > 0) impl->ledger.push_back({impl->file.column("wall_work")});
+  if (dissipations > 0) impl->ledger.push_back({impl->file.column("dissipation")});
+  if (with_impacts) impl->impacts.push_back({impl->file.column("impacts")});
   impl->file.flush();
   return impl;
 }
 
-void FrameWriter::Impl::append_beads(Column& column, std::span<const double> values) {
-  rounded.resize(values.size());
-  std::transform(values.begin(), values.end(), rounded.begin(), [](double value) { return static_cast<float>(value); });
-  column.append(rounded.data(), 1);
+void FrameWriter::Impl::write_through() {
+  const std::size_t count = std::exchange(waiting, 0);  // also where it fails: half of them twice would not stand side by side
+  if (count == 0) return;
+  hdf5::prepare();
+  require_space(file.path(), count * frame_bytes(bead_count));
+  const auto write = [&](auto& columns) {
+    for (auto& column : columns) column.write(count);
+  };
+  write(beads);
+  write(scalars);
+  write(masses);
+  write(ledger);
+  write(impacts);
+  file.flush();
+  time.write(count);  // last: what `time` lists is complete
+  file.flush();
+  last_write = Clock::now();
 }
 
 bool FrameWriter::Impl::close() {
@@ -132,15 +168,22 @@ bool FrameWriter::Impl::close() {
   ledger.clear();
   impacts.clear();
   masses.clear();
-  time = Column();
+  time = {};
   return file.close();
 }
 
 FrameWriter::FrameWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 FrameWriter::FrameWriter(FrameWriter&&) noexcept = default;
 FrameWriter& FrameWriter::operator=(FrameWriter&&) noexcept = default;
+
 FrameWriter::~FrameWriter() {
-  if (impl_) impl_->close();
+  if (!impl_) return;
+  try {
+    impl_->write_through();
+  } catch (const std::exception&) {
+    // A destructor cannot report; `flush` and `close` do.
+  }
+  impl_->close();
 }
 
 FrameWriter FrameWriter::create(const fs::path& path, const BeadTable& table) {
@@ -151,7 +194,7 @@ FrameWriter FrameWriter::create(const fs::path& path, const BeadTable& table) {
   GrowingFile::create(path, [&](hid_t file) { build(file, table, path); });
   if (!table.impact_pairs.empty() && table.impact_edges.size() < 2) throw std::logic_error("FrameWriter: impacts need bins");
   FrameWriter writer(Impl::open(path, count, table.wall_names.size(), table.dissipation_names.size(), !table.impact_pairs.empty()));
-  if (table.beads_vary) writer.impl_->masses.push_back(writer.impl_->file.column("mass_there"));
+  if (table.beads_vary) writer.impl_->masses.push_back({writer.impl_->file.column("mass_there")});
   return writer;
 }
 
@@ -186,36 +229,39 @@ void FrameWriter::append(const FrameView& frame) {
   const std::size_t size = 3 * f.bead_count;
   if (frame.position.size() != size || frame.velocity.size() != size || frame.spin.size() != size ||
       frame.wall_work.size() != f.wall_count || frame.dissipation.size() != f.dissipation_count ||
-      (!f.impacts.empty() && frame.impacts.size() != f.impacts.front().row_size())) {
+      (!f.impacts.empty() && frame.impacts.size() != f.impacts.front().column.row_size())) {
     throw std::logic_error("FrameWriter: the frame's arrays do not have the lengths of the bead table");
   }
-  if (f.time.rows() > 0 && !(frame.time > f.last_time)) throw std::logic_error("FrameWriter: times must increase");
-  hdf5::prepare();
-  require_space(f.file.path(), frame_bytes(f.bead_count));
-  f.append_beads(f.beads[0], frame.position);
-  f.append_beads(f.beads[1], frame.velocity);
-  f.append_beads(f.beads[2], frame.spin);
-  f.scalars[0].append(&frame.wall_angle, 1);
-  f.scalars[1].append(&frame.angular_velocity, 1);
-  if (!f.masses.empty()) f.masses.front().append(&frame.mass, 1);
-  if (f.wall_count > 0) f.ledger.front().append(frame.wall_work.data(), 1);
-  if (f.dissipation_count > 0) f.ledger.back().append(frame.dissipation.data(), 1);
+  if (frame_count() > 0 && !(frame.time > f.last_time)) throw std::logic_error("FrameWriter: times must increase");
+  const std::array<std::span<const double>, 3> beads{frame.position, frame.velocity, frame.spin};
+  for (std::size_t k = 0; k < beads.size(); ++k) {
+    std::transform(beads[k].begin(), beads[k].end(), std::back_inserter(f.beads[k].values),
+                   [](double value) { return static_cast<float>(value); });
+  }
+  f.scalars[0].add({&frame.wall_angle, 1});
+  f.scalars[1].add({&frame.angular_velocity, 1});
+  if (!f.masses.empty()) f.masses.front().add({&frame.mass, 1});
+  if (f.wall_count > 0) f.ledger.front().add(frame.wall_work);
+  if (f.dissipation_count > 0) f.ledger.back().add(frame.dissipation);
   // A file of an earlier version, which is continued, may have no counts of impacts.
-  if (!f.impacts.empty()) f.impacts.front().append(frame.impacts.data(), 1);
-  f.file.flush();
-  f.time.append(&frame.time, 1);  // last: what `time` lists is complete
-  f.file.flush();
+  if (!f.impacts.empty()) f.impacts.front().add(frame.impacts);
+  f.time.add({&frame.time, 1});
   f.last_time = frame.time;
+  ++f.waiting;
+  if (f.waiting * frame_bytes(f.bead_count) >= kWaiting || Clock::now() - f.last_write >= kPatience) f.write_through();
 }
 
-std::size_t FrameWriter::frame_count() const { return impl_->time.rows(); }
+std::size_t FrameWriter::frame_count() const { return impl_->time.column.rows() + impl_->waiting; }
 
-void FrameWriter::flush() { impl_->file.sync(); }
+void FrameWriter::flush() {
+  impl_->write_through();
+  impl_->file.sync();
+}
 
 void FrameWriter::close() {
   if (!impl_) return;
   const fs::path path = impl_->file.path();
-  impl_->file.sync();
+  flush();
   const bool closed = impl_->close();
   impl_.reset();
   if (!closed) hdf5::fail(path, "closing the file");

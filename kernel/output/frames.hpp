@@ -57,10 +57,11 @@ class FrameWriter {
   FrameWriter(FrameWriter&&) noexcept;
   FrameWriter& operator=(FrameWriter&&) noexcept;
 
-  /// Adds one frame; it is with the operating system on return (kill -9 does not lose it). Times must increase.
+  /// Adds one frame; times must increase. The first is with the operating system on return. Later ones wait for each other, until one
+  /// comes a quarter of a second after the last that did not, or until they are 256 KiB: kill -9 loses what waits.
   void append(const FrameView& frame);
-  std::size_t frame_count() const;
-  /// Onto the disk.
+  std::size_t frame_count() const;  ///< with those that wait
+  /// All frames, onto the disk.
   void flush();
   /// Flushes and closes. The destructor closes too, but cannot report.
   void close();

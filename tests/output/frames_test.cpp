@@ -2,6 +2,8 @@
 #include "kernel/base/text.hpp"
 
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <thread>
 
 #include "output/support.hpp"
 
@@ -50,7 +52,12 @@ TEST_CASE("frames can be read while the run goes on") {
   const Scratch scratch;
   Story story(5, 0);
   FrameWriter writer = FrameWriter::create(scratch / "frames.h5", story.table());
-  write(writer, story, 0, 3);
+  write(writer, story, 0, 1);
+  CHECK(read_all(scratch / "frames.h5", "time") == std::vector<double>{0});
+  write(writer, story, 1, 2);
+  CHECK(writer.frame_count() == 2);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  write(writer, story, 2, 3);  // the second has waited for it
   CHECK(read_all(scratch / "frames.h5", "time") == std::vector<double>{0, 0.005, 0.01});
   CHECK(read_all(scratch / "frames.h5", "position").size() == 45);
 }

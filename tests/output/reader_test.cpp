@@ -23,6 +23,7 @@ TEST_CASE("frames read back as they were written, while the run goes on") {
   Story story(7);
   FrameWriter writer = FrameWriter::create(scratch / "frames.h5", story.table());
   for (int k = 0; k < 5; ++k) writer.append(story.frame(k));
+  writer.flush();
   const FrameReader reader(scratch / "frames.h5");
   CHECK(reader.frame_count() == 5);
   CHECK(reader.beads().size() == 7);
