@@ -275,8 +275,8 @@ TEST_CASE("a nuisance that is varied apart has a group of its own, and costs the
   CHECK(most > 0.008);
   CHECK(most <= 0.01);
   // Every candidate with it, half as many as alone; screening does without them.
-  CHECK(plan_bank(q).size() == plan_bank(plain).size() + static_cast<std::size_t>(q.bank.base + 3 * q.bank.each / 2));
-  CHECK(plan_screening(q).size() == plan_screening(plain).size() + static_cast<std::size_t>(q.bank.base));
+  CHECK(plan_bank(q).size() == plan_bank(plain).size() + static_cast<std::size_t>(q.bank.apart + 3 * q.bank.each / 2));
+  CHECK(plan_screening(q).size() == plan_screening(plain).size() + static_cast<std::size_t>(q.bank.apart));
 }
 
 TEST_CASE("a nuisance that is varied apart is varied with each candidate, too, half as often as that alone") {
@@ -355,6 +355,6 @@ TEST_CASE("a nuisance apart whose simulations fail is refused with the remedy") 
   };
   const Bank bank = fill_bank(q, mill.machinery(), mill.evidence(), plan_bank(q), {0});
   CHECK_THAT(testing::refusal([&] { data_of(q, bank, {0}); }),
-             Contains("finished simulations of the bank without a candidate vary the nuisance 'stiffness', 6 are needed; raise bank.base, "
+             Contains("finished simulations of the bank without a candidate vary the nuisance 'stiffness', 6 are needed; raise bank.apart, "
                       "or leave the nuisance out"));
 }

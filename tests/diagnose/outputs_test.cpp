@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <span>
@@ -29,7 +30,8 @@ nlohmann::json written(const Scratch& folder, const std::vector<std::string>& tr
                        double recording_noise = 1) {
   const Question q = question_of(folder, nuisances +
                                              "hypotheses: {rolling_resistance: {}, lifter_wear: {}}\n"
-                                             "observe: {beads: 300}\n");
+                                             "observe: {beads: 300}\n"
+                                             "bank: {base: 26, each: 11, apart: 9, first: 3, develop_turns: 0.5}\n");
   MadeUpMill mill(q, {{kRolling, 0, 0.2, 3, {21, 22, 23}}, {"geometry.liner.lifter_height", 0.005, 0.003, 3, {41, 42, 43}}}, truth,
                   recording_noise);
   naming::Options options;
@@ -215,6 +217,9 @@ TEST_CASE("corrected/ is a case with the physics on, and a study that can be dia
   CHECK(again.study.conditions[2].role == calibrate::Role::held_out);
   CHECK(again.study.parameters[1].name == "wall_friction");
   CHECK(again.study.observing.beads == 300);
+  const BankSize& bank = again.bank;
+  CHECK(std::array{bank.base, bank.each, bank.apart, bank.first} == std::array{26, 11, 9, 3});
+  CHECK(bank.develop_turns == 0.5);
   REQUIRE(again.nuisances.size() == 1);
   CHECK_THAT(again.nuisances[0].sigma, WithinRel(0.00313, 1e-6));
   CHECK(std::none_of(again.candidates.begin(), again.candidates.end(), [](const Candidate& k) { return k.name == "rolling_resistance"; }));

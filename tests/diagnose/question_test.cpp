@@ -50,7 +50,7 @@ TEST_CASE("a question reads as it is written") {
                   "  end_faces_at_rest: {}\n"
                   "  lining: {sentence: The liner is rubber., path: pairs.glass~liner.restitution, without: 0.55, range: [0.2, 0.55]}\n"
                   "  stiff: {sentence: Softer., equation: k, citation: us, set: {stiffness_factor: 0.002}}\n"
-                  "bank: {base: 30, each: 12, first: 3}\n"
+                  "bank: {base: 30, each: 12, apart: 14, first: 3}\n"
                   "power_error: 1 %\n");
   REQUIRE(q.nuisances.size() == 2);
   CHECK(q.nuisances[0].name == "filling");
@@ -72,7 +72,9 @@ TEST_CASE("a question reads as it is written") {
   CHECK(candidate(q, "stiff").equation == "k");
   CHECK(q.bank.base == 30);
   CHECK(q.bank.each == 12);
+  CHECK(q.bank.apart == 14);
   CHECK(q.bank.first == 3);
+  CHECK(q.bank.develop_turns == 0);
   CHECK(q.study.power_error == 0.01);
   REQUIRE(q.speed.size() == 3);
   CHECK_THAT(q.speed[2] / q.speed[0], WithinRel(50.0 / 75, 1e-9));
@@ -124,6 +126,7 @@ TEST_CASE("without a map of hypotheses all that apply are asked, in alphabetical
   CHECK(std::is_sorted(q.candidates.begin(), q.candidates.end(), [](const auto& a, const auto& b) { return a.name < b.name; }));
   CHECK(q.bank.base == 24);
   CHECK(q.bank.each == 10);
+  CHECK(q.bank.apart == 24);
   CHECK(q.study.power_error == 0.005);
   CHECK_FALSE(q.left_out.empty());
 }

@@ -159,7 +159,7 @@ TEST_CASE("what could be seen for itself but not beside what was found is told")
 
 TEST_CASE("the bank keeps its simulations where it reaches farther, also those that begin at another's end") {
   const Scratch folder;
-  const Question q = question_of(folder, kSections.substr(0, kSections.rfind('}')) + ", develop_s: 0.5 s}\n");
+  const Question q = question_of(folder, kSections.substr(0, kSections.rfind('}')) + ", develop_turns: 0.5}\n");
   MadeUpMill mill(q, usual(), {"pairs.glass~glass.static_friction=0.8", kTheta[1], kTheta[2]});
   const Diagnosis d = found(q, mill);
   INFO(d.sentence);

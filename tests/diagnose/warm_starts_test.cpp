@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "made_up_study.hpp"
@@ -23,7 +24,7 @@ const std::string kSections =
     "  stiffness_factor: {range: [0.0005, 0.02], mean: 0.005, sigma: 0.003, apart: true}\n"
     "hypotheses: {lifter_face_angle: {}, rolling_resistance: {}, end_faces_at_rest: {}}\n";
 
-std::string bank(int base, int each, const std::string& more = ", develop_s: 0.5 s") {
+std::string bank(int base, int each, const std::string& more = ", develop_turns: 0.5") {
   return fmt::format("bank: {{base: {}, each: {}{}}}\n", base, each, more);
 }
 
@@ -77,7 +78,7 @@ TEST_CASE("each end is given once, within group and condition, and four of a gro
       continue;
     }
     ++warm;
-    CHECK(run.simulation.develop_s == 0.5);
+    CHECK(run.simulation.develop_s == Approx(0.5 * 2 * std::numbers::pi / q.speed[run.condition]).margin(1e-4));
     CHECK(given.insert(run.simulation.donor->settings).second);
     CHECK(run.simulation.donor->label.starts_with(run.group + "_"));
     CHECK(run.simulation.donor->label.ends_with("_" + q.study.conditions[run.condition].name));
@@ -147,7 +148,8 @@ TEST_CASE("a bank that grows keeps every earlier run with all from which it stem
 
 TEST_CASE("a time to develop that no condition has room for is refused at its line") {
   const Scratch folder;
-  CHECK_THROWS_WITH(question_of(folder, kSections + bank(24, 10, ", develop_s: 60 s")),
-                    Contains("study.yaml:") && Contains("develop_s") && Contains("analyze_from_s"));
-  CHECK_THROWS_WITH(question_of(folder, kSections + bank(24, 10, ", develop_s: 0")), Contains("study.yaml:") && Contains("develop_s"));
+  CHECK_THROWS_WITH(question_of(folder, kSections + bank(24, 10, ", develop_turns: 60")),
+                    Contains("study.yaml:") && Contains("develop_turns") && Contains("analyze_from_s"));
+  CHECK_THROWS_WITH(question_of(folder, kSections + bank(24, 10, ", develop_turns: 0")),
+                    Contains("study.yaml:") && Contains("develop_turns"));
 }

@@ -140,7 +140,7 @@ void check_varied_apart(const Question& question, const naming::BankData& data) 
     const std::size_t least = 2 + question.study.parameters.size() + kSpareApart;
     if (varied < least)
       throw base::UserError(fmt::format(
-          "{} finished simulations of the bank without a candidate vary the nuisance '{}', {} are needed; raise bank.base, or leave "
+          "{} finished simulations of the bank without a candidate vary the nuisance '{}', {} are needed; raise bank.apart, or leave "
           "the nuisance out",
           varied, c.name, least));
   }
@@ -189,7 +189,7 @@ std::vector<BankPoint> plan_again(const Question& question) {
 std::vector<BankPoint> plan_screening(const Question& question) {
   std::vector<BankPoint> all = plan_group(question, {}, question.bank.base);
   append(all, plan_again(question));
-  for (const Index nuisance : varied_apart(question)) append(all, plan_group(question, {{}, nuisance}, question.bank.base));
+  for (const Index nuisance : varied_apart(question)) append(all, plan_group(question, {{}, nuisance}, question.bank.apart));
   for (Index j = 0; j < std::ssize(question.candidates); ++j)
     append(all, plan_group(question, {j, {}}, std::min(question.bank.first, question.bank.each)));
   return all;

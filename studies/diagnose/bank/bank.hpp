@@ -57,7 +57,7 @@ std::vector<BankPoint> plan_bank(const Question& question);
 
 /// From a filling at rest.
 campaign::Simulation simulation_of(const Question& question, const BankPoint& point, std::size_t condition);
-/// [points × conditions] as the bank has them: where it develops (BankSize::develop), most begin at another's end (warm_starts.cpp).
+/// [points × conditions] as the bank has them: where it develops (BankSize::develop_turns), most begin at another's end (warm_starts.cpp).
 std::vector<campaign::Simulation> simulations_of(const Question& question, const std::vector<BankPoint>& points,
                                                  const std::vector<std::size_t>& conditions);
 

@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 
 #include "studies/diagnose/bank/beyond.hpp"
 
@@ -94,7 +96,7 @@ Chain chain_of(const Question& question, const std::vector<BankPoint>& group, st
     }
     if (count >= kChains) {
       own->donor = nearest->simulation;
-      own->develop_s = *question.bank.develop;
+      own->develop_s = std::floor(1e4 * question.bank.develop_turns * 2 * std::numbers::pi / question.speed[condition]) / 1e4;
       ends.erase(nearest);
     }
     ends.push_back({&point, mill, own});
@@ -110,7 +112,7 @@ std::vector<campaign::Simulation> simulations_of(const Question& question, const
   std::map<std::string, int> last;
   for (const BankPoint& p : points) last[p.group] = std::max(last[p.group], p.index);
   std::map<std::pair<std::string, std::size_t>, Chain> chains;
-  if (question.bank.develop) {
+  if (question.bank.develop_turns > 0) {
     for (const auto& [name, index] : last) {
       if (is_beyond(name)) continue;  // few, and far from others in what they vary: from rest
       const std::vector<BankPoint> group = group_of(question, name, index);

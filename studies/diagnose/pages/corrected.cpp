@@ -19,8 +19,10 @@ std::string choices_text(const Question& q) {
   const calibrate::Observing& o = q.study.observing;
   std::string out = fmt::format("\nobserve: {{camera: {}, beads: {}, draws: {}", nlohmann::json(o.camera).dump(), o.beads, o.draws);
   if (o.z_low && o.z_high) fmt::format_to(std::back_inserter(out), ", z: [{:.6g}, {:.6g}]", *o.z_low, *o.z_high);
-  fmt::format_to(std::back_inserter(out), "}}\nbank: {{base: {}, each: {}, first: {}}}\npower_error: {:.6g}\nlevel: {:.6g}\n", q.bank.base,
-                 q.bank.each, q.bank.first, q.study.power_error, q.level);
+  fmt::format_to(std::back_inserter(out), "}}\nbank: {{base: {}, each: {}, apart: {}, first: {}{}}}\npower_error: {:.6g}\nlevel: {:.6g}\n",
+                 q.bank.base, q.bank.each, q.bank.apart, q.bank.first,
+                 q.bank.develop_turns > 0 ? fmt::format(", develop_turns: {:.6g}", q.bank.develop_turns) : "", q.study.power_error,
+                 q.level);
   std::vector<std::string> without;
   for (const calibrate::ObservableKind kind : q.study.objective.without) without.emplace_back(calibrate::name_of(kind));
   if (!without.empty()) fmt::format_to(std::back_inserter(out), "objective: {{without: [{}]}}\n", fmt::join(without, ", "));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "kernel/config/units.hpp"
 #include "kernel/config/writer.hpp"
@@ -197,20 +198,6 @@ void read_usual(Question& question) {
   }
 }
 
-std::optional<double> read_develop(const Node& bank, const calibrate::Study& study) {
-  const auto node = bank.find("develop_s");
-  if (!node) return {};
-  const double develop = config::read_number(*node, "s", config::positive());
-  for (const calibrate::Condition& c : study.conditions) {
-    const double from = config::read_case(study.base.string(), c.settings).time.analyze_from;
-    if (develop > from)
-      node->fail(
-          fmt::format("is {:.6g} s, and the analysis of condition '{}' begins at time.analyze_from_s = {:.6g} s; give no more than that",
-                      develop, c.name, from));
-  }
-  return develop;
-}
-
 void settle_speeds(Question& question) {
   for (calibrate::Condition& c : question.study.conditions) {
     const config::Case at = config::read_case(question.study.base.string(), c.settings);
@@ -220,6 +207,25 @@ void settle_speeds(Question& question) {
       c.settings.push_back(settled);
     }
   }
+}
+
+double read_develop_turns(const Node& bank, const Question& question) {
+  const auto node = bank.find("develop_turns");
+  if (!node) return 0;
+  const double turns = config::read_number(*node, "1", config::positive());
+  for (std::size_t c = 0; c < question.study.conditions.size(); ++c) {
+    const calibrate::Condition& condition = question.study.conditions[c];
+    if (question.speed[c] == 0)
+      node->fail(fmt::format("counts turns, and the mill of condition '{}' does not turn; leave it out", condition.name));
+    const double from = config::read_case(question.study.base.string(), condition.settings).time.analyze_from;
+    const double most = from * question.speed[c] / (2 * std::numbers::pi);
+    if (turns > most)
+      node->fail(
+          fmt::format("is {:.6g}, and the analysis of condition '{}' begins after {:.3g} turns (time.analyze_from_s = {:.6g} s); "
+                      "give no more than that",
+                      turns, condition.name, most, from));
+  }
+  return turns;
 }
 
 /// Every candidate of the library that gives a case which can be run.
@@ -317,12 +323,13 @@ Question read_question(const std::filesystem::path& file, const std::vector<std:
   });
   exclude_impossible(registry, question);
   if (const auto node = root.find("bank")) {
-    node->expect({"base", "each", "first", "develop_s"});
+    node->expect({"base", "each", "apart", "first", "develop_turns"});
     const auto whole = [&](const char* key, int standard, double least) {
       const auto value = node->find(key);
       return value ? static_cast<int>(config::read_integer(*value, config::between(least, 1e5))) : standard;
     };
-    question.bank = {whole("base", 24, 8), whole("each", 10, 1), whole("first", 4, 1), read_develop(*node, question.study)};
+    const int base = whole("base", 24, 8);
+    question.bank = {base, whole("each", 10, 1), whole("apart", base, 1), whole("first", 4, 1), read_develop_turns(*node, question)};
   }
   if (const auto node = root.find("level"))
     question.level = config::read_number(*node, "1", config::between(kLeastLevel, kMostLevel, "it is how often a false alarm is allowed"));

@@ -9,7 +9,7 @@
 //     speed_dependent_restitution: {set: {pairs.glass~glass.reference_restitution: 0.8}}
 //     lining: {sentence: The liner is rubber., path: pairs.glass~liner.restitution, without: 0.55, range: [0.2, 0.55]}
 //     ends: {sentence: The mill has end faces., set: {geometry.liner.end_faces: true}}
-//   bank: {base: 24, each: 10, develop_s: 0.5}   # begin where other simulations of the bank ended
+//   bank: {base: 24, each: 10, develop_turns: 1}   # begin where other simulations of the bank ended
 //   power_error: 0.5 %                           # of speed and meter together
 //   level: 5 %                                   # how often something is said to be missing where nothing is
 #pragma once
@@ -37,10 +37,11 @@ struct Nuisance {
 
 /// How many simulations of each kind the bank has in every condition.
 struct BankSize {
-  int base = 24;                       ///< without a candidate
-  int each = 10;                       ///< with each candidate; half as many with it and each nuisance that is varied apart
-  int first = 4;                       ///< of them before the candidate is screened
-  std::optional<double> develop = {};  ///< s that a run which begins at another's end turns before it is looked at; none: all begin at rest
+  int base = 24;             ///< without a candidate
+  int each = 10;             ///< with each candidate; half as many with it and each nuisance that is varied apart
+  int apart = base;          ///< without a candidate, with each nuisance that is varied apart
+  int first = 4;             ///< of them before the candidate is screened
+  double develop_turns = 0;  ///< that a run which begins at another's end turns before it is looked at; 0: all begin at rest
 };
 
 /// How far a parameter or nuisance may lie beyond its range, natural units.
