@@ -132,28 +132,28 @@ def child_seconds(command, **more):
 
 
 def compare_banks(setup, before, now, pairs):
-    """A part of the bank of the story's challenge: 13 points in three conditions."""
+    """A part of the bank of the story's challenge, as the earlier commit's study has it."""
     rows = []
     for _ in range(pairs):
         times = []
         for program in (before, now):
             cache = setup.work / "bank-of-pair"
             shutil.rmtree(cache, ignore_errors=True)
-            words = ["bank", "extend", program.sources / STORY / "challenge_study.yaml", "--cache", cache, "--set", "bank.base=8", "--set", "bank.each=1"]
+            words = ["bank", "extend", before.sources / STORY / "challenge_study.yaml", "--cache", cache, "--set", "bank.base=8", "--set", "bank.each=1"]
             times.append(child_seconds([program.build / "bin" / "millscope"] + words)[0])
         rows.append(times)
     return summary("bank, a part", "core-s", rows)
 
 
 def compare_sets(setup, before, now):
-    """One set of the story's challenge, diagnosed when its bank is there: the bank takes minutes, once for each program."""
+    """One set of the earlier commit's challenge of the story, diagnosed when its bank is there: that takes minutes, once for each."""
     times = []
     for program in (before, now):
         folder = setup.work / ("set-" + program.sources.name)
         millscope = program.build / "bin" / "millscope"
         if not (folder / "manifest.json").exists():
             shutil.rmtree(folder, ignore_errors=True)
-            bench.run([millscope, "challenge", "make", program.sources / STORY / "challenge.yaml", "-o", folder, "--set", "seed=28",
+            bench.run([millscope, "challenge", "make", before.sources / STORY / "challenge.yaml", "-o", folder, "--set", "seed=28",
                        "--set", "sets=[{kind: effect, hypothesis: rolling_resistance, strength: [0.5, 1], count: 1}]"])
         bench.say("the bank of %s, unless it is there (minutes) …" % program.sources.name)
         for timed in (False, True):

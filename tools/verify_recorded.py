@@ -12,7 +12,7 @@ def recorded(bench, run, out, power, *lines, camera=()):
     further lines of the file, those of `condition` first; `camera`: settings of its file."""
     out.mkdir(parents=True, exist_ok=True)
     file = out / "r.yaml"
-    if bench.fresh or not file.exists():
+    if bench.fresh or not file.exists() or file.stat().st_mtime < (bench.folder / run / "summary.json").stat().st_mtime:
         bench.call("pept", "synthesize", os.path.relpath(bench.folder / run, ROOT), "-o", os.path.relpath(out / "r.a", ROOT), "--camera", CAMERA, "--force",
                    *(word for setting in camera for word in ("--set", setting)))
         known = [line for line in file.read_text().splitlines() if not line.strip().startswith(("power:", "geometry:"))]

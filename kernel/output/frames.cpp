@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -24,13 +23,13 @@ using hdf5::Handle;
 namespace {
 
 constexpr std::array<const char*, 3> kBeadColumns{"position", "velocity", "spin"};
+constexpr std::array<const char*, 3> kBeadUnits{"m", "m/s", "rad/s"};
+
 using Clock = std::chrono::steady_clock;
 
 // Frames wait for each other: to bring a small one alone to the operating system costs as much as hundreds of steps of its beads.
 constexpr std::size_t kWaiting = 256 << 10;          // bytes
 constexpr std::chrono::milliseconds kPatience{250};  // of who looks on
-
-constexpr std::array<const char*, 3> kBeadUnits{"m", "m/s", "rad/s"};
 
 template <class T>
 void write_fixed(hid_t parent, const char* name, std::span<const T> values, const char* unit) {
@@ -120,6 +119,7 @@ struct FrameWriter::Impl {
   std::size_t bead_count = 0, wall_count = 0, dissipation_count = 0;
   double last_time = 0;
   std::size_t waiting = 0;  // frames
+  bool failed = false;
   Clock::time_point last_write{};
 
   static std::unique_ptr<Impl> open(const fs::path& path, std::size_t bead_count, std::size_t walls, std::size_t dissipations,
@@ -144,8 +144,10 @@ std::unique_ptr<FrameWriter::Impl> FrameWriter::Impl::open(const fs::path& path,
 }
 
 void FrameWriter::Impl::write_through() {
-  const std::size_t count = std::exchange(waiting, 0);  // also where it fails: half of them twice would not stand side by side
+  if (failed) throw std::logic_error("FrameWriter: goes on after it failed");
+  const std::size_t count = std::exchange(waiting, 0);
   if (count == 0) return;
+  failed = true;  // unless all is written: columns of unlike lengths take no more
   hdf5::prepare();
   require_space(file.path(), count * frame_bytes(bead_count));
   const auto write = [&](auto& columns) {
@@ -160,6 +162,7 @@ void FrameWriter::Impl::write_through() {
   time.write(count);  // last: what `time` lists is complete
   file.flush();
   last_write = Clock::now();
+  failed = false;
 }
 
 bool FrameWriter::Impl::close() {
@@ -235,7 +238,9 @@ void FrameWriter::append(const FrameView& frame) {
   if (frame_count() > 0 && !(frame.time > f.last_time)) throw std::logic_error("FrameWriter: times must increase");
   const std::array<std::span<const double>, 3> beads{frame.position, frame.velocity, frame.spin};
   for (std::size_t k = 0; k < beads.size(); ++k) {
-    std::transform(beads[k].begin(), beads[k].end(), std::back_inserter(f.beads[k].values),
+    std::vector<float>& to = f.beads[k].values;
+    to.resize(to.size() + size);
+    std::transform(beads[k].begin(), beads[k].end(), to.end() - static_cast<std::ptrdiff_t>(size),
                    [](double value) { return static_cast<float>(value); });
   }
   f.scalars[0].add({&frame.wall_angle, 1});

@@ -45,7 +45,7 @@ struct FrameView {
 };
 
 /// Writes frames.h5 (docs/format.md). The number of beads is fixed by the table. Throws base::UserError when the disk is full or
-/// the file cannot be written; what was appended before stays readable.
+/// the file cannot be written; what was written before stays readable.
 class FrameWriter {
  public:
   /// A new file; an existing one is a UserError.

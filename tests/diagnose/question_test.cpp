@@ -303,6 +303,7 @@ TEST_CASE("a parameter that gives no case is refused before anything is simulate
 
 TEST_CASE("a bank and an error of power that cannot be are refused at their line") {
   CHECK_THAT(refused("bank: {base: 4}\n"), StartsWith("study.yaml:9: 'bank.base'") && Contains("8"));
+  CHECK_THAT(refused("bank: {apart: 7}\n"), StartsWith("study.yaml:9: 'bank.apart'") && Contains("8"));
   CHECK_THAT(refused("bank: {each: 0}\n"), StartsWith("study.yaml:9: 'bank.each'"));
   CHECK_THAT(refused("bank: {each: 2.5}\n"), StartsWith("study.yaml:9: 'bank.each'"));
   CHECK_THAT(refused("bank: {total: 100}\n"), StartsWith("study.yaml:9: ") && Contains("unknown key 'total'"));

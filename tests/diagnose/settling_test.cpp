@@ -17,18 +17,18 @@ using testing::Scratch;
 namespace {
 
 constexpr int kSteps = 600;
-constexpr double kSpeed = 8;  // rad/s: the analysed time 1 … 4 s is nearly four turns
 
 /// What all runs of a condition share, mm.
 struct Shared {
   double start = 0;   ///< decays within a twentieth of the analysed time
   double ripple = 0;  ///< once a turn, all the time
+  double speed = 8;   ///< rad/s: the analysed time 1 … 4 s is nearly four turns
 };
 
 /// One run's centre of mass about −30 mm, with 0.5 mm of scatter of its own.
 void write_run(const std::filesystem::path& folder, const Shared& shared, base::RandomStream& random) {
   std::filesystem::create_directories(folder);
-  std::ofstream(folder / "summary.json") << fmt::format(R"({{"window_s": [1, 4], "mill_speed_rad_per_s": {}}})", -kSpeed);
+  std::ofstream(folder / "summary.json") << fmt::format(R"({{"window_s": [1, 4], "mill_speed_rad_per_s": {}}})", -shared.speed);
   std::ofstream out(folder / "series.csv");
   out << "time_s,com_x_m,com_y_m,translational_energy_J,rotational_energy_J\n";
   const double own = 0.5 * random.normal();
@@ -36,7 +36,7 @@ void write_run(const std::filesystem::path& folder, const Shared& shared, base::
   for (int i = 0; i < kSteps; ++i) {
     const double t = 4.0 * i / kSteps, since = std::max(0.0, t - 1);
     wandering = 0.95 * wandering + 0.15 * random.normal();
-    const double x = -30 + own + wandering + shared.start * std::exp(-since / 0.15) + shared.ripple * std::sin(kSpeed * t);
+    const double x = -30 + own + wandering + shared.start * std::exp(-since / 0.15) + shared.ripple * std::sin(shared.speed * t);
     out << fmt::format("{:.17g},{:.17g},{:.17g},{:.17g},1e-4\n", t, 1e-3 * x, -0.02 + 1e-4 * random.normal(),
                        1e-3 + 1e-5 * random.normal());
   }
@@ -78,6 +78,14 @@ TEST_CASE("what is left of the start in all runs of a bank is told") {
   const std::vector<std::string> still = unsettled(q, bank, {0, 1});
   REQUIRE(still.size() == 1);
   CHECK_THAT(still[0], Contains("mean of 55"));
+}
+
+TEST_CASE("two turns are enough to tell the start, fewer are not") {
+  const Scratch folder;
+  const Question q = question_of(folder, "");
+  CHECK(unsettled(q, bank_of(folder, 60, {3, 0, 4.25}, 9), {0, 1}).size() == 1);
+  CHECK(unsettled(q, bank_of(folder, 60, {3, 0, 4.1}, 10), {0, 1}).empty());
+  CHECK(unsettled(q, bank_of(folder, 60, {0, 2, 4.25}, 11), {0, 1}).empty());
 }
 
 TEST_CASE("chance of runs, or a ripple, is not taken for a start") {

@@ -150,6 +150,10 @@ TEST_CASE("a time to develop that no condition has room for is refused at its li
   const Scratch folder;
   CHECK_THROWS_WITH(question_of(folder, kSections + bank(24, 10, ", develop_turns: 60")),
                     Contains("study.yaml:") && Contains("develop_turns") && Contains("analyze_from_s"));
-  CHECK_THROWS_WITH(question_of(folder, kSections + bank(24, 10, ", develop_turns: 0")),
+  CHECK_THROWS_WITH(question_of(folder, kSections + bank(24, 10, ", develop_turns: -1")),
                     Contains("study.yaml:") && Contains("develop_turns"));
+  // 3 s are 2.95 turns at 75 %, 1.96 at 50 %.
+  CHECK_THROWS_WITH(question_of(folder, kSections + bank(24, 10, ", develop_turns: 2")), Contains("begins after 1.963"));
+  CHECK(question_of(folder, kSections + bank(24, 10, ", develop_turns: 1.9")).bank.develop_turns == 1.9);
+  CHECK(question_of(folder, kSections + bank(24, 10, ", develop_turns: 0")).bank.develop_turns == 0);
 }

@@ -62,6 +62,23 @@ TEST_CASE("frames can be read while the run goes on") {
   CHECK(read_all(scratch / "frames.h5", "position").size() == 45);
 }
 
+TEST_CASE("frames wait for each other, a large one for none") {
+  const Scratch scratch;
+  const auto written = [&](const char* name) { return read_all(scratch / name, "time").size(); };
+  Story small(5), large(8000);
+  FrameWriter waits = FrameWriter::create(scratch / "waits.h5", small.table());
+  write(waits, small, 0, 40);  // 170 KB, in far less than a quarter of a second
+  CHECK(waits.frame_count() == 40);
+  CHECK(written("waits.h5") < 40);
+  write(waits, small, 40, 80);
+  CHECK(written("waits.h5") > 40);
+  waits.flush();
+  CHECK(written("waits.h5") == 80);
+  FrameWriter alone = FrameWriter::create(scratch / "alone.h5", large.table());
+  write(alone, large, 0, 3);
+  CHECK(written("alone.h5") == 3);
+}
+
 TEST_CASE("a frames file refuses what does not belong to it") {
   const Scratch scratch;
   Story story(5);

@@ -44,7 +44,7 @@ struct Times {
   double first_begin, first_end, later_begin, later_end;
 };
 
-/// Both parts are whole turns, as a speed that ripples once a turn is no sign of a start; nothing where less than three turns are analysed.
+/// Both parts are whole turns, as a speed that ripples once a turn is no sign of a start; nothing where less than two are analysed.
 std::optional<Times> times_of(const nlohmann::ordered_json& summary) {
   const auto window = summary.is_object() ? summary.value("window_s", nlohmann::ordered_json()) : nlohmann::ordered_json();
   if (!window.is_array() || window.size() != 2 || !window[0].is_number() || !window[1].is_number()) return {};
@@ -53,7 +53,7 @@ std::optional<Times> times_of(const nlohmann::ordered_json& summary) {
   double first = kFirst * span, later = (1 - kLater) * span;
   if (speed.is_number() && speed.get<double>() != 0) {
     const double turn = 2 * std::numbers::pi / std::fabs(speed.get<double>());
-    if (span < 3 * turn) return {};
+    if (span < 2 * turn) return {};
     first = turn * std::ceil(first / turn);
     later = turn * std::max(1.0, std::floor(later / turn));
   }
@@ -115,8 +115,8 @@ Excess excess_of(const std::vector<Parts>& runs, std::size_t quantity) {
 std::string sentence(const std::string& condition, const Quantity& quantity, const Excess& e, std::size_t runs) {
   const double scale = quantity.length ? 1e3 : 100 / std::fabs(e.later);
   return fmt::format(
-      "the simulations of condition '{}' are not steady when they begin to be looked at: {} is off by {:+.2g} ± {:.2g} {} in the first "
-      "eighth of that time, in the mean of {} of them, beside its second half; in a mill that has long been turning it is not; raise "
+      "the simulations of condition '{}' are not steady when they begin to be looked at: {} is off by {:+.2g} ± {:.2g} {} at the "
+      "beginning of that time, in the mean of {} of them, beside its end; in a mill that has long been turning it is not; raise "
       "time.analyze_from_s and time.end_s there",
       condition, quantity.name, scale * e.mean, scale * e.error, quantity.length ? "mm" : "%", runs);
 }

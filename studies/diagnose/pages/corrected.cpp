@@ -21,8 +21,7 @@ std::string choices_text(const Question& q) {
   if (o.z_low && o.z_high) fmt::format_to(std::back_inserter(out), ", z: [{:.6g}, {:.6g}]", *o.z_low, *o.z_high);
   fmt::format_to(std::back_inserter(out), "}}\nbank: {{base: {}, each: {}, apart: {}, first: {}{}}}\npower_error: {:.6g}\nlevel: {:.6g}\n",
                  q.bank.base, q.bank.each, q.bank.apart, q.bank.first,
-                 q.bank.develop_turns > 0 ? fmt::format(", develop_turns: {:.6g}", q.bank.develop_turns) : "", q.study.power_error,
-                 q.level);
+                 q.bank.develop_turns > 0 ? fmt::format(", develop_turns: {}", q.bank.develop_turns) : "", q.study.power_error, q.level);
   std::vector<std::string> without;
   for (const calibrate::ObservableKind kind : q.study.objective.without) without.emplace_back(calibrate::name_of(kind));
   if (!without.empty()) fmt::format_to(std::back_inserter(out), "objective: {{without: [{}]}}\n", fmt::join(without, ", "));

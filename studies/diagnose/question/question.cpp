@@ -212,8 +212,8 @@ void settle_speeds(Question& question) {
 double read_develop_turns(const Node& bank, const Question& question) {
   const auto node = bank.find("develop_turns");
   if (!node) return 0;
-  const double turns = config::read_number(*node, "1", config::positive());
-  for (std::size_t c = 0; c < question.study.conditions.size(); ++c) {
+  const double turns = config::read_number(*node, "1", config::not_negative());
+  for (std::size_t c = 0; turns > 0 && c < question.study.conditions.size(); ++c) {
     const calibrate::Condition& condition = question.study.conditions[c];
     if (question.speed[c] == 0)
       node->fail(fmt::format("counts turns, and the mill of condition '{}' does not turn; leave it out", condition.name));
@@ -221,9 +221,9 @@ double read_develop_turns(const Node& bank, const Question& question) {
     const double most = from * question.speed[c] / (2 * std::numbers::pi);
     if (turns > most)
       node->fail(
-          fmt::format("is {:.6g}, and the analysis of condition '{}' begins after {:.3g} turns (time.analyze_from_s = {:.6g} s); "
-                      "give no more than that",
-                      turns, condition.name, most, from));
+          fmt::format("is {}, and the analysis of condition '{}' begins after {:.4f} turns (time.analyze_from_s = {:.6g} s); give "
+                      "no more than that",
+                      turns, condition.name, std::floor(1e4 * most) / 1e4, from));
   }
   return turns;
 }
@@ -329,7 +329,7 @@ Question read_question(const std::filesystem::path& file, const std::vector<std:
       return value ? static_cast<int>(config::read_integer(*value, config::between(least, 1e5))) : standard;
     };
     const int base = whole("base", 24, 8);
-    question.bank = {base, whole("each", 10, 1), whole("apart", base, 1), whole("first", 4, 1), read_develop_turns(*node, question)};
+    question.bank = {base, whole("each", 10, 1), whole("apart", base, 8), whole("first", 4, 1), read_develop_turns(*node, question)};
   }
   if (const auto node = root.find("level"))
     question.level = config::read_number(*node, "1", config::between(kLeastLevel, kMostLevel, "it is how often a false alarm is allowed"));

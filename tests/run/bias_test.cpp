@@ -1,0 +1,265 @@
+// Are short simulations biased? Those that begin where others ended: 30 seeds of the mill of the story from rest and 30 from the ends of
+// runs at other frictions and fillings, looked at in the same window of two turns. Those that are looked at early: 30 seeds from rest,
+// against the same runs later on.
+#include <catch2/catch.hpp>
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <tuple>
+
+#include "dem/support.hpp"
+#include "kernel/base/text.hpp"
+#include "kernel/output/frame_reader.hpp"
+#include "kernel/run/simulation.hpp"
+#include "millscope/random.hpp"
+#include "tests/scratch.hpp"
+
+using namespace dem_test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kRuns = 30;
+constexpr std::array kSpeeds = {0.75, 0.6, 0.5};                   // of the critical speed
+constexpr std::array kDevelop = {0.5, 0.75, 1.0};                  // turns before the window, from another's end
+constexpr double kRest = 1.5, kTurns = 2;                          // turns: before the window, from rest; of the window
+constexpr int kCells = 25;                                         // along x and y
+constexpr double kFrame = 0.005, kLag = 0.5;                       // s
+constexpr double kDiameter = 0.15, kBead = 0.01, kPeriod = 0.034;  // m, of the mill of the story
+
+// Beyond these bounds is by chance one comparison of 1000, and there are 54 of each: 3.3 standard errors; Fisher's F of 29 and 29 degrees of
+// freedom; a correlation of 30 pairs.
+constexpr double kErrors = 3.3, kLowF = 0.280, kHighF = 3.57, kCorrelation = 0.570;
+
+struct Quantity {
+  const char* name;
+  const char* unit;
+  double scale;   ///< from SI; 0: told in % of itself
+  double wanted;  ///< largest difference that is asked for, in the unit; 0: none
+};
+constexpr std::array kQuantities = {
+    Quantity{"power", "%", 0, 0.3},        Quantity{"centre of mass x", "mm", 1e3, 0.2}, Quantity{"centre of mass y", "mm", 1e3, 0.2},
+    Quantity{"kinetic energy", "%", 0, 0}, Quantity{"velocity fluctuation", "%", 0, 0},  Quantity{"axial spread", "%", 0, 0}};
+using Shown = std::array<double, kQuantities.size()>;
+using Sample = std::vector<double>;
+
+/// Mean over beads and frames of a third of the variance of the velocity in its cell, m²/s²; and ⟨(z(t + 0.5 s) − z(t))²⟩, m². Of the
+/// frames from one to another.
+std::pair<double, double> motion_of(const output::FrameReader& reader, std::size_t first, std::size_t frames) {
+  const std::size_t n = reader.beads().size(), lag = std::lround(kLag / kFrame);
+  std::vector<float> x(3 * n * frames), v(3 * n * frames);
+  reader.read(output::BeadField::position, first, frames, x);
+  reader.read(output::BeadField::velocity, first, frames, v);
+  struct Cell {
+    double count = 0, sum[3] = {}, squares = 0;
+  };
+  std::vector<Cell> cells(kCells * kCells);
+  std::vector<double> z(n * frames);
+  const auto cell_of = [&](double along) { return std::clamp(static_cast<int>((along / kDiameter + 0.5) * kCells), 0, kCells - 1); };
+  for (std::size_t i = 0; i < n * frames; ++i) {
+    Cell& c = cells[cell_of(x[3 * i]) * kCells + cell_of(x[3 * i + 1])];
+    ++c.count;
+    for (std::size_t k = 0; k < 3; ++k) c.sum[k] += v[3 * i + k], c.squares += double{v[3 * i + k]} * v[3 * i + k];
+    if (i < n) continue;
+    const double step = x[3 * i + 2] - x[3 * (i - n) + 2];
+    z[i] = z[i - n] + step - kPeriod * std::round(step / kPeriod);
+  }
+  double fluctuation = 0, spread = 0;
+  for (const Cell& c : cells) {
+    if (c.count > 0) fluctuation += (c.squares - (c.sum[0] * c.sum[0] + c.sum[1] * c.sum[1] + c.sum[2] * c.sum[2]) / c.count) / 3;
+  }
+  for (std::size_t i = 0; i + lag * n < n * frames; ++i) spread += (z[i + lag * n] - z[i]) * (z[i + lag * n] - z[i]);
+  return {fluctuation / static_cast<double>(n * frames), spread / static_cast<double>(n * (frames - lag))};
+}
+
+struct Ran {
+  Shown shown;
+  double steps;
+};
+
+/// s, at a part of the critical speed
+double turn_at(double fraction) { return 2 * std::numbers::pi / (fraction * std::sqrt(2 * kGravity / (kDiameter - kBead))); }
+
+/// Runs the mill of the story as its study does; turns: how long.
+void run_story(const fs::path& out, double fraction, double from, double turns, std::vector<std::string> settings) {
+  const double turn = turn_at(fraction);
+  run::RunOptions options;
+  options.output = out;
+  options.quiet = true;
+  options.threads = 1;
+  options.overrides = std::move(settings);
+  options.overrides.insert(options.overrides.end(),
+                           {fmt::format("mill.speed={} %critical", 100 * fraction), "time.step_fraction=22 %",
+                            fmt::format("time.analyze_from_s={}", from * turn), fmt::format("time.end_s={}", turns * turn + kFrame),
+                            fmt::format("output={{frames: {{every_s: {}, from_s: {}}}}}", kFrame, from * turn)});
+  REQUIRE(run::run_case(std::string(MILLSCOPE_SOURCE_DIR) + "/configs/story/mill.yaml", registry(), options) == run::Outcome::finished);
+}
+
+Ran ran(const fs::path& out, double fraction, std::vector<std::string> settings) {
+  run_story(out, fraction, kRest, kRest + kTurns, std::move(settings));
+  const nlohmann::json s = nlohmann::json::parse(base::text_of(out / "summary.json"));
+  const output::FrameReader reader(out / "frames.h5");
+  const auto [fluctuation, spread] = motion_of(reader, 0, reader.frame_count());
+  fs::remove(out / "frames.h5");
+  return {{s["power_W"]["com"], s["com_m"][0], s["com_m"][1], s["kinetic_energy_J"], fluctuation, spread}, s["steps"]};
+}
+
+double mean(const Sample& s) {
+  double sum = 0;
+  for (const double v : s) sum += v;
+  return sum / static_cast<double>(s.size());
+}
+
+double covariance(const Sample& a, const Sample& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - mean(a)) * (b[i] - mean(b));
+  return sum / static_cast<double>(a.size() - 1);
+}
+
+Sample column(const std::vector<Ran>& runs, std::size_t quantity) {
+  Sample s;
+  for (const Ran& r : runs) s.push_back(r.shown[quantity]);
+  return s;
+}
+
+/// One line of the table for each quantity.
+void compare(const std::string& label, const std::vector<Ran>& cold, const std::vector<Ran>& warm, const std::vector<Ran>& donors) {
+  for (std::size_t q = 0; q < kQuantities.size(); ++q) {
+    const Quantity& quantity = kQuantities[q];
+    const Sample c = column(cold, q), w = column(warm, q), d = column(donors, q);
+    const double scale = quantity.scale > 0 ? quantity.scale : 100 / std::fabs(mean(c));
+    const double off = scale * (mean(w) - mean(c)), error = scale * std::sqrt((covariance(c, c) + covariance(w, w)) / kRuns);
+    const double f = covariance(w, w) / covariance(c, c), r = covariance(w, d) / std::sqrt(covariance(w, w) * covariance(d, d));
+    fmt::print("{:<32} {:<22} {:+7.3f} ± {:5.3f} {:<3} {:+5.1f} {:6.2f} {:+6.2f}\n", label, quantity.name, off, error, quantity.unit,
+               off / error, f, r);
+    INFO(label << ", " << quantity.name);
+    CHECK(std::fabs(off) < kErrors * error);
+    if (quantity.wanted > 0) CHECK(std::fabs(off) < std::max(quantity.wanted, 2 * error));
+    CHECK((f > kLowF && f < kHighF));
+    CHECK(std::fabs(r) < kCorrelation);
+  }
+}
+
+}  // namespace
+
+namespace {
+
+void warm_against_cold(double fraction) {
+  const testing::Scratch folder;
+  const char* stiffness = std::getenv("STIFFNESS");  // of the runs that are compared, not of the donors; default: as theirs
+  const std::string own = stiffness ? fmt::format("stiffness_factor={}", stiffness) : "name=as it is";
+  std::vector<Ran> cold, donors;
+  std::map<double, std::vector<Ran>> warm;
+  Random draw(28);
+  for (int i = 0; i < kRuns; ++i) {
+    const fs::path donor = folder / "donor";
+    donors.push_back(ran(donor, fraction,
+                         {fmt::format("seed={}", 1000 + i), fmt::format("pairs.glass~glass.static_friction={:.3f}", draw.between(0.1, 0.6)),
+                          fmt::format("pairs.glass~hdpe.static_friction={:.3f}", draw.between(0.15, 0.6)),
+                          fmt::format("fill.filling={:.4f}", draw.between(0.34, 0.36))}));
+    const std::string seed = fmt::format("seed={}", i + 1);
+    cold.push_back(ran(folder / "cold", fraction, {seed, own}));
+    for (const double turns : kDevelop) {
+      const std::string start = fmt::format("start={{run: {}, develop_s: {}}}", donor.string(), turns * turn_at(fraction));
+      warm[turns].push_back(ran(folder / fmt::format("warm{}", turns), fraction, {seed, own, start}));
+    }
+    fs::remove_all(folder.path);
+    fs::create_directory(folder.path);
+  }
+  for (const double turns : kDevelop)
+    compare(fmt::format("{} %, {} turns ({:.2f} of steps)", 100 * fraction, turns, warm[turns][0].steps / cold[0].steps), cold, warm[turns],
+            donors);
+}
+
+}  // namespace
+
+TEST_CASE("runs that begin where others ended, against runs from rest", "[.warm]") {
+  fmt::print("{:<32} {:<22} {:>19} {:>6} {:>6} {:>6}\n", "turns before", "quantity", "warm less cold", "errors", "F", "r");
+  for (const double fraction : kSpeeds) warm_against_cold(fraction);
+}
+
+namespace {
+
+/// What is seen from one frame to another. Power: what the shell does.
+Shown seen_in(const output::FrameReader& reader, std::size_t first, std::size_t frames) {
+  const output::FrameScalars& scalars = reader.scalars();
+  const std::size_t n = reader.beads().size(), walls = scalars.wall_names.size(), last = first + frames - 1;
+  std::vector<float> x(3 * n * frames), v(3 * n * frames);
+  reader.read(output::BeadField::position, first, frames, x);
+  reader.read(output::BeadField::velocity, first, frames, v);
+  Shown shown{};
+  for (std::size_t w = 0; w < walls; ++w) shown[0] += scalars.wall_work[last * walls + w] - scalars.wall_work[first * walls + w];
+  shown[0] /= scalars.time[last] - scalars.time[first];
+  for (std::size_t i = 0; i < n * frames; ++i) {
+    shown[1] += x[3 * i], shown[2] += x[3 * i + 1];
+    for (std::size_t k = 0; k < 3; ++k) shown[3] += double{v[3 * i + k]} * v[3 * i + k];
+  }
+  for (std::size_t q = 1; q < 4; ++q) shown[q] /= static_cast<double>(n * frames);
+  std::tie(shown[4], shown[5]) = motion_of(reader, first, frames);
+  return shown;
+}
+
+constexpr std::array kFrom = {0.5, 1.0, kRest};  // turns before it, of the early ones
+constexpr std::array kLate = {3.0, 5.0};         // of the late ones
+
+/// Early windows [kFrom], then late ones [kLate], of a run from rest.
+std::vector<Shown> windows_of(const fs::path& out, double fraction, int seed) {
+  const double turn = turn_at(fraction);
+  run_story(out, fraction, 0, kLate.back() + kTurns, {fmt::format("seed={}", seed)});
+  const output::FrameReader reader(out / "frames.h5");
+  const std::vector<double>& time = reader.scalars().time;
+  const auto frame_at = [&](double turns) { return std::lower_bound(time.begin(), time.end(), turns * turn) - time.begin(); };
+  std::vector<Shown> shown;
+  const auto look = [&](double from) { shown.push_back(seen_in(reader, frame_at(from), frame_at(from + kTurns) - frame_at(from))); };
+  for (const double from : kFrom) look(from);
+  for (const double from : kLate) look(from);
+  return shown;
+}
+
+/// One line of the table for each quantity: what windows after `from` turns show more than the late ones of the same runs.
+void compare_early(const std::string& label, const std::vector<std::vector<Shown>>& runs, std::size_t early) {
+  const auto late_of = [&](const std::vector<Shown>& w, std::size_t q) { return 0.5 * (w[kFrom.size()][q] + w[kFrom.size() + 1][q]); };
+  for (std::size_t q = 0; q < kQuantities.size(); ++q) {
+    const Quantity& quantity = kQuantities[q];
+    Sample first, late, more;
+    for (const auto& w : runs) {
+      first.push_back(w[early][q]), late.push_back(w[kFrom.size()][q]);
+      more.push_back(w[early][q] - late_of(w, q));
+    }
+    const double scale = quantity.scale > 0 ? quantity.scale : 100 / std::fabs(mean(late));
+    const double off = scale * mean(more), error = scale * std::sqrt(covariance(more, more) / static_cast<double>(runs.size()));
+    const double f = covariance(first, first) / covariance(late, late);
+    fmt::print("{:<32} {:<22} {:+7.3f} ± {:5.3f} {:<3} {:+5.1f} {:6.2f}\n", label, quantity.name, off, error, quantity.unit, off / error,
+               f);
+    if (kFrom[early] < kRest) continue;  // known to be too early
+    INFO(label << ", " << quantity.name);
+    CHECK(std::fabs(off) < kErrors * error);
+    if (quantity.wanted > 0) CHECK(std::fabs(off) < std::max(quantity.wanted, 2 * error));
+    CHECK((f > kLowF && f < kHighF));
+  }
+}
+
+void early_against_late(double fraction) {
+  const testing::Scratch folder;
+  std::vector<std::vector<Shown>> runs;
+  for (int seed = 1; seed <= kRuns; ++seed) {
+    runs.push_back(windows_of(folder / "run", fraction, seed));
+    fs::remove_all(folder / "run");
+  }
+  for (std::size_t early = 0; early < kFrom.size(); ++early)
+    compare_early(fmt::format("{} %, after {} turns", 100 * fraction, kFrom[early]), runs, early);
+}
+
+}  // namespace
+
+TEST_CASE("windows of two turns early in a run, against later ones", "[.window]") {
+  for (const double fraction : kSpeeds) early_against_late(fraction);
+}
