@@ -29,7 +29,8 @@ figures: packages-test ## tables that tests print for docs/analysis.md, docs/ana
 	cmake --build --preset release -j $(JOBS) --target test_analysis analyzers_fields_test test_run
 	$(BUILD)/bin/test_analysis "[.coverage]"
 	$(BUILD)/bin/analyzers_fields_test "[.speed]"
-	$(BUILD)/bin/test_run "[.warm],[.window]"
+	$(BUILD)/bin/test_run "[.warm]"
+	$(BUILD)/bin/test_run "[.window]"
 
 verify: packages-test binary ## the long checks (hours), written to docs/validation.md; VERIFY="crosscheck memory" for some
 	tools/verify.py --build $(BUILD) $(VERIFY)

@@ -35,8 +35,8 @@ constexpr int kCells = 25;                                         // along x an
 constexpr double kFrame = 0.005, kLag = 0.5;                       // s
 constexpr double kDiameter = 0.15, kBead = 0.01, kPeriod = 0.034;  // m, of the mill of the story
 
-// Beyond these bounds is by chance one comparison of 1000, and there are 54 of each: 3.3 standard errors; Fisher's F of 29 and 29 degrees of
-// freedom; a correlation of 30 pairs.
+// By chance one comparison of 1000 is beyond these bounds, and there are 54 of each: 3.3 standard errors; Fisher's F of 29 and 29 degrees
+// of freedom; a correlation of 30 pairs.
 constexpr double kErrors = 3.3, kLowF = 0.280, kHighF = 3.57, kCorrelation = 0.570;
 
 struct Quantity {
@@ -142,7 +142,7 @@ void compare(const std::string& label, const std::vector<Ran>& cold, const std::
                off / error, f, r);
     INFO(label << ", " << quantity.name);
     CHECK(std::fabs(off) < kErrors * error);
-    if (quantity.wanted > 0) CHECK(std::fabs(off) < std::max(quantity.wanted, 2 * error));
+    if (quantity.wanted > 0) CHECK(std::fabs(off) < quantity.wanted + 2 * error);
     CHECK((f > kLowF && f < kHighF));
     CHECK(std::fabs(r) < kCorrelation);
   }
@@ -242,7 +242,7 @@ void compare_early(const std::string& label, const std::vector<std::vector<Shown
     if (kFrom[early] < kRest) continue;  // known to be too early
     INFO(label << ", " << quantity.name);
     CHECK(std::fabs(off) < kErrors * error);
-    if (quantity.wanted > 0) CHECK(std::fabs(off) < std::max(quantity.wanted, 2 * error));
+    if (quantity.wanted > 0) CHECK(std::fabs(off) < quantity.wanted + 2 * error);
     CHECK((f > kLowF && f < kHighF));
   }
 }
