@@ -6,7 +6,6 @@
 #include <array>
 #include <chrono>
 #include <stdexcept>
-#include <utility>
 
 #include "kernel/base/error.hpp"
 #include "kernel/output/file.hpp"
@@ -19,6 +18,7 @@ using hdf5::Column;
 using hdf5::ColumnSpec;
 using hdf5::GrowingFile;
 using hdf5::Handle;
+using hdf5::WaitingRows;
 
 namespace {
 
@@ -78,6 +78,8 @@ void build(hid_t file, const BeadTable& table, const fs::path& path) {
   }
 }
 
+std::span<const double> one(const double& value) { return {&value, 1}; }
+
 bool has(hid_t file, const char* name) { return H5Lexists(file, name, H5P_DEFAULT) > 0; }
 
 Column open_column(hid_t file, const char* name, const fs::path& path) {
@@ -94,32 +96,17 @@ void check_bead_count(hid_t file, const fs::path& path, std::size_t bead_count) 
 }  // namespace
 
 struct FrameWriter::Impl {
-  /// A column and its rows that wait to be written.
-  template <class T>
-  struct Rows {
-    Column column;
-    std::vector<T> values{};
-
-    void add(std::span<const T> row) { values.insert(values.end(), row.begin(), row.end()); }
-    void write(std::size_t count) {
-      column.append(values.data(), count);
-      values.clear();
-    }
-  };
-
-  explicit Impl(const fs::path& path) : file(path), time{file.column("time")} {}
+  explicit Impl(const fs::path& path) : file(path), time(file.column("time")) {}
 
   GrowingFile file;
-  Rows<double> time;
-  std::vector<Rows<double>> scalars;         // wall_angle, angular_velocity
-  std::vector<Rows<float>> beads;            // kBeadColumns
-  std::vector<Rows<double>> ledger;          // wall_work, dissipation: 0 or 1 column each
-  std::vector<Rows<std::uint64_t>> impacts;  // 0 or 1 column
-  std::vector<Rows<double>> masses;          // 0 or 1 column
+  WaitingRows<double> time;
+  std::vector<WaitingRows<double>> scalars;         // wall_angle, angular_velocity
+  std::vector<WaitingRows<float>> beads;            // kBeadColumns
+  std::vector<WaitingRows<double>> ledger;          // wall_work, dissipation: 0 or 1 column each
+  std::vector<WaitingRows<std::uint64_t>> impacts;  // 0 or 1 column
+  std::vector<WaitingRows<double>> masses;          // 0 or 1 column
   std::size_t bead_count = 0, wall_count = 0, dissipation_count = 0;
   double last_time = 0;
-  std::size_t waiting = 0;  // frames
-  bool failed = false;
   Clock::time_point last_write{};
 
   static std::unique_ptr<Impl> open(const fs::path& path, std::size_t bead_count, std::size_t walls, std::size_t dissipations,
@@ -134,35 +121,30 @@ std::unique_ptr<FrameWriter::Impl> FrameWriter::Impl::open(const fs::path& path,
   impl->bead_count = bead_count;
   impl->wall_count = walls;
   impl->dissipation_count = dissipations;
-  for (const char* name : {"wall_angle", "angular_velocity"}) impl->scalars.push_back({impl->file.column(name)});
-  for (const char* name : kBeadColumns) impl->beads.push_back({impl->file.column(name)});
-  if (walls > 0) impl->ledger.push_back({impl->file.column("wall_work")});
-  if (dissipations > 0) impl->ledger.push_back({impl->file.column("dissipation")});
-  if (with_impacts) impl->impacts.push_back({impl->file.column("impacts")});
+  for (const char* name : {"wall_angle", "angular_velocity"}) impl->scalars.emplace_back(impl->file.column(name));
+  for (const char* name : kBeadColumns) impl->beads.emplace_back(impl->file.column(name));
+  if (walls > 0) impl->ledger.emplace_back(impl->file.column("wall_work"));
+  if (dissipations > 0) impl->ledger.emplace_back(impl->file.column("dissipation"));
+  if (with_impacts) impl->impacts.emplace_back(impl->file.column("impacts"));
   impl->file.flush();
   return impl;
 }
 
 void FrameWriter::Impl::write_through() {
-  if (failed) throw std::logic_error("FrameWriter: goes on after it failed");
-  const std::size_t count = std::exchange(waiting, 0);
-  if (count == 0) return;
-  failed = true;  // unless all is written: columns of unlike lengths take no more
+  if (time.waiting() == 0) return;
   hdf5::prepare();
-  require_space(file.path(), count * frame_bytes(bead_count));
-  const auto write = [&](auto& columns) {
-    for (auto& column : columns) column.write(count);
+  const auto write = [](auto& columns) {
+    for (auto& column : columns) column.write();
   };
-  write(beads);
-  write(scalars);
-  write(masses);
-  write(ledger);
-  write(impacts);
-  file.flush();
-  time.write(count);  // last: what `time` lists is complete
-  file.flush();
+  const auto rows = [&] {
+    write(beads);
+    write(scalars);
+    write(masses);
+    write(ledger);
+    write(impacts);
+  };
+  file.write_rows(rows, [&] { time.write(); });
   last_write = Clock::now();
-  failed = false;
 }
 
 bool FrameWriter::Impl::close() {
@@ -197,7 +179,7 @@ FrameWriter FrameWriter::create(const fs::path& path, const BeadTable& table) {
   GrowingFile::create(path, [&](hid_t file) { build(file, table, path); });
   if (!table.impact_pairs.empty() && table.impact_edges.size() < 2) throw std::logic_error("FrameWriter: impacts need bins");
   FrameWriter writer(Impl::open(path, count, table.wall_names.size(), table.dissipation_names.size(), !table.impact_pairs.empty()));
-  if (table.beads_vary) writer.impl_->masses.push_back({writer.impl_->file.column("mass_there")});
+  if (table.beads_vary) writer.impl_->masses.emplace_back(writer.impl_->file.column("mass_there"));
   return writer;
 }
 
@@ -232,31 +214,27 @@ void FrameWriter::append(const FrameView& frame) {
   const std::size_t size = 3 * f.bead_count;
   if (frame.position.size() != size || frame.velocity.size() != size || frame.spin.size() != size ||
       frame.wall_work.size() != f.wall_count || frame.dissipation.size() != f.dissipation_count ||
-      (!f.impacts.empty() && frame.impacts.size() != f.impacts.front().column.row_size())) {
+      (!f.impacts.empty() && frame.impacts.size() != f.impacts.front().row_size())) {
     throw std::logic_error("FrameWriter: the frame's arrays do not have the lengths of the bead table");
   }
   if (frame_count() > 0 && !(frame.time > f.last_time)) throw std::logic_error("FrameWriter: times must increase");
-  const std::array<std::span<const double>, 3> beads{frame.position, frame.velocity, frame.spin};
-  for (std::size_t k = 0; k < beads.size(); ++k) {
-    std::vector<float>& to = f.beads[k].values;
-    to.resize(to.size() + size);
-    std::transform(beads[k].begin(), beads[k].end(), to.end() - static_cast<std::ptrdiff_t>(size),
-                   [](double value) { return static_cast<float>(value); });
-  }
-  f.scalars[0].add({&frame.wall_angle, 1});
-  f.scalars[1].add({&frame.angular_velocity, 1});
-  if (!f.masses.empty()) f.masses.front().add({&frame.mass, 1});
+  require_space(f.file.path(), (f.time.waiting() + 1) * frame_bytes(f.bead_count));  // with those that wait: these still come into the file
+  f.beads[0].add(frame.position);
+  f.beads[1].add(frame.velocity);
+  f.beads[2].add(frame.spin);
+  f.scalars[0].add(one(frame.wall_angle));
+  f.scalars[1].add(one(frame.angular_velocity));
+  if (!f.masses.empty()) f.masses.front().add(one(frame.mass));
   if (f.wall_count > 0) f.ledger.front().add(frame.wall_work);
   if (f.dissipation_count > 0) f.ledger.back().add(frame.dissipation);
   // A file of an earlier version, which is continued, may have no counts of impacts.
   if (!f.impacts.empty()) f.impacts.front().add(frame.impacts);
-  f.time.add({&frame.time, 1});
+  f.time.add(one(frame.time));
   f.last_time = frame.time;
-  ++f.waiting;
-  if (f.waiting * frame_bytes(f.bead_count) >= kWaiting || Clock::now() - f.last_write >= kPatience) f.write_through();
+  if (f.time.waiting() * frame_bytes(f.bead_count) >= kWaiting || Clock::now() - f.last_write >= kPatience) f.write_through();
 }
 
-std::size_t FrameWriter::frame_count() const { return impl_->time.column.rows() + impl_->waiting; }
+std::size_t FrameWriter::frame_count() const { return impl_->time.rows(); }
 
 void FrameWriter::flush() {
   impl_->write_through();

@@ -4,9 +4,14 @@
 // such a file as "open for writing", which would lock ordinary readers out after a kill; `flush` clears that mark each time.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <span>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kernel/output/hdf5_tools.hpp"
@@ -38,6 +43,35 @@ class Column {
   std::vector<hsize_t> extent_;
 };
 
+/// A column and its rows that wait to be written.
+template <class T>
+class WaitingRows {
+ public:
+  WaitingRows() = default;
+  explicit WaitingRows(Column column) : column_(std::move(column)) {}
+
+  /// Takes values of one row or more, rounded to T.
+  template <class From>
+  void add(std::span<const From> values) {
+    const std::size_t before = values_.size();
+    values_.resize(before + values.size());
+    std::transform(values.begin(), values.end(), values_.begin() + static_cast<std::ptrdiff_t>(before),
+                   [](From value) { return static_cast<T>(value); });
+  }
+  void write() {
+    column_.append(values_.data(), waiting());
+    values_.clear();
+  }
+  hsize_t waiting() const { return values_.size() / column_.row_size(); }
+  /// Those in the file and those that wait.
+  hsize_t rows() const { return column_.rows() + waiting(); }
+  hsize_t row_size() const { return column_.row_size(); }
+
+ private:
+  Column column_;
+  std::vector<T> values_;
+};
+
 /// What a column is made of.
 struct ColumnSpec {
   std::string name;
@@ -67,6 +101,18 @@ class GrowingFile {
   explicit GrowingFile(std::filesystem::path path);
 
   Column column(const std::string& name) const;
+  /// Writes rows of several columns, then their times: what is listed there is complete. Once that has failed, columns have unlike lengths;
+  /// then it is a logic_error.
+  template <class Rows, class Times>
+  void write_rows(const Rows& rows, const Times& times) {
+    if (failed_) throw std::logic_error(path_.string() + ": goes on after a write that failed");
+    failed_ = true;
+    rows();
+    flush();
+    times();
+    flush();
+    failed_ = false;
+  }
   /// To the operating system, and lets ordinary readers in.
   void flush();
   /// To the disk.
@@ -78,6 +124,7 @@ class GrowingFile {
  private:
   std::filesystem::path path_;
   Handle file_;
+  bool failed_ = false;
 };
 
 }  // namespace millscope::output::hdf5

@@ -16,6 +16,7 @@ namespace fs = std::filesystem;
 using hdf5::Column;
 using hdf5::GrowingFile;
 using hdf5::Handle;
+using hdf5::WaitingRows;
 
 namespace {
 
@@ -52,21 +53,21 @@ void trim_track(hid_t file, const TrackInfo& info, const fs::path& path, double 
 
 struct TrackWriter::Impl {
   struct Track {
-    Column t, position;
-    std::vector<double> t_buffer, position_buffer;
+    WaitingRows<double> t, position;
   };
 
   Impl(const fs::path& path, std::span<const TrackInfo> infos) : file(path) {
-    for (const TrackInfo& info : infos) tracks.push_back({file.column(info.name + "/t"), file.column(info.name + "/position"), {}, {}});
+    for (const TrackInfo& info : infos) {
+      tracks.push_back({WaitingRows<double>(file.column(info.name + "/t")), WaitingRows<double>(file.column(info.name + "/position"))});
+    }
     file.flush();
   }
 
   void append(Track& track, double time, const double* position) {
-    track.t_buffer.push_back(time);
-    track.position_buffer.insert(track.position_buffer.end(), position, position + 3);
-    full = full || track.t_buffer.size() >= kBufferRows;
+    track.t.add(std::span<const double>(&time, 1));
+    track.position.add(std::span<const double>(position, 3));
+    full = full || track.t.waiting() >= kBufferRows;
   }
-  // Positions before times: what `t` lists is complete.
   void write_through();
   bool close() {
     tracks.clear();
@@ -81,16 +82,15 @@ struct TrackWriter::Impl {
 void TrackWriter::Impl::write_through() {
   hdf5::prepare();
   std::uint64_t bytes = 0;
-  for (const Track& track : tracks) bytes += 32 * track.t_buffer.size();
+  for (const Track& track : tracks) bytes += 32 * track.t.waiting();
   require_space(file.path(), bytes + 64 * kBufferRows);
-  for (Track& track : tracks) track.position.append(track.position_buffer.data(), track.t_buffer.size());
-  file.flush();
-  for (Track& track : tracks) {
-    track.t.append(track.t_buffer.data(), track.t_buffer.size());
-    track.t_buffer.clear();
-    track.position_buffer.clear();
-  }
-  file.flush();
+  const auto positions = [&] {
+    for (Track& track : tracks) track.position.write();
+  };
+  const auto times = [&] {
+    for (Track& track : tracks) track.t.write();
+  };
+  file.write_rows(positions, times);
   full = false;
 }
 

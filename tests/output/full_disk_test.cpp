@@ -142,6 +142,34 @@ TEST_CASE("a write that fails inside HDF5") {
   }
 }
 
+TEST_CASE("tracks of which a write has failed take no more") {
+  const Scratch out;
+  const std::vector<TrackInfo> tracks{{"bead_0", 0, 0.01, 2500, "simulation"}, {"bead_1", 1, 0.01, 2500, "simulation"}};
+  std::string message;
+  {
+    TrackWriter writer = TrackWriter::create(out / "tracks.h5", tracks);
+    {
+      const FileSizeLimit limit(1 << 19);
+      message = refusal([&] {
+        for (int k = 0;; ++k) writer.append(k, std::vector<double>{1.0 * k, 0, 0, 2.0 * k, 0, 0});
+      });
+    }
+    CHECK_THROWS_AS(writer.flush(), std::logic_error);
+  }  // there would be room again
+  CHECK_THAT(message, Contains("tracks.h5: the file would be larger"));
+  for (const int bead : {0, 1}) {
+    const std::string track = fmt::format("bead_{}/", bead);
+    const std::vector<double> t = read_all(out / "tracks.h5", track + "t"), position = read_all(out / "tracks.h5", track + "position");
+    CHECK(t.size() > 1000);
+    REQUIRE(position.size() >= 3 * t.size());
+    for (std::size_t k = 0; k < t.size(); ++k) {
+      if (k > 0 && t[k] == 0) break;  // HDF5 had no room for these times
+      REQUIRE(t[k] == static_cast<double>(k));
+      REQUIRE(position[3 * k] == (bead + 1) * t[k]);
+    }
+  }
+}
+
 TEST_CASE("other reasons why a file cannot be written") {
   CHECK_THAT(refusal([] { File("/dev/full", 1).write("x"); }), Contains("/dev/full: the disk is full") && Contains("start again"));
   CHECK_THAT(refusal([] { AtomicFile file("/nowhere/at/all.json"); }), Contains("cannot be written (No such file or directory)"));
