@@ -82,16 +82,27 @@ std::ptrdiff_t finished(const Bank& bank, const std::string& group) {
   return count;
 }
 
-/// What is simulated in held-out conditions: where nothing is best nobody asks what candidates do there, but those without one have to
-/// tell the base by themselves.
+/// Whether somebody asks what the point's candidates do in held-out conditions: each is the best, or was not rejected against it.
+bool is_asked(const Diagnosis& diagnosis, const BankPoint& point) {
+  const std::vector<Index>& kept = diagnosis.naming.kept;
+  return std::all_of(point.active.begin(), point.active.end(), [&](const naming::ActiveCandidate& on) {
+    return std::any_of(kept.begin(), kept.end(), [&](Index k) { return diagnosis.problem.alternatives[k].candidate == on.candidate; });
+  });
+}
+
+/// What is simulated in held-out conditions: all without a candidate, and of candidates what is asked; everything where that is too little
+/// to tell the base.
 std::vector<BankPoint> to_hold_out(const Diagnosis& diagnosis) {
-  constexpr Index kEnough = 3;  // for each coefficient
+  constexpr Index kEnough = 3;  // for each coefficient of the base
+  const naming::Features features(diagnosis.problem.data);
+  Index needed = kEnough * features.base_size();
+  for (const Index k : diagnosis.naming.kept) {
+    if (const auto& candidate = diagnosis.problem.alternatives[k].candidate) needed += features.count(*candidate);
+  }
   std::vector<BankPoint> points = diagnosis.bank.points;
-  const auto of_base =
-      std::count_if(points.begin(), points.end(), [](const BankPoint& p) { return p.active.empty() && p.group != "again"; });
-  const bool enough = of_base >= kEnough * naming::Features(diagnosis.problem.data).base_size();
-  if (!diagnosis.naming.best && enough) std::erase_if(points, [](const BankPoint& p) { return !p.active.empty(); });
-  return points;
+  std::erase_if(points, [&](const BankPoint& p) { return !is_asked(diagnosis, p); });
+  const auto again = std::count_if(points.begin(), points.end(), [](const BankPoint& p) { return p.group == "again"; });
+  return std::ssize(points) - again >= needed ? points : diagnosis.bank.points;
 }
 
 /// The bank of the held-out conditions, beside that of the fitted ones.
