@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
+#include "app/file_kinds.hpp"
 #include "kernel/output/directory.hpp"
 #include "kernel/output/file.hpp"
 #include "kernel/output/summary.hpp"
@@ -159,6 +160,7 @@ int analyze(const Arguments& arguments) {
 
   analysis::AnalysisRequest request;
   request.path = options.text("SOURCE");
+  refuse_other_kind("RECORDING", options.text("SOURCE"));
   request.overrides = options.list("set");
   if (options.has("tracer")) request.tracers = split(options.text("tracer"));
   request.command_line = command_line;

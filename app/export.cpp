@@ -5,6 +5,7 @@
 
 #include "app/commands.hpp"
 #include "app/engines.hpp"
+#include "app/file_kinds.hpp"
 #include "kernel/config/case.hpp"
 #include "kernel/run/assembly.hpp"
 #include "studies/engine/engine.hpp"
@@ -65,6 +66,7 @@ int import_case(const Arguments& arguments) {
   options.with_plugins();
   if (!options.parse(arguments)) return kDone;
   const std::string out = options.text("output"), source = options.text("SOURCE");
+  refuse_other_kind("MILL.yaml", source);
   if (!std::filesystem::is_directory(source)) return import_frames(source, out, options.registry());
   const engine::liggghts::Imported done = engine::liggghts::import_case(source, out, options.registry(), command_line);
   fmt::print("wrote {}: {} beads, {} frames, up to {:.4g} s; see {}/summary.json\n", out, done.beads, done.frames, done.until, out);

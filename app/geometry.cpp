@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "app/commands.hpp"
+#include "app/file_kinds.hpp"
 #include "kernel/config/case.hpp"
 #include "kernel/config/values.hpp"
 #include "kernel/host/geometry_file.hpp"
@@ -102,6 +103,7 @@ int geometry(const Arguments& arguments) {
   options.with_overrides();
   options.with_plugins();
   if (!options.parse(arguments)) return kDone;
+  refuse_other_kind("CASE.yaml", options.text("FILE"));
   const std::string action = options.text("ACTION");
   if (action == "export") return export_stl(options);
   if (action == "report") return report(options);

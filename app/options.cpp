@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "app/commands.hpp"
+#include "app/file_kinds.hpp"
 #include "app/tables.hpp"
 #include "kernel/base/nearest.hpp"
 #include "kernel/config/document.hpp"
@@ -60,6 +61,9 @@ bool Options::parse(const Arguments& arguments) {
   if (has("help")) {
     print_help();
     return false;
+  }
+  for (const auto& [name, what] : position_help_) {
+    for (const std::string& file : list(name)) refuse_other_kind(name, file);
   }
   return true;
 }

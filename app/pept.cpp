@@ -12,17 +12,17 @@ namespace millscope::app {
 namespace {
 
 int inspect(const Arguments& arguments) {
-  Options options("pept inspect FILE [--json]",
+  Options options("pept inspect RECORDING [--json]",
                   "Says how good a recording is and what it can support, from its points alone: time covered, noise, losses, circulations, "
                   "the mill's axis, sense, "
                   "speed and radius, the vertical direction from free flight, coverage along the axis; for a tracer on a rotor its radius "
                   "and plateaus of speed. "
                   "Every figure has a 90 % interval or the reason why it cannot be said.",
                   "millscope pept inspect run1.a");
-  options.positional("FILE", "a recording (.a, .csv, .tsv, .txt, .gz of one) or a recording.yaml with several");
+  options.positional("RECORDING", "a recording (.a, .csv, .tsv, .txt, .gz of one) or a recording.yaml with several");
   options.add()("json", "print JSON; units are in the names of the keys");
   if (!options.parse(arguments)) return kDone;
-  const inspect::Inspection inspection = inspect::inspect(recording::read_recording(options.text("FILE")));
+  const inspect::Inspection inspection = inspect::inspect(recording::read_recording(options.text("RECORDING")));
   fmt::print("{}", options.has("json") ? inspect::inspection_json(inspection).dump(2) + "\n" : inspect::inspection_text(inspection));
   return kDone;
 }

@@ -49,6 +49,36 @@ class Help(CliTest):
         self.assertIn("usage:", result.stdout)
 
 
+class OtherKind(CliTest):
+    """A file of another kind is told apart from one with a misspelt key, whatever its first key is."""
+    READERS = {"a case": ("check",), "a study": ("diagnose",), "a challenge": ("challenge", "make"),
+               "a list of tasks": ("campaign",), "a recording": ("pept", "inspect")}
+    FILES = {"a case": ("demo", "mill10/case", "mill10/slice", "measured_drums/beads6000", "story/mill"),
+             "a study": ("mill10/diagnose", "story/study", "drum/study", "proof/faint_study"), "a challenge": ("story/challenge", "proof/a_long"),
+             "a list of tasks": ("campaign",), "a recording": ("mill10/recording", "recordings/ctrack", "recordings/table")}
+
+    def test_it_is_told_what_it_is_and_what_reads_it(self):
+        for kind, files in self.FILES.items():
+            for wanted, command in self.READERS.items():
+                for file in files if wanted != kind else ():
+                    said = f"configs/{file}.yaml: is {kind}, and {wanted} is wanted here; 'millscope "
+                    self.assert_one_line(self.millscope(*command, SOURCE / f"configs/{file}.yaml"), said)
+        self.assert_one_line(self.millscope("import", SOURCE / "configs/demo.yaml", "-o", "out"), "is a case, and a mill of another program's files is wanted")
+        self.assert_one_line(self.millscope("analyze", SOURCE / "configs/demo.yaml", "-o", "out"), "is a case, and a recording is wanted")
+        self.assert_one_line(self.millscope("geometry", "report", SOURCE / "configs/story/study.yaml"), "is a study, and a case is wanted")
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_the_right_kind_is_read(self):
+        for kind, files in self.FILES.items():
+            for file in files:
+                done = self.millscope(*self.READERS[kind], SOURCE / f"configs/{file}.yaml")  # those that write lack their -o
+                self.assertNotIn("is wanted here", done.stderr)
+
+    def test_a_slip_is_told_as_a_slip(self):
+        self.write("case.yaml", CASE + "conditions: {}\n")
+        self.assert_one_line(self.millscope("check", "case.yaml"), "unknown key 'conditions'")
+
+
 class Mistyped(CliTest):
     def test_unknown_command(self):
         self.assert_one_line(self.millscope("rnu", "case.yaml"), "'rnu' is no command", "did you mean 'run'")

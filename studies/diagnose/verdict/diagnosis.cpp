@@ -90,8 +90,8 @@ bool is_asked(const Diagnosis& diagnosis, const BankPoint& point) {
   });
 }
 
-/// What is simulated in held-out conditions: all without a candidate, and of candidates what is asked; everything where that is too little
-/// to tell the base.
+/// What is simulated in held-out conditions: all without a candidate, and of candidates what is asked; everything where these are too few
+/// to tell the base. How few that is is a rule of thumb: what the surrogate then errs by is counted wherever it is used.
 std::vector<BankPoint> to_hold_out(const Diagnosis& diagnosis) {
   constexpr Index kEnough = 3;  // for each coefficient of the base
   const naming::Features features(diagnosis.problem.data);
