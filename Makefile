@@ -31,6 +31,7 @@ figures: packages-test ## tables that tests print for docs/analysis.md, docs/ana
 	$(BUILD)/bin/analyzers_fields_test "[.speed]"
 	$(BUILD)/bin/test_run "[.warm]"
 	$(BUILD)/bin/test_run "[.window]"
+	$(BUILD)/bin/test_run "[.window300]"
 
 verify: packages-test binary ## the long checks (hours), written to docs/validation.md; VERIFY="crosscheck memory" for some
 	tools/verify.py --build $(BUILD) $(VERIFY)

@@ -1,6 +1,6 @@
 // Are short simulations biased? Those that begin where others ended: 60 seeds of the mill of the story from rest and 60 from the ends of
 // runs at other frictions and fillings, looked at in the same window of two turns. Those that are looked at early: 60 seeds from rest,
-// against the same runs later on.
+// against the same runs later on; 30 seeds of a larger mill, too.
 #include <catch2/catch.hpp>
 
 #include <fmt/core.h>
@@ -27,17 +27,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kRuns = 60;
-constexpr std::array kSpeeds = {0.75, 0.6, 0.5};                   // of the critical speed
-constexpr std::array kDevelop = {0.5, 0.75, 1.0};                  // turns before the window, from another's end
-constexpr double kRest = 1.5, kTurns = 2;                          // turns: before the window, from rest; of the window
-constexpr int kCells = 25;                                         // along x and y
-constexpr double kFrame = 0.005, kLag = 0.5;                       // s
-constexpr double kDiameter = 0.15, kBead = 0.01, kPeriod = 0.034;  // m, of the mill of the story
+constexpr std::array kSpeeds = {0.75, 0.6, 0.5};   // of the critical speed
+constexpr std::array kDevelop = {0.5, 0.75, 1.0};  // turns before the window, from another's end
+constexpr double kRest = 1.5, kTurns = 2;          // turns: before the window, from rest; of the window
+constexpr int kCells = 25;                         // along x and y
+constexpr double kFrame = 0.005, kLag = 0.5;       // s
 
-// Three standard errors: by chance one comparison of 370. Fisher's F of 59 and 59 degrees of freedom, and a correlation of 60 pairs: by
-// chance one of 100 beyond these bounds.
-constexpr double kErrors = 3, kLowF = 0.507, kHighF = 1.97, kCorrelation = 0.330;
+/// A mill that short simulations are tried with, and how many seeds of it.
+struct Mill {
+  const char* file;
+  const char* wall;               ///< pair of bead and wall
+  double diameter, bead, period;  ///< m; period along z, 0: closed
+  double low_filling, high_filling;
+  std::size_t developed;  ///< which of kDevelop is the first to be tried
+  int seeds;
+  // Of as many seeds, by chance one of 100 beyond: Fisher's F, and a correlation of two quantities that do not depend on each other.
+  double low_f, high_f, correlation;
+};
+constexpr Mill kStory{"configs/story/mill.yaml", "glass~hdpe", 0.15, 0.01, 0.034, 0.34, 0.36, 0, 60, 0.507, 1.97, 0.330};
+constexpr Mill kLarge{"configs/mill10/case.yaml", "glass~liner", 0.3, 0.01, 0, 0.304, 0.322, 2, 30, 0.374, 2.67, 0.463};
+
+constexpr double kErrors = 3;  // by chance one comparison of 370 differs by more
 
 struct Quantity {
   const char* name;
@@ -65,7 +75,7 @@ Film film_of(const output::FrameReader& reader, std::size_t first, std::size_t f
 }
 
 /// Mean over beads and frames of a third of the variance of the velocity in its cell, m²/s²; and ⟨(z(t + 0.5 s) − z(t))²⟩, m².
-std::pair<double, double> motion_in(const Film& film) {
+std::pair<double, double> motion_in(const Mill& mill, const Film& film) {
   const auto& [n, frames, x, v] = film;
   const std::size_t lag = std::lround(kLag / kFrame);
   struct Cell {
@@ -73,14 +83,14 @@ std::pair<double, double> motion_in(const Film& film) {
   };
   std::vector<Cell> cells(kCells * kCells);
   std::vector<double> z(n * frames);
-  const auto cell_of = [&](double along) { return std::clamp(static_cast<int>((along / kDiameter + 0.5) * kCells), 0, kCells - 1); };
+  const auto cell_of = [&](double along) { return std::clamp(static_cast<int>((along / mill.diameter + 0.5) * kCells), 0, kCells - 1); };
   for (std::size_t i = 0; i < n * frames; ++i) {
     Cell& c = cells[cell_of(x[3 * i]) * kCells + cell_of(x[3 * i + 1])];
     ++c.count;
     for (std::size_t k = 0; k < 3; ++k) c.sum[k] += v[3 * i + k], c.squares += double{v[3 * i + k]} * v[3 * i + k];
     if (i < n) continue;
     const double step = x[3 * i + 2] - x[3 * (i - n) + 2];
-    z[i] = z[i - n] + step - kPeriod * std::round(step / kPeriod);
+    z[i] = z[i - n] + step - (mill.period > 0 ? mill.period * std::round(step / mill.period) : 0);
   }
   double fluctuation = 0, spread = 0;
   for (const Cell& c : cells) {
@@ -96,28 +106,36 @@ struct Ran {
 };
 
 /// s, at a part of the critical speed
-double turn_at(double fraction) { return 2 * std::numbers::pi / (fraction * std::sqrt(2 * kGravity / (kDiameter - kBead))); }
+double turn_at(const Mill& mill, double fraction) {
+  return 2 * std::numbers::pi / (fraction * std::sqrt(2 * kGravity / (mill.diameter - mill.bead)));
+}
 
-/// Runs the mill of the story as its study does; turns: how long.
-void run_story(const fs::path& out, double fraction, double from, double turns, std::vector<std::string> settings) {
-  const double turn = turn_at(fraction);
+/// What is looked at, in turns since the start.
+struct Window {
+  double from, until;
+};
+
+/// Runs the mill as its study does.
+void run_mill(const Mill& mill, const fs::path& out, double fraction, const Window& window, std::vector<std::string> settings) {
+  const double turn = turn_at(mill, fraction);
   run::RunOptions options;
   options.output = out;
   options.quiet = true;
   options.threads = 1;
   options.overrides = std::move(settings);
-  options.overrides.insert(options.overrides.end(),
-                           {fmt::format("mill.speed={} %critical", 100 * fraction), "time.step_fraction=22 %",
-                            fmt::format("time.analyze_from_s={}", from * turn), fmt::format("time.end_s={}", turns * turn + kFrame),
-                            fmt::format("output={{frames: {{every_s: {}, from_s: {}}}}}", kFrame, from * turn)});
-  REQUIRE(run::run_case(std::string(MILLSCOPE_SOURCE_DIR) + "/configs/story/mill.yaml", registry(), options) == run::Outcome::finished);
+  options.overrides.insert(
+      options.overrides.end(),
+      {fmt::format("mill.speed={} %critical", 100 * fraction), "time.step_fraction=22 %",
+       fmt::format("time.analyze_from_s={}", window.from * turn), fmt::format("time.end_s={}", window.until * turn + kFrame),
+       fmt::format("output={{frames: {{every_s: {}, from_s: {}}}}}", kFrame, window.from * turn)});
+  REQUIRE(run::run_case(fmt::format("{}/{}", MILLSCOPE_SOURCE_DIR, mill.file), registry(), options) == run::Outcome::finished);
 }
 
-Ran ran(const fs::path& out, double fraction, std::vector<std::string> settings) {
-  run_story(out, fraction, kRest, kRest + kTurns, std::move(settings));
+Ran ran(const Mill& mill, const fs::path& out, double fraction, std::vector<std::string> settings) {
+  run_mill(mill, out, fraction, {kRest, kRest + kTurns}, std::move(settings));
   const nlohmann::json s = nlohmann::json::parse(base::text_of(out / "summary.json"));
   const output::FrameReader reader(out / "frames.h5");
-  const auto [fluctuation, spread] = motion_in(film_of(reader, 0, reader.frame_count()));
+  const auto [fluctuation, spread] = motion_in(mill, film_of(reader, 0, reader.frame_count()));
   fs::remove(out / "frames.h5");
   return {{s["power_W"]["com"], s["com_m"][0], s["com_m"][1], s["kinetic_energy_J"], fluctuation, spread}, s["steps"]};
 }
@@ -151,66 +169,76 @@ void tell(const std::string& label, const Quantity& quantity, const Difference& 
              d.off / d.error, d.f, more);
 }
 
-void check(const std::string& label, const Quantity& quantity, const Difference& d) {
+void check(const Mill& mill, const std::string& label, const Quantity& quantity, const Difference& d) {
   INFO(label << ", " << quantity.name);
   CHECK(std::fabs(d.off) < kErrors * d.error);
   if (quantity.wanted > 0) CHECK(std::fabs(d.off) < std::max(quantity.wanted, 2 * d.error));
-  CHECK((d.f > kLowF && d.f < kHighF));
+  CHECK((d.f > mill.low_f && d.f < mill.high_f));
 }
 
-void compare(const std::string& label, const std::vector<Ran>& cold, const std::vector<Ran>& warm, const std::vector<Ran>& donors) {
+void compare(const Mill& mill, const std::string& label, const std::vector<Ran>& cold, const std::vector<Ran>& warm,
+             const std::vector<Ran>& donors) {
   for (std::size_t q = 0; q < kQuantities.size(); ++q) {
     const Quantity& quantity = kQuantities[q];
     const Sample c = column(cold, q), w = column(warm, q), d = column(donors, q);
     const double scale = quantity.scale > 0 ? quantity.scale : 100 / std::fabs(mean(c)),
                  r = covariance(w, d) / std::sqrt(covariance(w, w) * covariance(d, d));
-    const Difference more{scale * (mean(w) - mean(c)), scale * std::sqrt((covariance(c, c) + covariance(w, w)) / kRuns),
+    const Difference more{scale * (mean(w) - mean(c)), scale * std::sqrt((covariance(c, c) + covariance(w, w)) / mill.seeds),
                           covariance(w, w) / covariance(c, c)};
     tell(label, quantity, more, fmt::format(" {:+6.2f}", r));
-    check(label, quantity, more);
+    check(mill, label, quantity, more);
     INFO(label << ", " << quantity.name << ", r " << r);
-    CHECK(std::fabs(r) < kCorrelation);
+    CHECK(std::fabs(r) < mill.correlation);
   }
 }
 
-void warm_against_cold(double fraction) {
+void warm_against_cold(const Mill& mill, double fraction) {
+  const std::vector<double> develop(kDevelop.begin() + mill.developed, kDevelop.end());
+  fmt::print("{:<32} {:<22} {:>19} {:>6} {:>6} {:>6}\n", "turns before", "quantity", "warm less cold", "errors", "F", "r");
   const testing::Scratch folder;
   const char* stiffness = std::getenv("STIFFNESS");  // of the runs that are compared, not of the donors; default: as theirs
   const std::string own = stiffness ? fmt::format("stiffness_factor={}", stiffness) : "name=as it is";
   std::vector<Ran> cold, donors;
   std::map<double, std::vector<Ran>> warm;
   Random draw(28);
-  for (int i = 0; i < kRuns; ++i) {
+  for (int i = 0; i < mill.seeds; ++i) {
     const fs::path donor = folder / "donor";
-    donors.push_back(ran(donor, fraction,
+    donors.push_back(ran(mill, donor, fraction,
                          {fmt::format("seed={}", 1000 + i), fmt::format("pairs.glass~glass.static_friction={:.3f}", draw.between(0.1, 0.6)),
-                          fmt::format("pairs.glass~hdpe.static_friction={:.3f}", draw.between(0.15, 0.6)),
-                          fmt::format("fill.filling={:.4f}", draw.between(0.34, 0.36))}));
+                          fmt::format("pairs.{}.static_friction={:.3f}", mill.wall, draw.between(0.15, 0.6)),
+                          fmt::format("fill.filling={:.4f}", draw.between(mill.low_filling, mill.high_filling))}));
     const std::string seed = fmt::format("seed={}", i + 1);
-    cold.push_back(ran(folder / "cold", fraction, {seed, own}));
-    for (const double turns : kDevelop) {
-      const std::string start = fmt::format("start={{run: {}, develop_s: {}}}", donor.string(), turns * turn_at(fraction));
-      warm[turns].push_back(ran(folder / fmt::format("warm{}", turns), fraction, {seed, own, start}));
+    cold.push_back(ran(mill, folder / "cold", fraction, {seed, own}));
+    for (const double turns : develop) {
+      const std::string start = fmt::format("start={{run: {}, develop_s: {}}}", donor.string(), turns * turn_at(mill, fraction));
+      warm[turns].push_back(ran(mill, folder / fmt::format("warm{}", turns), fraction, {seed, own, start}));
     }
     fs::remove_all(folder.path);
     fs::create_directory(folder.path);
   }
-  for (const double turns : kDevelop)
-    compare(fmt::format("{} %, {} turns ({:.2f} of steps)", 100 * fraction, turns, warm[turns][0].steps / cold[0].steps), cold, warm[turns],
-            donors);
+  for (const double turns : develop)
+    compare(mill, fmt::format("{} %, {} turns ({:.2f} of steps)", 100 * fraction, turns, warm[turns][0].steps / cold[0].steps), cold,
+            warm[turns], donors);
 }
 
 }  // namespace
 
 TEST_CASE("runs that begin where others ended, against runs from rest", "[.warm]") {
-  fmt::print("{:<32} {:<22} {:>19} {:>6} {:>6} {:>6}\n", "turns before", "quantity", "warm less cold", "errors", "F", "r");
-  for (const double fraction : kSpeeds) warm_against_cold(fraction);
+  for (const double fraction : kSpeeds) {
+    DYNAMIC_SECTION(100 * fraction << " %") { warm_against_cold(kStory, fraction); }
+  }
+}
+
+TEST_CASE("runs of a mill of 300 mm that begin where others ended, against runs from rest", "[.warm300]") {
+  for (const double fraction : kSpeeds) {
+    DYNAMIC_SECTION(100 * fraction << " %") { warm_against_cold(kLarge, fraction); }
+  }
 }
 
 namespace {
 
 /// What is seen from one frame to another. Power: what the shell does.
-Shown seen_in(const output::FrameReader& reader, std::size_t first, std::size_t frames) {
+Shown seen_in(const Mill& mill, const output::FrameReader& reader, std::size_t first, std::size_t frames) {
   const output::FrameScalars& scalars = reader.scalars();
   const std::size_t walls = scalars.wall_names.size(), last = first + frames - 1;
   const Film film = film_of(reader, first, frames);
@@ -223,7 +251,7 @@ Shown seen_in(const output::FrameReader& reader, std::size_t first, std::size_t 
     for (std::size_t k = 0; k < 3; ++k) shown[3] += double{film.v[3 * i + k]} * film.v[3 * i + k];
   }
   for (std::size_t q = 1; q < 4; ++q) shown[q] /= static_cast<double>(places);
-  std::tie(shown[4], shown[5]) = motion_in(film);
+  std::tie(shown[4], shown[5]) = motion_in(mill, film);
   return shown;
 }
 
@@ -231,21 +259,21 @@ constexpr std::array kFrom = {0.5, 1.0, kRest};  // turns before it, of the earl
 constexpr std::array kLate = {3.0, 5.0};         // of the late ones
 
 /// Early windows [kFrom], then late ones [kLate], of a run from rest.
-std::vector<Shown> windows_of(const fs::path& out, double fraction, int seed) {
-  const double turn = turn_at(fraction);
-  run_story(out, fraction, 0, kLate.back() + kTurns, {fmt::format("seed={}", seed)});
+std::vector<Shown> windows_of(const Mill& mill, const fs::path& out, double fraction, int seed) {
+  const double turn = turn_at(mill, fraction);
+  run_mill(mill, out, fraction, {0, kLate.back() + kTurns}, {fmt::format("seed={}", seed)});
   const output::FrameReader reader(out / "frames.h5");
   const std::vector<double>& time = reader.scalars().time;
   const auto frame_at = [&](double turns) { return std::lower_bound(time.begin(), time.end(), turns * turn) - time.begin(); };
   std::vector<Shown> shown;
-  const auto look = [&](double from) { shown.push_back(seen_in(reader, frame_at(from), frame_at(from + kTurns) - frame_at(from))); };
+  const auto look = [&](double from) { shown.push_back(seen_in(mill, reader, frame_at(from), frame_at(from + kTurns) - frame_at(from))); };
   for (const double from : kFrom) look(from);
   for (const double from : kLate) look(from);
   return shown;
 }
 
 /// One line of the table for each quantity: what windows after `from` turns show more than the late ones of the same runs.
-void compare_early(const std::string& label, const std::vector<std::vector<Shown>>& runs, std::size_t early) {
+void compare_early(const Mill& mill, const std::string& label, const std::vector<std::vector<Shown>>& runs, std::size_t early) {
   const auto late_of = [&](const std::vector<Shown>& w, std::size_t q) { return 0.5 * (w[kFrom.size()][q] + w[kFrom.size() + 1][q]); };
   for (std::size_t q = 0; q < kQuantities.size(); ++q) {
     const Quantity& quantity = kQuantities[q];
@@ -255,26 +283,34 @@ void compare_early(const std::string& label, const std::vector<std::vector<Shown
       more.push_back(w[early][q] - late_of(w, q));
     }
     const double scale = quantity.scale > 0 ? quantity.scale : 100 / std::fabs(mean(late));
-    const Difference d{scale * mean(more), scale * std::sqrt(covariance(more, more) / kRuns),
+    const Difference d{scale * mean(more), scale * std::sqrt(covariance(more, more) / mill.seeds),
                        covariance(first, first) / covariance(late, late)};
     tell(label, quantity, d);
-    if (kFrom[early] >= kRest) check(label, quantity, d);  // what comes before is known to be too early
+    if (kFrom[early] >= kRest) check(mill, label, quantity, d);  // what comes before is known to be too early
   }
 }
 
-void early_against_late(double fraction) {
+void early_against_late(const Mill& mill, double fraction) {
   const testing::Scratch folder;
   std::vector<std::vector<Shown>> runs;
-  for (int seed = 1; seed <= kRuns; ++seed) {
-    runs.push_back(windows_of(folder / "run", fraction, seed));
+  for (int seed = 1; seed <= mill.seeds; ++seed) {
+    runs.push_back(windows_of(mill, folder / "run", fraction, seed));
     fs::remove_all(folder / "run");
   }
   for (std::size_t early = 0; early < kFrom.size(); ++early)
-    compare_early(fmt::format("{} %, after {} turns", 100 * fraction, kFrom[early]), runs, early);
+    compare_early(mill, fmt::format("{} %, after {} turns", 100 * fraction, kFrom[early]), runs, early);
 }
 
 }  // namespace
 
 TEST_CASE("windows of two turns early in a run, against later ones", "[.window]") {
-  for (const double fraction : kSpeeds) early_against_late(fraction);
+  for (const double fraction : kSpeeds) {
+    DYNAMIC_SECTION(100 * fraction << " %") { early_against_late(kStory, fraction); }
+  }
+}
+
+TEST_CASE("windows of two turns early in a run of a mill of 300 mm, against later ones", "[.window300]") {
+  for (const double fraction : kSpeeds) {
+    DYNAMIC_SECTION(100 * fraction << " %") { early_against_late(kLarge, fraction); }
+  }
 }
