@@ -30,6 +30,7 @@ figures: packages-test ## tables that tests print for docs/analysis.md, docs/ana
 	$(BUILD)/bin/test_analysis "[.coverage]"
 	$(BUILD)/bin/analyzers_fields_test "[.speed]"
 	$(BUILD)/bin/test_run "[.warm]"
+	$(BUILD)/bin/test_run "[.warm300]"
 	$(BUILD)/bin/test_run "[.window]"
 	$(BUILD)/bin/test_run "[.window300]"
 
