@@ -17,8 +17,8 @@ struct PlannedRun {
 };
 
 /// The base group first, then those of nuisances that are varied apart, then every candidate's, first alone and then with these; the
-/// conditions that are fitted before those that are held out. A diagnosis asks for no more than these, and for less where it screens a
-/// candidate out.
+/// conditions that are fitted before those that are held out. A diagnosis asks for less where it screens a candidate out or rejects it, and
+/// for more where one helps.
 std::vector<PlannedRun> planned_runs(const Question& question);
 
 /// Runs of one group in one condition.
