@@ -24,7 +24,7 @@ bench: packages-test binary ## time against LIGGGHTS (20 minutes on a quiet mach
 	cmake --build --preset release -j $(JOBS) --target millscope_bench
 	$(if $(AGAINST),bench/against.py $(BUILD) $(AGAINST),bench/run.sh $(BUILD)) $(BENCH_OPTIONS)
 
-figures: packages-test ## tables that tests print for docs/analysis.md, docs/analyzers.md and docs/campaigns.md (minutes on a quiet machine)
+figures: packages-test ## tables that tests print for docs/analysis.md, docs/analyzers.md and docs/campaigns.md (two hours)
 	cmake --preset release -DMILLSCOPE_TESTS=ON $(CMAKE_OPTIONS)
 	cmake --build --preset release -j $(JOBS) --target test_analysis analyzers_fields_test test_run
 	$(BUILD)/bin/test_analysis "[.coverage]"

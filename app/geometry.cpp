@@ -103,10 +103,11 @@ int geometry(const Arguments& arguments) {
   options.with_overrides();
   options.with_plugins();
   if (!options.parse(arguments)) return kDone;
-  refuse_other_kind("CASE.yaml", options.text("FILE"));
   const std::string action = options.text("ACTION");
-  if (action == "export") return export_stl(options);
-  if (action == "report") return report(options);
+  if (action == "export" || action == "report") {
+    refuse_other_kind("CASE.yaml", options.text("FILE"));
+    return action == "export" ? export_stl(options) : report(options);
+  }
   throw UserError(fmt::format("geometry {}: the actions are 'export' and 'report'", action));
 }
 

@@ -74,9 +74,20 @@ class OtherKind(CliTest):
                 done = self.millscope(*self.READERS[kind], SOURCE / f"configs/{file}.yaml")  # those that write lack their -o
                 self.assertNotIn("is wanted here", done.stderr)
 
+    def test_a_mill_of_another_program(self):
+        self.write("mill.yml", "files: dump_*.txt\naxis: y\ngravity: -z\nmill: {diameter: 300 mm}\n")
+        said = "mill.yml: is a mill of another program's files, and a %s is wanted here; 'millscope import' reads such files"
+        self.assert_one_line(self.millscope("check", "mill.yml"), said % "case")
+        self.assert_one_line(self.millscope("pept", "inspect", "mill.yml"), said % "recording")
+        self.assertNotIn("is wanted here", self.millscope("import", "mill.yml", "-o", "out").stderr)
+
     def test_a_slip_is_told_as_a_slip(self):
-        self.write("case.yaml", CASE + "conditions: {}\n")
-        self.assert_one_line(self.millscope("check", "case.yaml"), "unknown key 'conditions'")
+        slips = ((("check",), CASE + "conditions: {}\n", "unknown key 'conditions'"),
+                 (("pept", "inspect"), "files: run1.a\naxis: {x: x}\n", "unknown key 'axis'; did you mean 'axes'"),
+                 (("campaign", "-o", "out"), "schema_version: 1\ncase: case.yaml\nmill: {}\ntime: {}\nsimulations: {}\n", "unknown key 'mill'"))
+        for command, text, said in slips:
+            self.write("slip.yaml", text)
+            self.assert_one_line(self.millscope(*command, "slip.yaml"), said)
 
 
 class Mistyped(CliTest):

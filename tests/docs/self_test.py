@@ -17,7 +17,7 @@ HELP = {
     "completion": "usage: millscope completion SHELL\n\nOptions:\n  --help   this page\n",
     "run": "usage: millscope run CASE.yaml -o OUT\n\nOptions:\n  --threads N   threads\n  --set a=b     replace\n",
     "pept": "usage: millscope pept ACTION …\n\n  inspect      how good\n  camera       the camera\n",
-    "pept inspect": "usage: millscope pept inspect FILE\n\nOptions:\n  --json   print JSON\n",
+    "pept inspect": "usage: millscope pept inspect RECORDING\n\nOptions:\n  --json   print JSON\n",
     "pept camera": "usage: millscope pept camera FILE\n\nOptions:\n  --force   overwrite\n",
     "geometry": "usage: millscope geometry export|report FILE\n\n  ACTION       export or report\n\nOptions:\n  --unit U   unit\n",
 }

@@ -72,7 +72,7 @@ class PeptInspect(unittest.TestCase):
         for words, part in (
             (["pept"], None),
             (["pept", "inspekt", self.rotor], "did you mean 'inspect'"),
-            (["pept", "inspect"], "FILE is missing"),
+            (["pept", "inspect"], "RECORDING is missing"),
             (["pept", "inspect", missing], "no.a"),
             (["pept", "inspect", empty], "empty.a"),
             (["pept", "inspect", self.rotor, "--jsn"], "--json"),
