@@ -93,6 +93,7 @@ TEST_CASE("what a candidate does in a held-out condition is simulated where it i
     Story story(truth, alike);
     story.question.bank.base = base;
     const Diagnosis d = story.diagnosed();
+    CHECK(d.naming.best.has_value() == !truth.empty());
     const std::size_t k = d.bank.place_of(2).value();
     Groups whole, some;
     for (const BankPoint& p : d.bank.points) whole.insert(p.group);

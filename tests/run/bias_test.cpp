@@ -105,6 +105,13 @@ struct Ran {
   double steps;
 };
 
+/// A section of the test for each: `-c "75 %"` runs one alone.
+void at_each_speed(void (*trial)(const Mill&, double), const Mill& mill) {
+  for (const double fraction : kSpeeds) {
+    DYNAMIC_SECTION(100 * fraction << " %") { trial(mill, fraction); }
+  }
+}
+
 /// s, at a part of the critical speed
 double turn_at(const Mill& mill, double fraction) {
   return 2 * std::numbers::pi / (fraction * std::sqrt(2 * kGravity / (mill.diameter - mill.bead)));
@@ -223,16 +230,10 @@ void warm_against_cold(const Mill& mill, double fraction) {
 
 }  // namespace
 
-TEST_CASE("runs that begin where others ended, against runs from rest", "[.warm]") {
-  for (const double fraction : kSpeeds) {
-    DYNAMIC_SECTION(100 * fraction << " %") { warm_against_cold(kStory, fraction); }
-  }
-}
+TEST_CASE("runs that begin where others ended, against runs from rest", "[.warm]") { at_each_speed(warm_against_cold, kStory); }
 
 TEST_CASE("runs of a mill of 300 mm that begin where others ended, against runs from rest", "[.warm300]") {
-  for (const double fraction : kSpeeds) {
-    DYNAMIC_SECTION(100 * fraction << " %") { warm_against_cold(kLarge, fraction); }
-  }
+  at_each_speed(warm_against_cold, kLarge);
 }
 
 namespace {
@@ -303,14 +304,8 @@ void early_against_late(const Mill& mill, double fraction) {
 
 }  // namespace
 
-TEST_CASE("windows of two turns early in a run, against later ones", "[.window]") {
-  for (const double fraction : kSpeeds) {
-    DYNAMIC_SECTION(100 * fraction << " %") { early_against_late(kStory, fraction); }
-  }
-}
+TEST_CASE("windows of two turns early in a run, against later ones", "[.window]") { at_each_speed(early_against_late, kStory); }
 
 TEST_CASE("windows of two turns early in a run of a mill of 300 mm, against later ones", "[.window300]") {
-  for (const double fraction : kSpeeds) {
-    DYNAMIC_SECTION(100 * fraction << " %") { early_against_late(kLarge, fraction); }
-  }
+  at_each_speed(early_against_late, kLarge);
 }
