@@ -28,8 +28,10 @@ class Middle {
 
   double distance(const double* position, const TrackContext& context) const {
     const double along = given_ ? middle_[2] : 0.5 * (context.mill_low + context.mill_high);
-    const double beside = position[2] - along, z = context.period > 0.0 ? std::remainder(beside, context.period) : beside;
-    return std::hypot(position[0] - middle_[0], position[1] - middle_[1], z);
+    const double x = position[0] - middle_[0], y = position[1] - middle_[1];
+    double z = position[2] - along;
+    if (context.period > 0.0 && std::fabs(z) > 0.5 * context.period) z = std::remainder(z, context.period);
+    return std::sqrt(x * x + y * y + z * z);
   }
 
  private:

@@ -38,22 +38,42 @@ constexpr Hypothesis kHypotheses[] = {
      0.0, 0.0, 0.05},
 };
 
-/// Slope of a straight line through the samples within half the window of sample i; nothing where there are fewer than two.
-std::optional<double> speed_at(const TrackView& view, std::int64_t i, double window) {
-  std::int64_t low = i, high = i;
-  while (low > 0 && view.time[i] - view.time[low - 1] <= 0.5 * window) --low;
-  while (high + 1 < view.count && view.time[high + 1] - view.time[i] <= 0.5 * window) ++high;
-  const double n = static_cast<double>(high - low + 1);
-  double mean = 0, square = 0, slope[3] = {0, 0, 0};
-  for (std::int64_t k = low; k <= high; ++k) mean += (view.time[k] - view.time[i]) / n;
-  for (std::int64_t k = low; k <= high; ++k) {
-    const double t = view.time[k] - view.time[i] - mean;
-    square += t * t;
-    for (int axis = 0; axis < 3; ++axis) slope[axis] += t * view.position[axis][k];
+/// Of one bead, at one sample after the other.
+class Speeds {
+ public:
+  Speeds(const TrackView& view, double window) : view_(view), half_(0.5 * window) {}
+
+  /// Slope of a straight line through the samples within half the window of sample i, times and places as seen from it; nothing where there
+  /// is no other. The window's ends only move forward.
+  std::optional<double> at(std::int64_t i) {
+    const double *const time = view_.time, now = time[i];
+    while (now - time[low_] > half_) ++low_;
+    while (high_ < view_.count && time[high_] - now <= half_) ++high_;
+    double first = 0, second = 0, place[3] = {0, 0, 0}, moment[3] = {0, 0, 0};
+    for (std::int64_t k = low_; k < high_; ++k) {
+      const double t = time[k] - now;
+      first += t;
+      second += t * t;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double x = view_.position[axis][k] - view_.position[axis][i];
+        place[axis] += x;
+        moment[axis] += t * x;
+      }
+    }
+    const double mean = first / static_cast<double>(high_ - low_), square = second - mean * first;
+    if (!(square > 0.0)) return std::nullopt;
+    double slope = 0;
+    for (int axis = 0; axis < 3; ++axis) slope += squared(moment[axis] - mean * place[axis]);
+    return std::sqrt(slope) / square;
   }
-  if (!(square > 0.0)) return std::nullopt;
-  return std::hypot(slope[0], slope[1], slope[2]) / square;
-}
+
+ private:
+  static double squared(double x) { return x * x; }
+
+  const TrackView& view_;
+  double half_;
+  std::int64_t low_ = 0, high_ = 0;
+};
 
 class ErrorCut {
  public:
@@ -70,10 +90,11 @@ class ErrorCut {
     Track track = copy_of(view);
     if (cut_ == 0.0) return track;
     Random random(context.seed);
+    Speeds speeds(view, window_);
     double speed = 0;  // of the location before, where this one stands alone
     for (std::int64_t i = 0; i < view.count; ++i) {
       TrackSample& s = element(track, i);
-      if (per_speed_ > 0.0) speed = speed_at(view, i, window_).value_or(speed);
+      if (per_speed_ > 0.0) speed = speeds.at(i).value_or(speed);
       const double usual = spread_ + per_distance_ * middle_.distance(s.position, context) + per_speed_ * speed;
       const double u = std::max(usual + scatter_ * random.normal(), 0.1 * usual);
       s.visible = s.visible && u <= cut_;

@@ -36,9 +36,11 @@ double gamma_of_mean_one(double shape, Random& random) {
   }
 }
 
+/// The median of at most some hundred steps, spread over the track.
 double usual_step(const TrackView& view) {
+  constexpr std::int64_t kSome = 200;
   std::vector<double> steps;
-  for (std::int64_t i = 1; i < view.count; ++i) steps.push_back(view.time[i] - view.time[i - 1]);
+  for (std::int64_t i = 1; i < view.count; i += view.count / kSome + 1) steps.push_back(view.time[i] - view.time[i - 1]);
   std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
   return steps[steps.size() / 2];
 }
@@ -76,6 +78,7 @@ class Sampling {
 
   /// The first location at or after `t0` of a camera that has been running for long.
   double start(double t0, Random& random) const {
+    if (shape_ == 1.0 && dead_time_ == 0.0) return t0 + interval(random);  // Poisson arrivals remember nothing
     double t = t0 - 100.0 / rate_;
     while (t < t0) t += interval(random);
     return t;

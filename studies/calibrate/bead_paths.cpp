@@ -70,13 +70,14 @@ BeadPaths::BeadPaths(const std::filesystem::path& run, int beads, const AxialPla
   std::vector<float> rows(together * row);
   std::vector<double> sum_x(c.has_tracers() ? reader.beads().size() : 0);  // of all beads, where some are set apart
   const auto load = [&](output::BeadField field, std::vector<float>& values) {
-    values.reserve(frames * chosen.size() * 3);
+    values.resize(frames * chosen.size() * 3);
     for (std::size_t f = 0; f < frames; ++f) {
       const float* const all = rows.data() + f % together * row;
       if (const std::size_t count = std::min(together, frames - f); f % together == 0)
         reader.read(field, first + f, count, std::span(rows).first(count * row));
       for (std::size_t b = 0; field == output::BeadField::position && b < sum_x.size(); ++b) sum_x[b] += static_cast<double>(all[3 * b]);
-      for (const std::size_t b : chosen) values.insert(values.end(), {all[3 * b], all[3 * b + 1], all[3 * b + 2]});
+      for (std::size_t i = 0; i < chosen.size(); ++i)
+        std::copy_n(all + 3 * chosen[i], 3, values.begin() + static_cast<std::ptrdiff_t>((i * frames + f) * 3));
     }
   };
   load(output::BeadField::position, position_);
@@ -86,7 +87,7 @@ BeadPaths::BeadPaths(const std::filesystem::path& run, int beads, const AxialPla
 
 output::TrackSamples BeadPaths::path(std::size_t i, double step) const {
   const auto at = [&](const std::vector<float>& values, std::size_t frame, std::size_t axis) {
-    return static_cast<double>(values[(frame * ids_.size() + i) * 3 + axis]);
+    return static_cast<double>(values[(i * time_.size() + frame) * 3 + axis]);
   };
   double shift = 0;  // along z, by whole periods
   if (mill_.period > 0 && place_.high - place_.low > mill_.period) {

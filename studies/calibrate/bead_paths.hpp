@@ -50,7 +50,7 @@ class BeadPaths {
   double lever_ratio_ = 1;
   std::vector<std::uint32_t> ids_;
   std::vector<double> radius_, time_;
-  std::vector<float> position_, velocity_;  ///< [frames, beads, 3]
+  std::vector<float> position_, velocity_;  ///< [beads, frames, 3]
 };
 
 }  // namespace millscope::calibrate

@@ -63,7 +63,7 @@ struct Film {
 /// s between the points of a path: where a camera samples it, and does nothing before but blur it, half of the shortest span of either,
 /// from 0.5 to 1.25 ms; straight lines are then off by 2 µm at 10 m/s² and by 80 µm in an impact. Else 0.5 ms.
 double path_step(const camera::Camera& camera) {
-  constexpr double kShortest = 0.5e-3, kLongest = 1.25e-3;
+  constexpr double kShortest = 0.5e-3, kLongest = 1.7e-3;
   double shortest = 2 * kLongest;
   for (const camera::CameraLink& link : camera.links()) {
     const bool samples = link.plugin.name() == "sampling";

@@ -141,12 +141,14 @@ double usual_step(const Run& rows) {
 /// Rows at which the clock was set back for good: a stretch begins that covers time which the part covers already, with other points; or
 /// the bead goes on where it was, as when a counter begins again at zero, while rows that were written out of order begin elsewhere.
 std::vector<std::size_t> resets(const Run& rows) {
+  const std::vector<Stretch> all = stretches(rows.time);
+  if (all.size() < 2) return {};
   constexpr double kSteps = 4;
   const double near = kSteps * usual_step(rows);
   std::vector<std::size_t> found;
   Cover cover;
   PartRows part(rows, 0);
-  for (const Stretch& stretch : stretches(rows.time)) {
+  for (const Stretch& stretch : all) {
     if (!stretch.is_long()) continue;
     const bool goes_on = stretch.first > 0 && distance(rows, stretch.first - 1, stretch.first) <= near;
     if ((cover.overlaps(stretch) && !repeats(rows, part, stretch)) || (goes_on && stretch.high < rows.time[stretch.first - 1])) {

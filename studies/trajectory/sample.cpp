@@ -8,13 +8,13 @@ namespace {
 
 using Weights = std::array<double, 4>;  // of position and velocity at the knot before and at the knot behind
 
-/// The cubic of one coordinate between two knots, in powers of the time since the first.
+/// The cubic of one coordinate between two knots, in powers of the time since the first. `per_h`: 1/s, of the interval.
 struct Cubic {
   double c0, c1, c2, c3;
-  Cubic(const Knot& before, const Knot& behind, std::size_t axis, double h) : c0(before.x[axis]), c1(before.v[axis]) {
-    const double mean = (behind.x[axis] - c0) / h, v1 = behind.v[axis];
-    c2 = (3 * mean - 2 * c1 - v1) / h;
-    c3 = (c1 + v1 - 2 * mean) / (h * h);
+  Cubic(const Knot& before, const Knot& behind, std::size_t axis, double per_h) : c0(before.x[axis]), c1(before.v[axis]) {
+    const double mean = (behind.x[axis] - c0) * per_h, v1 = behind.v[axis];
+    c2 = (3 * mean - 2 * c1 - v1) * per_h;
+    c3 = (c1 + v1 - 2 * mean) * (per_h * per_h);
   }
 };
 
@@ -35,31 +35,35 @@ struct Ends {
 };
 
 struct Interval {
-  double start, h;
+  double start, h, per_h;
   std::array<Cubic, 3> cubic;
   Ends ends;
 
   Interval(const double* time, const Spline& s, std::size_t i)
       : start(time[i]),
         h(time[i + 1] - time[i]),
-        cubic{Cubic(s.knots[i], s.knots[i + 1], 0, h), Cubic(s.knots[i], s.knots[i + 1], 1, h), Cubic(s.knots[i], s.knots[i + 1], 2, h)},
+        per_h(1 / h),
+        cubic{Cubic(s.knots[i], s.knots[i + 1], 0, per_h), Cubic(s.knots[i], s.knots[i + 1], 1, per_h),
+              Cubic(s.knots[i], s.knots[i + 1], 2, per_h)},
         ends(s.knots[i], s.knots[i + 1], s.between[i]) {}
 };
 
 // With s = u/h, r = 1 − s: Hermite's weights, those of the derivatives, and what the random motion does between two known ends:
 //   position q u³w³/(3h³), velocity q u w (u² − u w + w²)/h³ with w = h − u (covariance of a clamped beam).
 void fill(const Interval& in, double t, std::size_t k, Piece& piece) {
-  const double u = std::clamp(t - in.start, 0.0, in.h), h = in.h, w = h - u, s = u / h, r = 1 - s;
+  const double u = std::clamp(t - in.start, 0.0, in.h), w = in.h - u, s = u * in.per_h, r = 1 - s;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Cubic& c = in.cubic[axis];
     piece.position[axis][k] = c.c0 + u * (c.c1 + u * (c.c2 + u * c.c3));
     piece.velocity[axis][k] = c.c1 + u * (2 * c.c2 + 3 * u * c.c3);
   }
   const Weights value{(1 + 2 * s) * r * r, u * r * r, s * s * (3 - 2 * s), -s * u * r};
-  const Weights slope{-6 * s * r / h, r * (1 - 3 * s), 6 * s * r / h, s * (3 * s - 2)};
-  const double q = in.ends.between.roughness, uw = u * w / h;
-  piece.position_variance[k] = (in.ends.of(value) + q * uw * uw * uw / 3) / 3;
-  piece.velocity_variance[k] = (in.ends.of(slope) + q * uw * (u * u - u * w + w * w) / (h * h)) / 3;
+  const double steep = 6 * s * r * in.per_h;
+  const Weights slope{-steep, r * (1 - 3 * s), steep, s * (3 * s - 2)};
+  const double q = in.ends.between.roughness, uw = s * w;
+  constexpr double kThird = 1.0 / 3;
+  piece.position_variance[k] = (in.ends.of(value) + q * uw * uw * uw * kThird) * kThird;
+  piece.velocity_variance[k] = (in.ends.of(slope) + q * uw * (s * s - s * r + r * r)) * kThird;
 }
 
 }  // namespace

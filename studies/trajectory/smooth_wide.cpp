@@ -29,14 +29,28 @@ State begin(const Four& y, const Four& variance) {
 }
 
 State predict(const State& s, double h, const Four& q) {
-  return {s.x + h * s.v, s.v, s.xx + h * (2.0 * s.xv + h * s.vv) + q * h * h * h / 3.0, s.xv + h * s.vv + q * h * h / 2.0, s.vv + q * h};
+  const double m01 = 0.5 * h * h, m00 = h * h * h * (1.0 / 3);
+  const Four xv = s.xv + h * s.vv;
+  return {s.x + h * s.v, s.v, s.xx + h * (s.xv + xv) + m00 * q, xv + m01 * q, s.vv + h * q};
 }
 
-/// Takes in a point that lies `innovation` from the prediction, with variance `total`.
-State update(const State& s, const Four& innovation, const Four& total) {
-  const Four weight = 1.0 / total, gain_x = s.xx * weight, gain_v = s.xv * weight;
-  return {s.x + gain_x * innovation, s.v + gain_v * innovation, s.xx * (1.0 - gain_x), s.xv * (1.0 - gain_x), s.vv - gain_v * s.xv};
+/// A point, as seen from the prediction: how far off, the variance of that, and the inverse of the variance.
+struct Innovation {
+  Four value, variance, weight;
+};
+Innovation innovate(const State& ahead, const Four& y, const Four& variance) {
+  const Four total = ahead.xx + variance;
+  return {y - ahead.x, total, 1.0 / total};
 }
+
+/// Takes in that point, whose noise has the variance `noise`.
+State update(const State& s, const Innovation& seen, const Four& noise) {
+  const Four gain_x = s.xx * seen.weight, gain_v = s.xv * seen.weight;
+  return {s.x + gain_x * seen.value, s.v + gain_v * seen.value, gain_x * noise, s.xv * (noise * seen.weight), s.vv - gain_v * s.xv};
+}
+
+/// Row by row: a copy of the whole goes by words, and waits until they are written.
+void keep(const State& s, State& to) { to.x = s.x, to.v = s.v, to.xx = s.xx, to.xv = s.xv, to.vv = s.vv; }
 
 void set_knot(const State& s, double* knot) {
   const Four* rows[5] = {&s.x, &s.v, &s.xx, &s.xv, &s.vv};
@@ -62,7 +76,7 @@ State step_back(const Filtered& from, const State& after, double h, const Four& 
   const Four g00 = ahead.xx - after.xx, g01 = ahead.xv - after.xv, g11 = ahead.vv - after.vv;
   const Four r00 = i00 * g00 + i01 * g01, r01 = i00 * g01 + i01 * g11, r10 = i01 * g00 + i11 * g01, r11 = i01 * g01 + i11 * g11;
   const Four l00 = r00 * i00 + r01 * i01, l01 = r00 * i01 + r01 * i11, l11 = r10 * i01 + r11 * i11;  // Λ
-  const double m00 = h * h * h / 3, m01 = h * h / 2;
+  const double m00 = h * h * h * (1.0 / 3), m01 = 0.5 * h * h;
   if (evidence) {
     evidence[0] = sum(q * (m00 * lx * lx + 2 * m01 * lx * lv + h * lv * lv));
     evidence[1] = sum(q * (m00 * l00 + 2 * m01 * l01 + h * l11));
@@ -76,27 +90,24 @@ State step_back(const Filtered& from, const State& after, double h, const Four& 
     between[3] = sum(gain10 * after.xv + gain11 * after.vv);
     between[4] = sum(q);
   }
-  return {here.x + a * lx + b * lv, here.v + c * lx + d * lv, here.xx - (a * a * l00 + 2.0 * a * b * l01 + b * b * l11),
-          here.xv - (a * c * l00 + (a * d + b * c) * l01 + b * d * l11), here.vv - (c * c * l00 + 2.0 * c * d * l01 + d * d * l11)};
+  const Four ax = a * l00 + b * l01, av = a * l01 + b * l11, cx = c * l00 + d * l01, cv = c * l01 + d * l11;
+  return {here.x + a * lx + b * lv, here.v + c * lx + d * lv, here.xx - (a * ax + b * av), here.xv - (c * ax + d * av),
+          here.vv - (c * cx + d * cv)};
 }
 
 }  // namespace
 
-/// A search compares its values with one another and nothing else is made of them, so the last bits do not matter here: one division for a
-/// point, where `predict` and `update` would have four.
 void misfit(const PointView& points, const double* noise, const double* roughness, double* found) {
   const Four sigma = four(noise), variance = sigma * sigma, per_variance = 1.0 / variance, q = four(roughness);
   State s = begin(at(points, 0), variance);
   Four sum{}, product = sum + 1.0;
   for (std::size_t i = 1; i < points.count; ++i) {
-    const double h = points.time[i] - points.time[i - 1], m01 = 0.5 * h * h, m00 = h * h * h * (1.0 / 3);
-    const Four xv = s.xv + h * s.vv, xx = s.xx + h * (s.xv + xv) + m00 * q, vv = s.vv + h * q, cross = xv + m01 * q;
-    const Four x = s.x + h * s.v, innovation = at(points, i) - x, total = xx + variance, weight = 1.0 / total;
-    const Four gain_x = xx * weight, gain_v = cross * weight, kept = variance * weight;
-    s = {x + gain_x * innovation, s.v + gain_v * innovation, gain_x * variance, cross * kept, vv - gain_v * cross};
+    const State ahead = predict(s, points.time[i] - points.time[i - 1], q);
+    const Innovation seen = innovate(ahead, at(points, i), variance);
+    s = update(ahead, seen, variance);
     if (i == 1) continue;  // says nothing: the velocity was unknown
-    sum += innovation * innovation * weight;
-    product *= total * per_variance;
+    sum += seen.value * seen.value * seen.weight;
+    product *= seen.variance * per_variance;
     for (int k = 0; k < 3; ++k) {
       if (product[k] > 1e80) sum[k] += std::log(product[k]), product[k] = 1;  // one logarithm for many points
     }
@@ -108,22 +119,20 @@ void smooth(const PointView& points, const Noise& by, void* scratch, SplineView 
   const std::size_t count = points.count;
   const Four sigma = four(by.noise), variance = sigma * sigma, q = four(by.roughness);
   Filtered* const filtered = static_cast<Filtered*>(scratch);
-  State state = filtered[0].here = begin(at(points, 0), variance);
-  for (std::size_t i = 1; i < count; ++i) {
-    const State ahead = filtered[i - 1].ahead = predict(state, points.time[i] - points.time[i - 1], by.factor[i - 1] * q);
-    state = filtered[i].here = update(ahead, at(points, i) - ahead.x, ahead.xx + variance);
+  State state = begin(at(points, 0), variance);
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    const State ahead = predict(state, points.time[i + 1] - points.time[i], by.factor[i] * q);
+    keep(state, filtered[i].here);
+    keep(ahead, filtered[i].ahead);
+    state = update(ahead, innovate(ahead, at(points, i + 1), variance), variance);
   }
-  const auto back = [&](std::size_t i, double* between, double* evidence) {
-    return step_back(filtered[i], state, points.time[i + 1] - points.time[i], by.factor[i] * q, between, evidence);
-  };
-  if (!spline.knots) {
-    for (std::size_t i = count - 1; i-- > 0;) state = back(i, nullptr, spline.evidence + kEvidence * i);
-    return;
-  }
-  set_knot(state, spline.knots + kKnot * (count - 1));
+  if (spline.knots) set_knot(state, spline.knots + kKnot * (count - 1));
   for (std::size_t i = count - 1; i-- > 0;) {
-    state = back(i, spline.between + kBetween * i, nullptr);
-    set_knot(state, spline.knots + kKnot * i);
+    const double h = points.time[i + 1] - points.time[i];
+    double* const between = spline.knots ? spline.between + kBetween * i : nullptr;
+    double* const evidence = spline.knots ? nullptr : spline.evidence + kEvidence * i;
+    state = step_back(filtered[i], state, h, by.factor[i] * q, between, evidence);
+    if (between) set_knot(state, spline.knots + kKnot * i);
   }
 }
 

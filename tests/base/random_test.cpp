@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -32,24 +34,29 @@ TEST_CASE("random numbers have the moments that they say") {
   CHECK(between == Approx(4).margin(0.015));
 }
 
-TEST_CASE("two normal numbers are normal, and independent of each other") {
-  constexpr int kDraws = 100000;
+TEST_CASE("normal numbers are normal everywhere, the tail too, and independent of each other") {
+  constexpr int kDraws = 4000000;
   Random random(5);
-  double mean = 0, product = 0, squares[2] = {}, fourth = 0, beyond_two = 0;
+  double product = 0, fourth = 0, last = random.normal();
+  std::vector<double> bins(162);  // a twentieth wide from −4 to 4, and what lies beyond
   for (int i = 0; i < kDraws; ++i) {
-    const auto [a, b] = random.normals();
-    mean += (a + b) / (2 * kDraws), product += a * b / kDraws;
-    squares[0] += a * a / kDraws, squares[1] += b * b / kDraws;
-    fourth += (a * a * a * a + b * b * b * b) / (2 * kDraws);
-    beyond_two += (std::abs(a) > 2) / static_cast<double>(kDraws);
+    const double z = random.normal();
+    product += z * last / kDraws, fourth += z * z * z * z / kDraws;
+    last = z;
+    ++bins[static_cast<std::size_t>(std::clamp(20 * z + 81, 0.0, 161.0))];
   }
-  // Four standard errors: of the means 4/√n (two as many: 4/√(2n)), of the squares 4 √(2/n), of the fourth power 4 √(96/(2n)).
-  CHECK(std::abs(mean) < 0.009);
-  CHECK(std::abs(product) < 0.013);
-  CHECK(squares[0] == Approx(1).margin(0.018));
-  CHECK(squares[1] == Approx(1).margin(0.018));
-  CHECK(fourth == Approx(3).margin(0.088));
-  CHECK(beyond_two == Approx(0.0455).margin(0.0027));
+  // Four standard errors: of the product of neighbours 4/√n, of the fourth power 4 √(96/n).
+  CHECK(std::abs(product) < 0.002);
+  CHECK(fourth == Approx(3).margin(0.02));
+  const auto below = [](double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); };
+  double chi_squared = 0;
+  for (int k = 0; k < 162; ++k) {
+    const double low = k == 0 ? 0 : below(0.05 * (k - 81)), high = k == 161 ? 1 : below(0.05 * (k - 80));
+    const double expected = kDraws * (high - low), off = bins[static_cast<std::size_t>(k)] - expected;
+    chi_squared += off * off / expected;
+  }
+  CHECK(chi_squared == Approx(161).margin(4 * 18));  // 161 degrees of freedom: deviation √(2·161) = 18
+  CHECK(bins[0] + bins[161] == Approx(kDraws * 2 * below(-4)).margin(4 * 16));
 }
 
 TEST_CASE("a shuffle keeps what it shuffles, and puts every item everywhere") {

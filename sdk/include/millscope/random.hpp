@@ -9,6 +9,28 @@
 #include <utility>
 
 namespace millscope {
+namespace detail {
+
+inline double bell(double x) { return std::exp(-0.5 * x * x); }
+
+/// Layers of one area, one above the other, that cover the right half of the bell: how far each reaches. To the lowest belongs what lies
+/// beyond kTail, with which all fit (Marsaglia & Tsang 2000).
+struct BellLayers {
+  static constexpr std::size_t kCount = 128;
+  static constexpr double kTail = 3.442619855899;
+  std::array<double, kCount + 1> reach;
+
+  BellLayers() {
+    const double area = kTail * bell(kTail) + std::sqrt(0.5 * std::numbers::pi) * std::erfc(kTail / std::numbers::sqrt2);
+    reach = {area / bell(kTail), kTail};
+    for (std::size_t i = 1; i + 1 < kCount; ++i) reach[i + 1] = std::sqrt(-2.0 * std::log(area / reach[i] + bell(reach[i])));
+  }
+};
+
+/// Of each library its own: a symbol that is shared would keep a plugin from being unloaded.
+[[gnu::visibility("hidden")]] inline const BellLayers kBellLayers;
+
+}  // namespace detail
 
 /// SplitMix64 (Steele, Lea & Flood 2014).
 class Random {
@@ -25,17 +47,16 @@ class Random {
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }            ///< [0, 1)
   double between(double low, double high) { return low + (high - low) * uniform(); }  ///< [low, high)
   double exponential() { return -std::log(1.0 - uniform()); }                         ///< mean 1
-  double normal() {                                                                   ///< mean 0, variance 1 (Box & Muller 1958)
-    const double radius = std::sqrt(2.0 * exponential());
-    return radius * std::cos(2.0 * std::numbers::pi * uniform());
-  }
-  /// Two that are independent of each other, for less than the price of one (Marsaglia & Bray 1964).
-  std::array<double, 2> normals() {
+  /// Mean 0, variance 1. The layer comes from other bits than the place in it (Doornik 2005).
+  double normal() {
+    const auto& reach = detail::kBellLayers.reach;
     for (;;) {
-      const double x = between(-1.0, 1.0), y = between(-1.0, 1.0), square = x * x + y * y;
-      if (square >= 1.0 || square == 0.0) continue;
-      const double factor = std::sqrt(-2.0 * std::log(square) / square);
-      return {factor * x, factor * y};
+      const std::uint64_t drawn = bits();
+      const std::size_t layer = drawn % detail::BellLayers::kCount;
+      const double x = (static_cast<double>(drawn >> 11) * 0x1p-52 - 1.0) * reach[layer];
+      if (std::fabs(x) < reach[layer + 1]) return x;
+      if (layer == 0) return std::copysign(normal_beyond(detail::BellLayers::kTail), x);
+      if (between(detail::bell(reach[layer]), detail::bell(reach[layer + 1])) < detail::bell(x)) return x;
     }
   }
 
@@ -46,6 +67,14 @@ class Random {
   }
 
  private:
+  /// Marsaglia 1964.
+  double normal_beyond(double least) {
+    for (;;) {
+      const double x = exponential() / least;
+      if (2.0 * exponential() >= x * x) return least + x;
+    }
+  }
+
   std::uint64_t state_;
 };
 
