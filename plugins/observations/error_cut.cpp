@@ -96,7 +96,7 @@ class ErrorCut {
       TrackSample& s = element(track, i);
       if (per_speed_ > 0.0) speed = speeds.at(i).value_or(speed);
       const double usual = spread_ + per_distance_ * middle_.distance(s.position, context) + per_speed_ * speed;
-      const double u = std::max(usual + scatter_ * random.normal(), 0.1 * usual);
+      const double u = std::max(usual + scatter_ * random.normal_by_layers(), 0.1 * usual);
       s.visible = s.visible && u <= cut_;
       if (u > kSpreadOfFullConfidence) s.weight *= kSpreadOfFullConfidence / u;
     }

@@ -47,8 +47,8 @@ class Noise {
       const double fresh = std::sqrt(1.0 - kept * kept);
       const double factor = 1.0 + growth_ * middle_.distance(s.position, context);
       for (int axis = 0; axis < 3; ++axis) {
-        c[axis] = kept * c[axis] + fresh * random.normal();
-        s.position[axis] += factor * (white_[axis] * random.normal() + correlated_[axis] * c[axis]);
+        c[axis] = kept * c[axis] + fresh * random.normal_by_layers();
+        s.position[axis] += factor * (white_[axis] * random.normal_by_layers() + correlated_[axis] * c[axis]);
       }
       before = s.time;
     }

@@ -197,7 +197,7 @@ TEST_CASE("what was seen is seen again when a camera's code has changed, not whe
   };
   const std::string begin = "#include", first = build_shake(folder, "first", begin, begin);
   const host::Registry original = with(first), commented = with(build_shake(folder, "commented", begin, "// A comment.\n\n#include"));
-  const host::Registry changed = with(build_shake(folder, "changed", "white_[axis] * a", "1.01 * white_[axis] * a"));
+  const host::Registry changed = with(build_shake(folder, "changed", "white_[axis] *", "1.01 * white_[axis] *"));
   calibrate::Study study = study_in(folder, "shake");
   const Observation seen = observer_of(study, original, cache).simulated(0, finished(run, "one-program"));
   std::filesystem::remove_all(run);

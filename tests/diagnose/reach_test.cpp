@@ -66,6 +66,24 @@ TEST_CASE("a strength beyond its prior is found, for the bank reaches farther by
   }));
 }
 
+TEST_CASE("intervals of 90 % hold a strength beyond its prior, and the friction beside it, in most of ten recordings") {
+  constexpr double kStrength = 1.5, kFriction = 0.3;
+  int strengths = 0, frictions = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const Scratch folder;
+    const Question q = question_of(folder, kSections);
+    MadeUpMill mill(q, usual(), with(kRolling + "=0.3"));
+    mill.seed = seed;
+    const Diagnosis d = diagnose::found(q, mill);
+    const Judged& found = judged(d, "rolling_resistance");
+    strengths += found.strength.low < kStrength && found.strength.high > kStrength;
+    frictions += found.theta[0].low < kFriction && found.theta[0].high > kFriction;
+  }
+  // Of ten that each hold in nine of ten cases, less than seven hold in one of 80.
+  CHECK(strengths >= 7);
+  CHECK(frictions >= 7);
+}
+
 TEST_CASE("a strength beyond all that was simulated is said to be unknown") {
   const Diagnosis d = diagnosed(usual(), with(kRolling + "=0.8"));
   INFO(d.sentence);

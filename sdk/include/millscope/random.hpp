@@ -47,8 +47,13 @@ class Random {
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }            ///< [0, 1)
   double between(double low, double high) { return low + (high - low) * uniform(); }  ///< [low, high)
   double exponential() { return -std::log(1.0 - uniform()); }                         ///< mean 1
-  /// Mean 0, variance 1. The layer comes from other bits than the place in it (Doornik 2005).
-  double normal() {
+  double normal() {                                                                   ///< mean 0, variance 1 (Box & Muller 1958)
+    const double radius = std::sqrt(2.0 * exponential());
+    return radius * std::cos(2.0 * std::numbers::pi * uniform());
+  }
+  /// Mean 0, variance 1, in a sequence of its own, mostly without a logarithm: `normal` keeps its numbers. The layer comes
+  /// from other bits than the place in it (Doornik 2005).
+  double normal_by_layers() {
     const auto& reach = detail::kBellLayers.reach;
     for (;;) {
       const std::uint64_t drawn = bits();

@@ -55,8 +55,10 @@ std::vector<PlannedRun> planned_runs(const Question& q) {
   const std::vector<campaign::Simulation> simulations = simulations_of(q, points, conditions);
   std::vector<PlannedRun> runs;
   for (std::size_t c = 0; c < conditions.size(); ++c) {
-    for (std::size_t p = 0; p < points.size(); ++p)
-      runs.push_back({points[p].group, conditions[c], simulations[p * conditions.size() + c]});
+    const bool held_out = q.study.conditions[conditions[c]].role == calibrate::Role::held_out;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      if (!held_out || points[p].active.empty()) runs.push_back({points[p].group, conditions[c], simulations[p * conditions.size() + c]});
+    }
   }
   return runs;
 }

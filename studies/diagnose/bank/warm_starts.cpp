@@ -18,7 +18,7 @@
 namespace millscope::diagnose {
 namespace {
 
-constexpr std::size_t kChains = 4;
+constexpr std::size_t kChains = 2;
 
 /// What may differ between a simulation and its donor: no wall, no motion, no size of a bead; and no stiffness, for overlaps of soft
 /// contacts are springs under load in stiff ones, and nobody has tried how soon that is forgotten.

@@ -93,7 +93,7 @@ bool is_asked(const Diagnosis& diagnosis, const BankPoint& point) {
 /// What is simulated in held-out conditions: all without a candidate, and of candidates what is asked; everything where these are too few
 /// to tell the base. How few that is is a rule of thumb: what the surrogate then errs by is counted wherever it is used.
 std::vector<BankPoint> to_hold_out(const Diagnosis& diagnosis) {
-  constexpr Index kEnough = 3;  // for each coefficient of the base
+  constexpr Index kEnough = 2;  // for each coefficient of the base
   const naming::Features features(diagnosis.problem.data);
   Index needed = kEnough * features.base_size();
   for (const Index k : diagnosis.naming.kept) {
