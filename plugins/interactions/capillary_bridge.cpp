@@ -42,13 +42,12 @@ constexpr Hypothesis kHypotheses[] = {
      "cohesion|adhesion"},
 };
 
-/// atan z for 0 ≤ z < 2.85 (here z < D/1.05 = 2.842) from operations that IEEE fixes; error below 1e-13. Where z > tan π/8, it is
-/// π/4 + atan((z − 1)/(z + 1)). The angle is halved once; then comes the series.
+/// atan y/x for x > 0, 0 ≤ y/x < 2.85 (here below D/1.05 = 2.842) from operations that IEEE fixes; error below 1e-13. Where y/x > tan π/8,
+/// it is π/4 + atan((y − x)/(y + x)). The angle is halved once; then comes the series.
 template <class R>
-R arctangent(R z) {
-  const R one(1.0);
-  const auto far = z > R(std::numbers::sqrt2 - 1.0);  // tan π/8
-  const R near = select(far, (z - one) / (z + one), z), half = near / (one + square_root(one + near * near));
+R arctangent(const R& y, const R& x) {
+  const auto far = y > R(std::numbers::sqrt2 - 1.0) * x;  // tan π/8
+  const R up = select(far, y - x, y), along = select(far, y + x, x), half = up / (along + square_root(along * along + up * up));
   return select(far, R(0.25 * std::numbers::pi), R(0.0)) + R(2.0) * half * inverse_odd_series<8>(-(half * half));
 }
 
@@ -84,8 +83,8 @@ class CapillaryBridge {
     const auto stretched = bridged && (gap > zero);
     if (any(stretched)) left = select(stretched, integral(stretch) * R(1.0 / stretch_), left);
     out.elastic_energy = -(held * contact * (pair.radius * left + overlap));
-    const R rate = select(pair.time_step > zero, one, zero) / maximum(pair.time_step, R(1e-300));
-    out.power[0] = select(bridged && !before, one, zero) * contact * pair.radius * R(whole_) * rate;
+    const auto fresh = bridged && !before && pair.time_step > zero;
+    if (any(fresh)) out.power[0] = select(fresh, contact * pair.radius * R(whole_) / pair.time_step, zero);
     history[0] = held;
   }
 
@@ -94,8 +93,8 @@ class CapillaryBridge {
   template <class R>
   R integral(const R& stretch) const {
     const R end(rupture_ * stretch_), root(std::sqrt(4.0 * kSquare - kLinear * kLinear));
-    const R z = root * (end - stretch) / (R(2.0) + R(kLinear) * (stretch + end) + R(2.0 * kSquare) * stretch * end);
-    return R(2.0) / root * arctangent(z);
+    const R below = R(2.0) + R(kLinear) * (stretch + end) + R(2.0 * kSquare) * stretch * end;
+    return R(2.0) / root * arctangent(root * (end - stretch), below);
   }
 
   double force_;    ///< |F(0)|/R*, N/m

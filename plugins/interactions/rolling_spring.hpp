@@ -40,7 +40,8 @@ struct RollingSpring {
     const R distance = maximum(length(trial), tiny), asked = stiffness * distance;
     const auto sliding = asked > limit;
     const R kept = minimum(one, limit / maximum(asked, tiny));  // nothing where neither resists: no angle is held without a load
-    const R dashpot = select(sliding, zero, R(2.0 * damping) * square_root(inertia(pair) * stiffness));
+    R dashpot = zero;
+    if (damping > 0.0) dashpot = select(sliding, zero, R(2.0 * damping) * square_root(inertia(pair) * stiffness));
     const Vec<R> now = kept * trial, taken = (one - kept) * trial;
 
     out.moment_i = (-stiffness) * now - dashpot * spin;

@@ -7,10 +7,7 @@
 //
 //   x' = x + (1 + γ d)(σ_w a + σ_c c(t)),   a, c of variance 1,   ⟨c(t) c(t + Δt)⟩ = e^{−|Δt|/τ}
 //
-// c is an Ornstein–Uhlenbeck process, stepped exactly over the uneven intervals between the locations that the camera has; the others stay
-// as they are. All σ = 0 leaves the track as it is.
-#include <limits>
-
+// c is an Ornstein–Uhlenbeck process, stepped exactly over the uneven intervals. All σ = 0 leaves the track as it is.
 #include "camera_view.hpp"
 
 namespace millscope::observations {
@@ -39,18 +36,16 @@ class Noise {
   Track observe(const TrackView& view, const TrackContext& context) const {
     Track track = copy_of(view);
     Random random(context.seed);
-    double c[3] = {0, 0, 0};
-    double before = -std::numeric_limits<double>::infinity();  // time of the last location that the camera has
-    for (TrackSample& s : track) {
-      if (!s.visible) continue;
-      const double kept = time_ > 0.0 ? std::exp((before - s.time) / time_) : 0.0;
+    double c[3] = {random.normal_by_layers(), random.normal_by_layers(), random.normal_by_layers()};
+    for (std::size_t i = 0; i < track.size(); ++i) {
+      TrackSample& s = track[i];
+      const double kept = i > 0 && time_ > 0.0 ? std::exp((track[i - 1].time - s.time) / time_) : 0.0;
       const double fresh = std::sqrt(1.0 - kept * kept);
       const double factor = 1.0 + growth_ * middle_.distance(s.position, context);
       for (int axis = 0; axis < 3; ++axis) {
-        c[axis] = kept * c[axis] + fresh * random.normal_by_layers();
+        if (i > 0) c[axis] = kept * c[axis] + fresh * random.normal_by_layers();
         s.position[axis] += factor * (white_[axis] * random.normal_by_layers() + correlated_[axis] * c[axis]);
       }
-      before = s.time;
     }
     return track;
   }

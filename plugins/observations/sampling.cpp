@@ -36,7 +36,7 @@ double gamma_of_mean_one(double shape, Random& random) {
   }
 }
 
-/// The median of at most some hundred steps, spread over the track.
+/// The median of at most 200 steps, spread over the track.
 double usual_step(const TrackView& view) {
   constexpr std::int64_t kSome = 200;
   std::vector<double> steps;

@@ -1,6 +1,8 @@
 // Each observation against what it says it does; bounds are four standard errors of the figure tested, seeds are fixed.
 #include "support.hpp"
 
+#include "millscope/random.hpp"
+
 using namespace camera_test;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
@@ -121,6 +123,39 @@ TEST_CASE("error_cut loses beads by speed and distance as the normal integral sa
       INFO("radius " << radius << " speed " << speed);
       CHECK_THAT(kept(radius, speed), WithinAbs(p, 4 * std::sqrt(p * (1 - p) / 40000) + 0.01));
     }
+  }
+}
+
+TEST_CASE("error_cut takes the speed from a straight line through the locations in its window, however uneven their times") {
+  constexpr double kWindow = 0.02, kBegin = 1e9;
+  output::TrackSamples track;
+  millscope::Random random(13);
+  double t = kBegin;
+  for (int i = 0; i < 400; ++i) {
+    t += i % 50 == 0 ? 0.1 : random.exponential() / 220;  // now and then alone: the speed before holds
+    track.time.push_back(t);
+    for (auto& x : track.position) x.push_back(random.between(-0.01, 0.01) + 0.8 * (t - kBegin));
+  }
+  const recording::Run run = camera::observe(
+      track, chain_of(fmt::format("{{kind: error_cut, cut: 9 m, spread: 4 mm, per_speed: 2 ms, speed_window: {}}}", kWindow)),
+      context_of(1));
+  REQUIRE(run.size() == track.size());
+  double speed = 0;
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    std::vector<std::size_t> near;
+    for (std::size_t k = 0; k < track.size(); ++k) {
+      if (std::fabs(track.time[k] - track.time[i]) <= kWindow / 2) near.push_back(k);
+    }
+    double mean = 0, square = 0, slope[3] = {};
+    for (const std::size_t k : near) mean += (track.time[k] - kBegin) / static_cast<double>(near.size());
+    for (const std::size_t k : near) {
+      const double off = track.time[k] - kBegin - mean;
+      square += off * off;
+      for (std::size_t axis = 0; axis < 3; ++axis) slope[axis] += off * track.position[axis][k];
+    }
+    if (near.size() > 1) speed = std::hypot(slope[0], slope[1], slope[2]) / square;
+    INFO("location " << i << " of " << near.size() << " in its window");
+    CHECK_THAT(run.spread[i], WithinRel(4e-3 + 2e-3 * speed, 1e-6));
   }
 }
 

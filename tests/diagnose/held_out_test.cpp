@@ -36,6 +36,7 @@ struct Story {
   Diagnosis diagnosed(double run_noise = 0.3, double aside = 0) {
     MadeUpMill mill(question, physics, truth);
     mill.run_noise = run_noise;
+    mill.seed = seed;
     Evidence evidence = mill.evidence();
     evidence.recorded[2].value.array() += aside;
     naming::Options options;
@@ -49,7 +50,8 @@ struct Story {
   Question question;
   std::vector<std::string> truth;
   std::vector<Physics> physics;
-  int computed = 0;  ///< simulations of all kinds
+  std::uint64_t seed = 0;  ///< of all noise
+  int computed = 0;        ///< simulations of all kinds
 };
 
 const Score* score_of(const HeldOut& held, const std::string& name) {
@@ -134,6 +136,23 @@ TEST_CASE("where nothing is missing the bank predicts the held-out condition, an
   }
   CHECK(held.base_p > 0.05);
   CHECK(sources_sentence(held) == "retuned to power, retuned to all observables predicted by the bank's surrogate");
+}
+
+TEST_CASE("two parameter sets for each coefficient of the base say of the held-out condition what five say") {
+  constexpr int kStories = 20;
+  const auto p_of = [](int base, std::uint64_t seed) {
+    Story story;
+    story.seed = seed;
+    story.question.bank.base = base;
+    return story.diagnosed().held_out.at(0).base_p;
+  };
+  double sum = 0, squares = 0;
+  for (std::uint64_t seed = 0; seed < kStories; ++seed) {
+    const double more = p_of(20, seed) - p_of(48, seed);  // ten coefficients
+    sum += more, squares += more * more;
+  }
+  CHECK(std::fabs(sum / kStories) < 0.05);
+  CHECK(std::sqrt(squares / kStories) < 0.2);
 }
 
 TEST_CASE("where the bank's runs scatter too much to judge by, all is simulated") {

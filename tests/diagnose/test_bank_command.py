@@ -40,21 +40,27 @@ class Bank(CliTest):
 
     def test_a_bank_is_empty_then_whole_and_nothing_is_computed_twice(self):
         rows, text = self.rows()
-        planned = {"base": 8, "again": 8, "lifter_wear": 1}
-        self.assertEqual(rows, {("all", ""): (34, 0, 0, 0, 34)} | {(group, condition): (n, 0, 0, 0, n) for group, n in planned.items()
-                                                                    for condition in ("fast", "slow")})
+        planned = {("base", "fast"): 8, ("base", "slow"): 8, ("again", "fast"): 8, ("again", "slow"): 8, ("lifter_wear", "fast"): 1, ("all", ""): 33}
+        self.assertEqual(rows, {place: (n, 0, 0, 0, n) for place, n in planned.items()})
         self.assertIn("none is done yet", text)
         self.assertFalse((self.folder / "cache").exists(), "status writes nothing")
-        self.assertIn("34 simulations in cache, 34 computed now, 0 failed", self.bank("extend", "study.yaml", "--cache", "cache"))
+        self.assertIn("33 simulations in cache, 33 computed now, 0 failed", self.bank("extend", "study.yaml", "--cache", "cache"))
         rows, text = self.rows()
-        self.assertEqual(rows[("all", "")], (34, 34, 0, 0, 0))
+        self.assertEqual(rows[("all", "")], (33, 33, 0, 0, 0))
         self.assertIn("the bank is whole", text)
         rows, text = self.rows("--set", "bank.each=3")
         self.assertEqual(rows[("lifter_wear", "fast")], (3, 1, 0, 0, 2))
-        self.assertEqual(rows[("all", "")], (38, 34, 0, 0, 4))
-        self.assertRegex(text, r"the rest takes about \d+ s on one core, \d+ s with \d+ at once, by the times of the 34 that are done")
+        self.assertEqual(rows[("all", "")], (35, 33, 0, 0, 2))
+        self.assertRegex(text, r"the rest takes about \d+ s on one core, \d+ s with \d+ at once, by the times of the 33 that are done")
         said = self.bank("extend", "study.yaml", "--cache", "cache", "--set", "bank.each=3")
-        self.assertIn("38 simulations in cache, 4 computed now, 0 failed", said)
+        self.assertIn("35 simulations in cache, 2 computed now, 0 failed", said)
+
+    def test_where_the_base_is_too_small_candidates_are_planned_in_held_out_conditions_too(self):
+        second = "parameters.pairs.glass~hdpe.static_friction={range: [0.2, 0.4]}"  # six coefficients, and eight sets
+        rows, _ = self.rows("--set", second)
+        self.assertEqual(rows[("lifter_wear", "slow")], (1, 0, 0, 0, 1))
+        rows, _ = self.rows("--set", second, "--set", "bank.base=12")
+        self.assertNotIn(("lifter_wear", "slow"), rows)
 
     def test_help_explains_with_an_example(self):
         self.assertIn("millscope bank status configs/mill10/diagnose.yaml --cache diagnosis/cache", self.bank("--help"))

@@ -51,7 +51,7 @@ class Random {
     const double radius = std::sqrt(2.0 * exponential());
     return radius * std::cos(2.0 * std::numbers::pi * uniform());
   }
-  /// Mean 0, variance 1, in a sequence of its own, mostly without a logarithm: `normal` keeps its numbers. The layer comes
+  /// Mean 0, variance 1, mostly without a logarithm; other numbers than `normal` gives, which keeps its own. The layer comes
   /// from other bits than the place in it (Doornik 2005).
   double normal_by_layers() {
     const auto& reach = detail::kBellLayers.reach;

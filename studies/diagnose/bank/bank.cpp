@@ -236,6 +236,20 @@ std::vector<BankPoint> plan_bank(const Question& question) {
   return all;
 }
 
+/// How few are too few is a rule of thumb: what the surrogate then errs by is counted wherever it is used.
+std::vector<BankPoint> held_out_points(const Question& question, std::vector<BankPoint> points, const AskedCandidates& asked) {
+  constexpr Index kEnough = 2;  // parameter sets for each coefficient of the base
+  naming::BankData data;
+  data.theta = question.coordinates();
+  const Index needed = kEnough * naming::Features(data).base_size() + asked.coefficients;
+  const auto is_asked = [&](const BankPoint& p) {
+    return std::all_of(p.active.begin(), p.active.end(), [&](const auto& on) { return asked.which.count(on.candidate) == 1; });
+  };
+  const auto tells = [&](const BankPoint& p) { return is_asked(p) && p.group != "again"; };
+  if (std::count_if(points.begin(), points.end(), tells) >= needed) std::erase_if(points, [&](const BankPoint& p) { return !is_asked(p); });
+  return points;
+}
+
 campaign::Simulation simulation_of(const Question& question, const BankPoint& point, std::size_t condition) {
   const std::string& name = question.study.conditions[condition].name;
   campaign::Simulation s = simulation(question, point.theta, point.active, condition);

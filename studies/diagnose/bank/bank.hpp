@@ -55,6 +55,15 @@ std::vector<BankPoint> plan_pair(const Question& question, Index one, Index othe
 /// Both, for all candidates.
 std::vector<BankPoint> plan_bank(const Question& question);
 
+/// Candidates that somebody asks after in held-out conditions, and how many coefficients the surrogate has for them.
+struct AskedCandidates {
+  std::set<Index> which = {};
+  Index coefficients = 0;
+};
+/// Of some points what is simulated in held-out conditions: all without a candidate, and of candidates what is asked; everything where
+/// these are too few parameter sets to tell the base.
+std::vector<BankPoint> held_out_points(const Question& question, std::vector<BankPoint> points, const AskedCandidates& asked);
+
 /// From a filling at rest.
 campaign::Simulation simulation_of(const Question& question, const BankPoint& point, std::size_t condition);
 /// [points × conditions] as the bank has them: where it develops (BankSize::develop_turns), most begin at another's end (warm_starts.cpp).

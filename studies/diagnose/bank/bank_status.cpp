@@ -49,17 +49,17 @@ void estimate(const std::vector<Work>& work, BankStatus& status) {
 }  // namespace
 
 std::vector<PlannedRun> planned_runs(const Question& q) {
-  std::vector<std::size_t> conditions = q.study.with_role(calibrate::Role::fit);
-  for (const std::size_t c : q.study.with_role(calibrate::Role::held_out)) conditions.push_back(c);
-  const std::vector<BankPoint> points = plan_bank(q);
-  const std::vector<campaign::Simulation> simulations = simulations_of(q, points, conditions);
   std::vector<PlannedRun> runs;
-  for (std::size_t c = 0; c < conditions.size(); ++c) {
-    const bool held_out = q.study.conditions[conditions[c]].role == calibrate::Role::held_out;
-    for (std::size_t p = 0; p < points.size(); ++p) {
-      if (!held_out || points[p].active.empty()) runs.push_back({points[p].group, conditions[c], simulations[p * conditions.size() + c]});
+  const std::vector<BankPoint> points = plan_bank(q);
+  const auto add = [&](const std::vector<BankPoint>& planned, const std::vector<std::size_t>& conditions) {
+    const std::vector<campaign::Simulation> simulations = simulations_of(q, planned, conditions);
+    for (std::size_t c = 0; c < conditions.size(); ++c) {
+      for (std::size_t p = 0; p < planned.size(); ++p)
+        runs.push_back({planned[p].group, conditions[c], simulations[p * conditions.size() + c]});
     }
-  }
+  };
+  add(points, q.study.with_role(calibrate::Role::fit));
+  add(held_out_points(q, points, {}), q.study.with_role(calibrate::Role::held_out));
   return runs;
 }
 

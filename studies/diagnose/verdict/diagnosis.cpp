@@ -82,33 +82,23 @@ std::ptrdiff_t finished(const Bank& bank, const std::string& group) {
   return count;
 }
 
-/// Whether somebody asks what the point's candidates do in held-out conditions: each is the best, or was not rejected against it.
-bool is_asked(const Diagnosis& diagnosis, const BankPoint& point) {
-  const std::vector<Index>& kept = diagnosis.naming.kept;
-  return std::all_of(point.active.begin(), point.active.end(), [&](const naming::ActiveCandidate& on) {
-    return std::any_of(kept.begin(), kept.end(), [&](Index k) { return diagnosis.problem.alternatives[k].candidate == on.candidate; });
-  });
-}
-
-/// What is simulated in held-out conditions: all without a candidate, and of candidates what is asked; everything where these are too few
-/// to tell the base. How few that is is a rule of thumb: what the surrogate then errs by is counted wherever it is used.
-std::vector<BankPoint> to_hold_out(const Diagnosis& diagnosis) {
-  constexpr Index kEnough = 2;  // for each coefficient of the base
+/// What is asked for in held-out conditions: the best candidate, and those that were not rejected against it.
+AskedCandidates asked_of(const Diagnosis& diagnosis) {
   const naming::Features features(diagnosis.problem.data);
-  Index needed = kEnough * features.base_size();
+  AskedCandidates asked;
   for (const Index k : diagnosis.naming.kept) {
-    if (const auto& candidate = diagnosis.problem.alternatives[k].candidate) needed += features.count(*candidate);
+    if (const auto& candidate = diagnosis.problem.alternatives[k].candidate) {
+      asked.which.insert(*candidate);
+      asked.coefficients += features.count(*candidate);
+    }
   }
-  std::vector<BankPoint> points = diagnosis.bank.points;
-  std::erase_if(points, [&](const BankPoint& p) { return !is_asked(diagnosis, p); });
-  const auto again = std::count_if(points.begin(), points.end(), [](const BankPoint& p) { return p.group == "again"; });
-  return std::ssize(points) - again >= needed ? points : diagnosis.bank.points;
+  return asked;
 }
 
 /// The bank of the held-out conditions, beside that of the fitted ones.
 void hold_out(const Question& asked, const calibrate::Machinery& machinery, Diagnosis& diagnosis) {
   if (diagnosis.held.empty()) return;
-  const Bank held = filled(asked, machinery, to_hold_out(diagnosis), diagnosis.held, diagnosis);
+  const Bank held = filled(asked, machinery, held_out_points(asked, diagnosis.bank.points, asked_of(diagnosis)), diagnosis.held, diagnosis);
   note(machinery, unsettled(asked, held, diagnosis.held), diagnosis);
   if (!held.failures.empty())
     note(machinery,
