@@ -73,10 +73,11 @@ int status(const Arguments& arguments) {
 }
 
 int extend(const Arguments& arguments) {
-  Options options("bank extend STUDY.yaml --cache DIR",
-                  "Runs the simulations of a diagnosis that the cache does not have yet, without diagnosing: all candidates in the fitted "
-                  "conditions, and in those held out what has no candidate. Started again, it goes on where it stopped.",
-                  "millscope bank extend configs/mill10/diagnose.yaml --cache diagnosis/cache");
+  Options options(
+      "bank extend STUDY.yaml --cache DIR",
+      "Runs the simulations of a diagnosis that the cache does not have yet, without diagnosing: all candidates in the fitted "
+      "conditions, in those held out what has no candidate, and all where that is too little. Started again, it goes on where it stopped.",
+      "millscope bank extend configs/mill10/diagnose.yaml --cache diagnosis/cache");
   add_bank_options(options);
   options.add()("runner", po::value<std::string>()->value_name("local|slurm"), "where simulations run (default: the study's)");
   options.add()("slurm", po::value<std::vector<std::string>>()->value_name("OPTIONS"), "more options for sbatch");

@@ -132,16 +132,18 @@ def child_seconds(command, **more):
 
 
 def compare_banks(setup, before, now, pairs):
-    """A part of the bank of the story's challenge, as the earlier commit's study has it: the fitted conditions, for what programs plan in the
-    others differs."""
+    """A part of the bank of the story's challenge, as the earlier commit's study has it, but with every condition fitted and every simulation
+    from rest: what programs plan in a held-out one and where they begin differs."""
+    study = before.sources / STORY / "challenge_study.yaml"
+    from_rest = ["--set", "bank.develop_turns=0"] if "develop_turns" in study.read_text() else []
     rows = []
     for _ in range(pairs):
         times = []
         for program in (before, now):
             cache = setup.work / "bank-of-pair"
             shutil.rmtree(cache, ignore_errors=True)
-            words = ["bank", "extend", before.sources / STORY / "challenge_study.yaml", "--cache", cache, "--set", "bank.base=8", "--set", "bank.each=1",
-                     "--set", "conditions.speed50.role=fit"]
+            words = ["bank", "extend", study, "--cache", cache, "--set", "bank.base=8", "--set", "bank.each=1",
+                     "--set", "conditions.speed50.role=fit"] + from_rest
             times.append(child_seconds([program.build / "bin" / "millscope"] + words)[0])
         rows.append(times)
     return summary("bank, a part", "core-s", rows)

@@ -61,8 +61,8 @@ struct Film {
 };
 
 /// s between the points of a path: where a camera samples it, and does nothing before but blur it, half of the shortest span of either,
-/// from 0.5 to 1.7 ms, which is a third of the 5 ms between frames; straight lines are then off by 4 µm at 10 m/s² and by 140 µm in an
-/// impact, where the camera's noise is some 300. Else 0.5 ms.
+/// from 0.5 to 1.7 ms: three parts of the usual 5 ms between frames, in which straight lines are off by 3 µm at 10 m/s² and by 140 µm in an
+/// impact, where the camera's noise is some 300 µm. Else 0.5 ms.
 double path_step(const camera::Camera& camera) {
   constexpr double kShortest = 0.5e-3, kLongest = 1.7e-3;
   double shortest = 2 * kLongest;

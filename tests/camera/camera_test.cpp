@@ -63,13 +63,27 @@ TEST_CASE("the same seed gives the same track, also from many threads, and anoth
 
 TEST_CASE("taking one link away leaves the random numbers of the others") {
   const output::TrackSamples track = circling(10, 2000, 0.12, -6);
-  std::string less = kWhole;
-  const std::size_t at = less.find("  noise:");
-  less.erase(at, less.find('\n', at) - at + 1);
-  const recording::Run with = camera::observe(track, parse(kWhole), context_of(1)),
-                       without = camera::observe(track, parse(less), context_of(1));
-  CHECK(with.time == without.time);
-  CHECK(with.spread == without.spread);
+  const auto without = [&](const std::string& link) {
+    std::string less = kWhole;
+    const std::size_t at = less.find("  " + link + ":");
+    REQUIRE(at != std::string::npos);
+    less.erase(at, less.find('\n', at) - at + 1);
+    return camera::observe(track, parse(less), context_of(1));
+  };
+  const recording::Run whole = camera::observe(track, parse(kWhole), context_of(1)), silent = without("noise");
+  CHECK(silent.time == whole.time);
+  CHECK(silent.spread == whole.spread);
+  for (const std::string link : {"cut", "gaps"}) {  // what these had hidden is seen now, the rest as before
+    const recording::Run more = without(link);
+    INFO(link);
+    CHECK(more.size() > whole.size());
+    for (std::size_t i = 0, k = 0; i < whole.size(); ++i, ++k) {
+      while (k < more.size() && more.time[k] < whole.time[i]) ++k;
+      REQUIRE(k < more.size());
+      REQUIRE(more.time[k] == whole.time[i]);
+      for (std::size_t axis = 0; axis < 3; ++axis) CHECK(more.position[axis][k] == whole.position[axis][i]);
+    }
+  }
 }
 
 TEST_CASE("an empty track stays empty, one sample passes") {

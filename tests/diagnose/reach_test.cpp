@@ -7,6 +7,7 @@
 
 #include "kernel/base/random.hpp"
 #include "made_up_diagnosis.hpp"
+#include "studies/diagnose/bank/bank_status.hpp"
 #include "studies/diagnose/bank/beyond.hpp"
 
 using namespace millscope;
@@ -183,7 +184,7 @@ TEST_CASE("the bank keeps its simulations where it reaches farther, also those t
   INFO(d.sentence);
   CHECK(d.verdict == Verdict::no_mismatch);
   CHECK_THAT(d.naming.base_theta[0].value, WithinAbs(0.8, 0.05));
-  const auto without = plan_bank(q).size() * 3, beyond = plan_beyond(q, {.coordinate = 0, .upper = true}).size() * 3;
+  const auto without = planned_runs(q).size(), beyond = plan_beyond(q, {.coordinate = 0, .upper = true}).size() * 3;
   CHECK(static_cast<std::size_t>(mill.computed()) <= without + beyond + 36);  // 36: held out
 }
 

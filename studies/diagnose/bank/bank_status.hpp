@@ -17,8 +17,8 @@ struct PlannedRun {
 };
 
 /// The base group first, then those of nuisances that are varied apart, then every candidate's, first alone and then with these; the
-/// conditions that are fitted before those that are held out. A diagnosis asks for less where it screens a candidate out, and for more
-/// where one helps: simulations of it in the held-out conditions, among others.
+/// conditions that are fitted before those that are held out. A diagnosis asks for less where it screens a candidate out, or where those of
+/// its class suffice in a held-out condition; and for more where one helps: simulations of it in held-out conditions, among others.
 std::vector<PlannedRun> planned_runs(const Question& question);
 
 /// Runs of one group in one condition.
