@@ -7,6 +7,7 @@
 
 #include "millscope/element.hpp"
 #include "millscope/observation_adapter.hpp"
+#include "millscope/pack.hpp"
 
 namespace millscope::observations {
 
@@ -28,10 +29,9 @@ class Middle {
 
   double distance(const double* position, const TrackContext& context) const {
     const double along = given_ ? middle_[2] : 0.5 * (context.mill_low + context.mill_high);
-    const double x = position[0] - middle_[0], y = position[1] - middle_[1];
-    double z = position[2] - along;
-    if (context.period > 0.0 && std::fabs(z) > 0.5 * context.period) z = std::remainder(z, context.period);
-    return std::sqrt(x * x + y * y + z * z);
+    Vec<double> beside{position[0] - middle_[0], position[1] - middle_[1], position[2] - along};
+    if (context.period > 0.0 && std::fabs(beside.z) > 0.5 * context.period) beside.z = std::remainder(beside.z, context.period);
+    return length(beside);
   }
 
  private:

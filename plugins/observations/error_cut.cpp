@@ -49,27 +49,23 @@ class Speeds {
     const double *const time = view_.time, now = time[i];
     while (now - time[low_] > half_) ++low_;
     while (high_ < view_.count && time[high_] - now <= half_) ++high_;
-    double first = 0, second = 0, place[3] = {0, 0, 0}, moment[3] = {0, 0, 0};
+    const Vec<double> here = load_vector<double>(view_.position, i);
+    double first = 0, second = 0;
+    Vec<double> place{0, 0, 0}, moment{0, 0, 0};
     for (std::int64_t k = low_; k < high_; ++k) {
       const double t = time[k] - now;
+      const Vec<double> x = load_vector<double>(view_.position, k) - here;
       first += t;
       second += t * t;
-      for (int axis = 0; axis < 3; ++axis) {
-        const double x = view_.position[axis][k] - view_.position[axis][i];
-        place[axis] += x;
-        moment[axis] += t * x;
-      }
+      place = place + x;
+      moment = moment + t * x;
     }
     const double mean = first / static_cast<double>(high_ - low_), square = second - mean * first;
     if (!(square > 0.0)) return std::nullopt;
-    double slope = 0;
-    for (int axis = 0; axis < 3; ++axis) slope += squared(moment[axis] - mean * place[axis]);
-    return std::sqrt(slope) / square;
+    return length(moment - mean * place) / square;
   }
 
  private:
-  static double squared(double x) { return x * x; }
-
   const TrackView& view_;
   double half_;
   std::int64_t low_ = 0, high_ = 0;

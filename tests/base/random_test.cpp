@@ -37,16 +37,20 @@ TEST_CASE("random numbers have the moments that they say") {
 TEST_CASE("normal numbers by layers are normal everywhere, the tail too, and independent of each other") {
   constexpr int kDraws = 4000000;
   Random random(5);
-  double product = 0, fourth = 0, last = random.normal_by_layers();
+  double mean = 0, square = 0, product = 0, fourth = 0, beyond_two = 0, last = random.normal_by_layers();
   std::vector<double> bins(162);  // a twentieth wide from −4 to 4, and what lies beyond
   for (int i = 0; i < kDraws; ++i) {
     const double z = random.normal_by_layers();
-    product += z * last / kDraws, fourth += z * z * z * z / kDraws;
+    mean += z / kDraws, square += z * z / kDraws, product += z * last / kDraws, fourth += z * z * z * z / kDraws;
+    beyond_two += (std::abs(z) > 2) / static_cast<double>(kDraws);
     last = z;
     ++bins[static_cast<std::size_t>(std::clamp(20 * z + 81, 0.0, 161.0))];
   }
-  // Four standard errors: of the product of neighbours 4/√n, of the fourth power 4 √(96/n).
+  // Four standard errors: of the mean and of the product of neighbours 4/√n, of the square 4 √(2/n), of the fourth power 4 √(96/n).
+  CHECK(std::abs(mean) < 0.002);
   CHECK(std::abs(product) < 0.002);
+  CHECK(square == Approx(1).margin(0.0028));
+  CHECK(beyond_two == Approx(0.0455).margin(0.00042));
   CHECK(fourth == Approx(3).margin(0.02));
   const auto below = [](double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); };
   double chi_squared = 0;

@@ -46,10 +46,12 @@ inline const naming::Judged& judged(const Diagnosis& d, const std::string& name)
 
 inline Diagnosis found(const Question& q, MadeUpMill& mill) { return diagnose::diagnose(q, mill.machinery(), mill.evidence(), quick()); }
 
-inline Diagnosis diagnosed(const std::vector<Physics>& physics, const std::vector<std::string>& truth, double recording_noise = 1) {
+inline Diagnosis diagnosed(const std::vector<Physics>& physics, const std::vector<std::string>& truth, double recording_noise = 1,
+                           std::uint64_t seed = 0) {
   const testing::Scratch folder;
   const Question q = question_of(folder, kSections);
   MadeUpMill mill(q, physics, truth, recording_noise);
+  mill.seed = seed;
   return found(q, mill);
 }
 

@@ -71,11 +71,7 @@ TEST_CASE("intervals of 90 % hold a strength beyond its prior, and the friction 
   constexpr double kStrength = 1.5, kFriction = 0.3;
   int strengths = 0, frictions = 0;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    const Scratch folder;
-    const Question q = question_of(folder, kSections);
-    MadeUpMill mill(q, usual(), with(kRolling + "=0.3"));
-    mill.seed = seed;
-    const Diagnosis d = diagnose::found(q, mill);
+    const Diagnosis d = diagnosed(usual(), with(kRolling + "=0.3"), 1, seed);
     const Judged& found = judged(d, "rolling_resistance");
     strengths += found.strength.low < kStrength && found.strength.high > kStrength;
     frictions += found.theta[0].low < kFriction && found.theta[0].high > kFriction;

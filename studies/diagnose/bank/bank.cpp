@@ -13,6 +13,7 @@
 #include "kernel/base/hash.hpp"
 #include "kernel/base/parallel.hpp"
 #include "studies/calibrate/observe.hpp"
+#include "studies/diagnose/naming/surrogate.hpp"
 #include "studies/doe/doe.hpp"
 
 namespace millscope::diagnose {
