@@ -56,6 +56,38 @@ Prediction simulate(const HeldOutRequest& r, const Way& way, std::size_t conditi
   return p;
 }
 
+/// What every coordinate of θ does to the surrogate about a fit: [observables, θ], per unit of coded θ.
+MatrixXd tangent(const naming::Surrogate& surrogate, const VectorXd& coded, const std::vector<naming::ActiveCandidate>& active) {
+  MatrixXd out(surrogate.coefficients().cols(), coded.size());
+  for (Index i = 0; i < coded.size(); ++i) {
+    VectorXd up = coded, down = coded;
+    up[i] += 0.5, down[i] -= 0.5;
+    out.col(i) = surrogate.at(up, active) - surrogate.at(down, active);
+  }
+  return out;
+}
+
+/// Inverse of the covariance that θ has after a fit, in coded units: its priors' with what observables, of which the tangent is in noise
+/// units, tell of it.
+MatrixXd information(const naming::BankData& data, const MatrixXd& white_tangent) {
+  MatrixXd out = white_tangent.transpose() * white_tangent;
+  for (Index i = 0; i < out.rows(); ++i) out(i, i) += std::pow(data.theta[i].prior_weight(), 2);
+  return out;
+}
+
+/// Covariance of what the base predicts in a held-out condition [observables, observables], by what the fit leaves open of θ. Where it
+/// tells nothing of a parameter, that lies anywhere in its range.
+MatrixXd error_of_fit(const HeldOutRequest& r, const naming::Surrogate& held) {
+  constexpr double kUniform = 3;  // one over the variance of what lies anywhere between −1 and 1
+  const naming::Surrogate fitted(r.problem.data);
+  const naming::Weighting weighting(r.problem.covariance, fitted);
+  const VectorXd& coded = r.naming.base.coded;
+  MatrixXd known = information(r.problem.data, weighting.whitener * tangent(fitted, coded, {}));
+  for (Index i = 0; i < known.rows(); ++i) known(i, i) += r.problem.data.theta[i].nuisance() ? 0 : kUniform;
+  const MatrixXd there = tangent(held, coded, {});
+  return there * known.ldlt().solve(there.transpose());
+}
+
 /// What the best alternative has on; nothing where there is none, or a nuisance is the best.
 std::vector<naming::ActiveCandidate> best_active(const HeldOutRequest& r) {
   if (!r.naming.best) return {};
@@ -76,7 +108,8 @@ class HeldOutTrial {
         condition_(condition),
         held_(problem_alone(request.question, request.evidence, request.bank, condition, request.problem.data)),
         surrogate_(held_.data),
-        left_out_(left_out(held_.data, best_active(request))) {
+        left_out_(left_out(held_.data, best_active(request))),
+        error_of_fit_(error_of_fit(request, surrogate_)) {
     const RivalModels rivals(r_, condition, surrogate_, held_.covariance.diagonal());
     add_ways(rivals);
     if (r_.naming.best) placebo_ = rivals.placebo(), discrepancy_ = rivals.discrepancy();
@@ -140,6 +173,12 @@ class HeldOutTrial {
     return out;
   }
 
+  /// With what the fitted recordings leave open of θ: another recording would have moved it.
+  Prediction refitted(Prediction base) const {
+    base.covariance += error_of_fit_;
+    return base;
+  }
+
   Prediction moved(const std::string& name, const std::string& sentence, const VectorXd& by) const {
     Prediction p = ways_.back().prediction;
     p.name = name, p.sentence = sentence, p.computed = true;
@@ -174,7 +213,8 @@ class HeldOutTrial {
       if (!std::binary_search(judge.kept.begin(), judge.kept.end(), Index(i))) out.not_compared.push_back(observables[i].name);
     }
     const Prediction& base = ways_.back().prediction;
-    if (base.failure.empty()) out.base_p = judge.goodness(base, r_.seed), out.strict_base_p = judge.goodness(exact(base), r_.seed);
+    if (base.failure.empty())
+      out.base_p = judge.goodness(refitted(base), r_.seed), out.strict_base_p = judge.goodness(refitted(exact(base)), r_.seed);
     for (Prediction& p : all) {
       if (!p.failure.empty())
         out.failures.push_back(fmt::format("{}: {}", p.name, p.failure));
@@ -245,6 +285,7 @@ class HeldOutTrial {
   naming::Problem held_;
   naming::Surrogate surrogate_;
   std::vector<MatrixXd> left_out_;
+  MatrixXd error_of_fit_;  ///< of the refitted base
   std::vector<Way> ways_;
   VectorXd placebo_, discrepancy_;  ///< what these rivals add to the refitted base
 };
@@ -290,16 +331,8 @@ std::vector<Alone> fit_alone(const HeldOutRequest& r) {
         switched.on.push_back(e.candidate), switched.ranges[e.candidate] = {e.strength, e.strength};
       const naming::FitResult found = naming::Model(one.data, surrogate, weighting, switched).fit(one.observed);
       const Index d = found.coded.size();
-      MatrixXd information = MatrixXd::Zero(d, d), tangent(w.rows(), d);
-      for (Index i = 0; i < d; ++i) {
-        VectorXd up = found.coded, down = found.coded;
-        up[i] += 0.5, down[i] -= 0.5;
-        tangent.col(i) = w * (surrogate.at(up, on) - surrogate.at(down, on));
-        const naming::Coordinate& c = one.data.theta[i];
-        information(i, i) = std::pow(c.prior_weight(), 2);
-      }
-      information += tangent.transpose() * tangent;
-      const VectorXd sd = information.ldlt().solve(MatrixXd::Identity(d, d)).diagonal().cwiseMax(0).cwiseSqrt();
+      const MatrixXd known = information(one.data, w * tangent(surrogate, found.coded, on));
+      const VectorXd sd = known.ldlt().solve(MatrixXd::Identity(d, d)).diagonal().cwiseMax(0).cwiseSqrt();
       std::vector<base::Interval90> theta;
       for (Index i = 0; i < d; ++i) {
         const naming::Coordinate& c = one.data.theta[i];
