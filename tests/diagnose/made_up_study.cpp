@@ -84,6 +84,7 @@ calibrate::Observation MadeUpMill::observation(std::size_t condition, const std:
     const double left_alone = theta_[i].usual ? theta_[i].coded(*theta_[i].usual) : 0;
     const double u = found == settings.end() ? left_alone : theta_[i].coded(std::stod(found->second));
     coded.push_back(u);
+    if (i == 1 && idle == condition) continue;
     y += (3 - static_cast<double>(i)) * direction(own + i) * u + 0.4 * direction(own + 10 + i) * u * u;
   }
   for (const Physics& p : physics_) {

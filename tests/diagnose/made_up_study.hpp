@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,7 @@ class MadeUpMill {
   int computed() const { return static_cast<int>(cache_.size()); }            ///< simulations, each once
   double run_noise = 0.3;                                                     ///< of the bank's simulations
   std::uint64_t seed = 0;                                                     ///< of all noise
+  std::optional<std::size_t> idle = {};                                       ///< a condition in which wall friction does nothing
   std::function<bool(const std::map<std::string, std::string>&)> fails = {};  ///< of a simulation's settings; empty: none
 
  private:

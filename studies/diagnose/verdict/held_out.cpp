@@ -9,6 +9,7 @@
 #include <limits>
 #include <set>
 
+#include "studies/diagnose/naming/covariance.hpp"
 #include "studies/diagnose/verdict/judge.hpp"
 #include "studies/diagnose/verdict/rival_models.hpp"
 
@@ -75,17 +76,18 @@ MatrixXd information(const naming::BankData& data, const MatrixXd& white_tangent
   return out;
 }
 
-/// Covariance of what the base predicts in a held-out condition [observables, observables], by what the fit leaves open of θ. Where it
-/// tells nothing of a parameter, that lies anywhere in its range.
+/// Covariance of what the base predicts in a held-out condition [observables, observables], by what the fit leaves open of θ. A parameter
+/// that it tells nothing of lies anywhere in its range. Readings of the camera's frame have an error that all recordings share
+/// (frame_readings.hpp): of these a little too much is counted.
 MatrixXd error_of_fit(const HeldOutRequest& r, const naming::Surrogate& held) {
-  constexpr double kUniform = 3;  // one over the variance of what lies anywhere between −1 and 1
-  const naming::Surrogate fitted(r.problem.data);
-  const naming::Weighting weighting(r.problem.covariance, fitted);
   const VectorXd& coded = r.naming.base.coded;
-  MatrixXd known = information(r.problem.data, weighting.whitener * tangent(fitted, coded, {}));
-  for (Index i = 0; i < known.rows(); ++i) known(i, i) += r.problem.data.theta[i].nuisance() ? 0 : kUniform;
+  MatrixXd precision =
+      information(r.problem.data, naming::whitener(r.naming.covariance) * tangent(naming::Surrogate(r.problem.data), coded, {}));
+  for (Index i = 0; i < coded.size(); ++i) {  // about the fitted value the mean square of what lies anywhere between −1 and 1
+    if (!r.problem.data.theta[i].nuisance()) precision(i, i) += 1 / (1.0 / 3 + coded[i] * coded[i]);
+  }
   const MatrixXd there = tangent(held, coded, {});
-  return there * known.ldlt().solve(there.transpose());
+  return there * precision.ldlt().solve(there.transpose());
 }
 
 /// What the best alternative has on; nothing where there is none, or a nuisance is the best.
@@ -173,8 +175,8 @@ class HeldOutTrial {
     return out;
   }
 
-  /// With what the fitted recordings leave open of θ: another recording would have moved it.
-  Prediction refitted(Prediction base) const {
+  /// The base with what the fitted recordings leave open of θ: others would have moved it.
+  Prediction with_error_of_fit(Prediction base) const {
     base.covariance += error_of_fit_;
     return base;
   }
@@ -214,7 +216,8 @@ class HeldOutTrial {
     }
     const Prediction& base = ways_.back().prediction;
     if (base.failure.empty())
-      out.base_p = judge.goodness(refitted(base), r_.seed), out.strict_base_p = judge.goodness(refitted(exact(base)), r_.seed);
+      out.base_p = judge.goodness(with_error_of_fit(base), r_.seed),
+      out.strict_base_p = judge.goodness(with_error_of_fit(exact(base)), r_.seed);
     for (Prediction& p : all) {
       if (!p.failure.empty())
         out.failures.push_back(fmt::format("{}: {}", p.name, p.failure));

@@ -55,7 +55,7 @@ struct HeldOut {
   /// That a recording of the refitted base would look as bad. What the fitted recordings leave open of θ counts; of a predicted base the
   /// surrogate's error, too.
   double base_p = 1;
-  double strict_base_p = 1;  ///< the same as if a predicted base had no error: what an alarm is not to be missed by
+  double strict_base_p = 1;  ///< the same as if the surrogate did not err in this condition: what an alarm is not to be missed by
   std::vector<std::string> failures;
   std::vector<std::string> not_compared;  ///< observables that some prediction leaves undefined (NaN in its value)
   bool improves = false;                  ///< the interval against every rival model lies above 0
