@@ -79,10 +79,9 @@ MatrixXd information(const naming::BankData& data, const MatrixXd& white_tangent
 /// Covariance of what the base predicts in a held-out condition [observables, observables], by what the fit leaves open of θ. A parameter
 /// that it tells nothing of lies anywhere in its range. Readings of the camera's frame have an error that all recordings share
 /// (frame_readings.hpp): of these a little too much is counted.
-MatrixXd error_of_fit(const HeldOutRequest& r, const naming::Surrogate& held) {
+MatrixXd error_of_fit(const HeldOutRequest& r, const naming::Surrogate& fitted, const naming::Surrogate& held) {
   const VectorXd& coded = r.naming.base.coded;
-  MatrixXd precision =
-      information(r.problem.data, naming::whitener(r.naming.covariance) * tangent(naming::Surrogate(r.problem.data), coded, {}));
+  MatrixXd precision = information(r.problem.data, naming::whitener(r.naming.covariance) * tangent(fitted, coded, {}));
   for (Index i = 0; i < coded.size(); ++i) {  // about the fitted value the mean square of what lies anywhere between −1 and 1
     if (!r.problem.data.theta[i].nuisance()) precision(i, i) += 1 / (1.0 / 3 + coded[i] * coded[i]);
   }
@@ -110,9 +109,10 @@ class HeldOutTrial {
         condition_(condition),
         held_(problem_alone(request.question, request.evidence, request.bank, condition, request.problem.data)),
         surrogate_(held_.data),
-        left_out_(left_out(held_.data, best_active(request))),
-        error_of_fit_(error_of_fit(request, surrogate_)) {
-    const RivalModels rivals(r_, condition, surrogate_, held_.covariance.diagonal());
+        left_out_(left_out(held_.data, best_active(request))) {
+    const naming::Surrogate fitted(r_.problem.data);
+    error_of_fit_ = error_of_fit(r_, fitted, surrogate_);
+    const RivalModels rivals(r_, condition, fitted, surrogate_, held_.covariance.diagonal());
     add_ways(rivals);
     if (r_.naming.best) placebo_ = rivals.placebo(), discrepancy_ = rivals.discrepancy();
     for (Way& way : ways_) way.prediction = predicted(way);
@@ -334,8 +334,8 @@ std::vector<Alone> fit_alone(const HeldOutRequest& r) {
         switched.on.push_back(e.candidate), switched.ranges[e.candidate] = {e.strength, e.strength};
       const naming::FitResult found = naming::Model(one.data, surrogate, weighting, switched).fit(one.observed);
       const Index d = found.coded.size();
-      const MatrixXd known = information(one.data, w * tangent(surrogate, found.coded, on));
-      const VectorXd sd = known.ldlt().solve(MatrixXd::Identity(d, d)).diagonal().cwiseMax(0).cwiseSqrt();
+      const MatrixXd precision = information(one.data, w * tangent(surrogate, found.coded, on));
+      const VectorXd sd = precision.ldlt().solve(MatrixXd::Identity(d, d)).diagonal().cwiseMax(0).cwiseSqrt();
       std::vector<base::Interval90> theta;
       for (Index i = 0; i < d; ++i) {
         const naming::Coordinate& c = one.data.theta[i];

@@ -49,8 +49,9 @@ VectorXd retuned_to_power(const naming::BankData& data, const naming::Surrogate&
   return best;
 }
 
-RivalModels::RivalModels(const HeldOutRequest& request, std::size_t held, const naming::Surrogate& held_surrogate, VectorXd variance)
-    : r_(request), held_(held), surrogate_(request.problem.data), held_surrogate_(held_surrogate), variance_(std::move(variance)) {}
+RivalModels::RivalModels(const HeldOutRequest& request, std::size_t held, const naming::Surrogate& surrogate,
+                         const naming::Surrogate& held_surrogate, VectorXd variance)
+    : r_(request), held_(held), surrogate_(surrogate), held_surrogate_(held_surrogate), variance_(std::move(variance)) {}
 
 std::optional<std::size_t> RivalModels::metered() const {
   for (const std::size_t c : r_.fit) {

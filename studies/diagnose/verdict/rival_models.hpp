@@ -10,9 +10,10 @@ namespace millscope::diagnose {
 
 class RivalModels {
  public:
-  /// `held_surrogate`: of the held-out condition alone; it must outlive this.
+  /// `surrogate`: of the fitted conditions; `held_surrogate`: of the held-out condition alone; both must outlive this.
   /// `variance`: of the recording's errors in the held-out condition.
-  RivalModels(const HeldOutRequest& request, std::size_t held, const naming::Surrogate& held_surrogate, VectorXd variance);
+  RivalModels(const HeldOutRequest& request, std::size_t held, const naming::Surrogate& surrogate, const naming::Surrogate& held_surrogate,
+              VectorXd variance);
 
   /// The first fitted condition with a recorded power.
   std::optional<std::size_t> metered() const;
@@ -32,7 +33,7 @@ class RivalModels {
 
   const HeldOutRequest& r_;
   std::size_t held_;
-  naming::Surrogate surrogate_;
+  const naming::Surrogate& surrogate_;
   const naming::Surrogate& held_surrogate_;
   VectorXd variance_;
 };
